@@ -1,0 +1,26 @@
+# One interface target carries the warnings and the floating-point rules of the project's own code.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+option(VDBEAM_WARNINGS_AS_ERRORS "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
+set(VDBEAM_SANITIZE "" CACHE STRING "Sanitizers to compile with, e.g. address,undefined or thread")
+
+add_library(vdbeam_options INTERFACE)
+# No contraction outside the SIMD kernels: the same source gives the same bits at every optimisation
+# level, which the bit-identity tests rely on.
+target_compile_options(vdbeam_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                       -Wno-sign-conversion -ffp-contract=off -fno-math-errno)
+if(VDBEAM_WARNINGS_AS_ERRORS)
+  target_compile_options(vdbeam_options INTERFACE -Werror)
+endif()
+if(VDBEAM_SANITIZE)
+  add_compile_options(-fsanitize=${VDBEAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${VDBEAM_SANITIZE})
+endif()
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

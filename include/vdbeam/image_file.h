@@ -1,0 +1,20 @@
+#pragma once
+
+#include "vdbeam/image.h"
+
+#include <string>
+
+namespace vdbeam {
+
+/// Writes an EXR (ZIP, half colour, float data) under a temporary name beside `path`, syncs and
+/// renames, so that `path` is never half written. Throws FrameError (disk full, no permission).
+void write_exr(const Image& image, const std::string& path);
+
+/// Reads every channel of a flat EXR as float, or an RGBE .hdr as R, G, B. Throws InputError for
+/// anything that is not such a file, within bounded memory.
+Image read_image(const std::string& path);
+
+/// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr.
+void write_png(const Image& image, const std::string& path, double exposure = 0);
+
+} // namespace vdbeam

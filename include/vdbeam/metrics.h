@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vdbeam/image.h"
+
+namespace vdbeam {
+
+/// Error of an image v against a reference r, over all pixels and the channels R, G, B, in linear
+/// RGB. Definitions: docs/physics.md.
+struct ImageError {
+  double rmse = 0;   ///< sqrt(mean((v - r)^2))
+  double mrse = 0;   ///< mean((v - r)^2 / (r + 0.01)^2)
+  double relmse = 0; ///< mean((v - r)^2 / (r^2 + 0.01)) without the worst 0.1 % of pixels
+  double bias = 0;   ///< mean(v) / mean(r) - 1
+  double flip = 0;   ///< mean FLIP (Andersson et al. 2020) at 67 pixels per degree; only compare_images
+};
+
+/// rmse, mrse, relmse, bias. Throws InputError where sizes differ or R, G, B are missing.
+ImageError image_error(const Image& image, const Image& reference);
+/// The same and FLIP.
+ImageError compare_images(const Image& image, const Image& reference);
+
+} // namespace vdbeam

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// What the user asked for, as plain values in world units; docs/scene.md gives every key, its unit,
+/// range and default. `load_scene` fills it from a file, programs may fill it by hand.
+
+struct ImageSettings {
+  int width = 640;  ///< pixels
+  int height = 360; ///< pixels
+};
+
+struct CameraSettings {
+  Vec3d position{0, 0, 5};
+  Vec3d look_at{0, 0, 0};
+  Vec3d up{0, 1, 0};
+  double fov = 30; ///< vertical, degrees
+};
+
+enum class PhaseType { isotropic, henyey_greenstein, rayleigh, two_lobe, mie };
+
+struct PhaseSettings {
+  PhaseType type = PhaseType::isotropic;
+  double g = 0;                 ///< mean cosine (first lobe), in (-1, 1)
+  double g2 = 0;                ///< two_lobe: mean cosine of the second lobe
+  double blend = 0.5;           ///< two_lobe: share of the second lobe
+  double droplet_diameter = 20; ///< mie: micrometres, 5 to 50
+};
+
+struct VolumeSettings {
+  std::string file;                ///< path, frame pattern already substituted
+  std::string density = "density"; ///< grid name
+  double extinction = 1;           ///< sigma_t = extinction * extinction_scale * density [1/world]
+  Rgb extinction_scale{1, 1, 1};   ///< per-channel factor of the extinction (chromatic media)
+  Rgb albedo{1, 1, 1};             ///< sigma_s / sigma_t per channel, in [0, 1]
+  PhaseSettings phase;
+  /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.
+  std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+};
+
+enum class LightType { distant, point, spot, environment };
+enum class DirectLight { automatic, sampled, photons };
+
+struct LightSettings {
+  LightType type = LightType::distant;
+  Vec3d direction{0, -1, 0};      ///< distant, spot: the way the light travels
+  Rgb irradiance{1, 1, 1};        ///< distant: on a plane that faces the light [W m^-2]
+  double angular_radius = 0;      ///< distant: half angle of the disc, degrees
+  Vec3d position{0, 0, 0};        ///< point, spot
+  Rgb intensity{1, 1, 1};         ///< point, spot [W sr^-1]
+  double cone_angle = 30;         ///< spot: half angle where the light ends, degrees
+  double cone_falloff = 5;        ///< spot: width of the smooth edge inside it, degrees
+  Rgb radiance{1, 1, 1};          ///< environment: constant, or the image's factor
+  std::string image;              ///< environment: lat-long EXR or HDR, empty for constant
+  double rotation = 0;            ///< environment: about the up axis, degrees
+  std::optional<DirectLight> direct; ///< overrides render.direct for this light
+};
+
+enum class EstimatorType { beam, march, path };
+enum class PhotonStore { fluence, scatter };
+enum class KernelRadius { adaptive, fixed };
+enum class KernelShape { constant, epanechnikov, biweight, fourth_order };
+
+struct RenderSettings {
+  EstimatorType estimator = EstimatorType::beam;
+  std::optional<int> passes;           ///< the first of these three met ends the frame
+  std::optional<double> time;          ///< seconds
+  std::optional<double> target_error;  ///< MRSE
+  std::optional<std::uint64_t> photons; ///< stored per pass; absent: automatic
+  PhotonStore store = PhotonStore::fluence;
+  DirectLight direct = DirectLight::automatic;
+  int direct_samples = 0;              ///< per ray and light; 0: automatic
+  KernelRadius kernel = KernelRadius::adaptive;
+  KernelShape kernel_shape = KernelShape::biweight;
+  double radius = 0;                   ///< fixed kernel, world units
+  int neighbours = 0;                  ///< adaptive kernel, photons per kernel; 0: automatic
+  double min_radius = 0;               ///< world units; 0: automatic
+  double max_radius = 0;               ///< world units; 0: automatic
+  double alpha = 0.7;                  ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
+  double keep = 0;                     ///< share of a path's collisions that are stored; 0: automatic
+  std::optional<int> max_bounces;      ///< scattering events per light path; absent: no limit
+  double cutoff = 1e-6;                ///< transmittance below which a camera ray ends
+  double step = 1;                     ///< march: step length in voxels
+  std::uint64_t seed = 1;
+  int threads = 0;                     ///< 0: all that the machine grants
+};
+
+struct Scene {
+  std::string path;                    ///< where it came from, for messages
+  ImageSettings image;
+  CameraSettings camera;
+  std::vector<VolumeSettings> volumes;
+  std::vector<LightSettings> lights;
+  RenderSettings render;
+};
+
+} // namespace vdbeam

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "vdbeam/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB.
+/// `overrides` are "key.path=value" strings, applied last. `frame` replaces ####, %04d and $F4 in
+/// paths. Throws InputError "file:line: key ..." for anything that is not a valid scene.
+Scene load_scene(const std::string& path, int frame = 1,
+                 const std::vector<std::string>& overrides = {});
+
+/// The text of a commented scene file for this volume (`vdbeam init`).
+std::string scene_template(const std::string& vdb_path);
+
+/// Checks ranges and consistency of a scene filled by hand. Throws InputError.
+void validate_scene(const Scene& scene);
+
+/// 64-bit hash of everything that changes the picture, as 16 hex digits.
+std::string scene_hash(const Scene& scene);
+
+} // namespace vdbeam

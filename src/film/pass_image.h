@@ -1,0 +1,30 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <vector>
+
+namespace vdbeam {
+
+/// What one pass of an estimator gives: one value per pixel and output, row-major from the top left.
+struct PassImage {
+  int width = 0, height = 0;
+  std::vector<Rgb> direct;      ///< single scattering of lights estimated by shadow rays
+  std::vector<Rgb> indirect;    ///< everything else scattered in the volume
+  std::vector<Rgb> background;  ///< lights seen through the volume: Tr * escaped radiance
+  std::vector<float> opacity;   ///< 1 - Tr of the whole ray (mean over channels)
+  std::vector<float> depth;     ///< distance [world] where opacity reaches half its final value; 0 if none
+
+  void resize(int w, int h) {
+    width = w;
+    height = h;
+    const std::size_t n = static_cast<std::size_t>(w) * h;
+    direct.assign(n, {});
+    indirect.assign(n, {});
+    background.assign(n, {});
+    opacity.assign(n, 0);
+    depth.assign(n, 0);
+  }
+};
+
+} // namespace vdbeam

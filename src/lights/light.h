@@ -1,0 +1,46 @@
+#pragma once
+
+#include "math/ray.h"
+#include "math/rng.h"
+#include "vdbeam/scene.h"
+
+namespace vdbeam {
+
+/// Light arriving at a point, drawn by `Light::sample_incident`.
+struct IncidentSample {
+  Vec3f wi;            ///< unit, from the point towards the light
+  float distance = 0;  ///< to the light, infinity for distant ones
+  Rgb value;           ///< radiance / pdf; for a delta light irradiance perpendicular to wi
+  float pdf = 0;       ///< per solid angle; 0 for a delta light (no other strategy can hit it)
+};
+
+/// A photon as it leaves a light, already at the edge of the occupied region.
+struct EmittedPhoton {
+  Ray ray;
+  Rgb flux;  ///< emitted power / density; the mean over photons is the light's power into the region
+};
+
+/// A light in render space. All quantities that depend on length are converted when it is made.
+class Light {
+public:
+  virtual ~Light() = default;
+
+  /// One direction to the light for a shadow ray. value is 0 where no light arrives.
+  virtual IncidentSample sample_incident(const Vec3f& point, float u, float v) const = 0;
+  /// Density with which sample_incident draws `wi`; 0 for delta lights.
+  virtual float incident_pdf(const Vec3f& point, const Vec3f& wi) const = 0;
+  /// Radiance seen by a ray that leaves the scene along `direction`; 0 for lights that a ray cannot
+  /// meet (delta lights and local lights).
+  virtual Rgb escaped_radiance(const Vec3f& direction) const = 0;
+  /// One photon aimed at the occupied region. `number` of `count` stratifies the emission.
+  virtual EmittedPhoton emit(Rng& rng) const = 0;
+  /// Power into the occupied region (render units), to share photons between lights.
+  virtual Rgb power() const = 0;
+  /// True where only sample_incident can find the light.
+  virtual bool is_delta() const = 0;
+  virtual LightType type() const = 0;
+
+  DirectLight direct = DirectLight::automatic; ///< how its single scattering is estimated
+};
+
+} // namespace vdbeam

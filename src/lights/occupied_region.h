@@ -1,0 +1,26 @@
+#pragma once
+
+#include "math/ray.h"
+
+#include <array>
+#include <vector>
+
+namespace vdbeam {
+
+/// A parallelepiped: the corner and three edges from it.
+struct OrientedBox {
+  Vec3f corner;
+  std::array<Vec3f, 3> edges;
+};
+
+/// Where medium is, as photons are aimed at it: boxes in render space, which may overlap. `boxes` are
+/// few and coarse (one per volume, tight around its density); `cells` are fine (one per non-empty
+/// 8^3 cell or small group of them) and serve the lights of fixed direction.
+struct OccupiedRegion {
+  std::vector<OrientedBox> boxes;
+  std::vector<OrientedBox> cells;
+  Vec3f center;       ///< of a sphere around all boxes
+  float radius = 0;
+};
+
+} // namespace vdbeam

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "phase/phase_function.h"
+
+#include <vector>
+
+namespace vdbeam {
+
+/// 16 x 16 camera rays with one origin, as the beam query takes them: 16 sub-tiles of 4 x 4 rays.
+/// Ray r of sub-tile s has index 16 s + r everywhere below.
+///
+/// All positions are relative to `reference`, a point of the tile's central ray near the medium, in
+/// the tile's frame (axis_u, axis_v, axis_w), so a camera far away costs no precision: a ray starts
+/// at w = -camera_distance on the frame's w axis and t is the distance from there.
+struct BeamTile {
+  static constexpr int subtile_count = 16;
+  static constexpr int rays_per_subtile = 16;
+  static constexpr int ray_count = 256;
+
+  Vec3f reference;                   ///< render space
+  Vec3f axis_u, axis_v, axis_w;      ///< orthonormal; w is the central direction
+  float camera_distance = 0;         ///< from the rays' origin to `reference`
+  alignas(64) float du[ray_count]{}; ///< unit directions in the tile's frame
+  alignas(64) float dv[ray_count]{};
+  alignas(64) float dw[ray_count]{};
+
+  /// What the medium makes of a photon at distance t on each ray, per sub-tile at uniform knots
+  /// t_k = t_begin + k * step, linear in between, 0 before the first and after the last knot:
+  /// W(t) = Tr(0, t) * sigma_s(t), for each group of volumes that share a phase function and, where
+  /// the extinction is chromatic, each channel.
+  struct Profile {
+    float t_begin = 0;
+    float step = 1;
+    int knots = 0;                   ///< 0: this sub-tile sees nothing
+    std::size_t offset = 0;          ///< into `weights` of [(group * weight_channels + c)][knot][16]
+  };
+  Profile profiles[subtile_count];
+  std::vector<float> weights;        ///< 64-byte alignment not required
+  int weight_channels = 1;           ///< 1, or 3 where extinction is chromatic
+  const std::vector<PhaseFunction>* phases = nullptr; ///< one per group
+
+  /// Out: per channel of the photons (1 or 3), per ray, sum over photons and groups of
+  /// K(d, r) * W(t) * p(cos) * power. Channel-major: radiance[c * ray_count + ray]. Added to.
+  std::vector<float> radiance;
+};
+
+/// What a query did, for the report and for tuning.
+struct QueryCounts {
+  std::uint64_t contributions = 0; ///< (ray, photon) pairs within the kernel
+  std::uint64_t candidates = 0;    ///< (ray, photon) pairs evaluated
+  std::uint64_t blocks = 0;        ///< photon blocks visited
+};
+
+} // namespace vdbeam

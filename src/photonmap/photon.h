@@ -1,0 +1,26 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdbeam {
+
+/// Photons as tracing leaves them, structure of arrays.
+/// With fluence storage `power` is flux / majorant at the collision [W m^2-ish: power times length],
+/// so that sum_i K * power is the fluence; the ray supplies sigma_s.
+struct PhotonList {
+  std::vector<Vec3f> position;  ///< render space
+  std::vector<Vec3f> direction; ///< unit direction of travel; empty where no phase function needs it
+  std::vector<Rgb> power;       ///< per photon, already divided by the number of emitted photons
+
+  std::size_t size() const { return position.size(); }
+  void append(const PhotonList& other) {
+    position.insert(position.end(), other.position.begin(), other.position.end());
+    direction.insert(direction.end(), other.direction.begin(), other.direction.end());
+    power.insert(power.end(), other.power.begin(), other.power.end());
+  }
+};
+
+} // namespace vdbeam

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "math/affine.h"
+#include "photonmap/beam_tile.h"
+#include "photonmap/photon.h"
+
+#include <memory>
+
+namespace vdbeam {
+
+/// How kernel radii are chosen (render units).
+struct RadiusSettings {
+  KernelRadius mode = KernelRadius::adaptive;
+  float fixed_radius = 0;    ///< fixed mode
+  float neighbours = 100;    ///< adaptive mode: expected photons in the sphere of radius r_i
+  float scale = 1;           ///< progressive shrinking: applied to adaptive and fixed radii alike
+  float min_radius = 0;      ///< clamp after scaling; > 0
+  float max_radius = 1e30f;  ///< clamp after scaling
+};
+
+struct MapTimes {
+  double order = 0, radii = 0, build = 0; ///< seconds
+};
+
+/// The photon map of one pass: photons in kd-median order in full 16-photon blocks (structure of
+/// arrays, the last block padded with photons of radius 0 and power 0), an implicit 8-ary tree of
+/// boxes over the blocks, boxes around the photons' spheres.
+///
+/// Building is deterministic and parallel (oneTBB); the result does not depend on the number of
+/// threads. Queries are const and may run concurrently. Any input is legal: no photons, coincident,
+/// collinear, coplanar photons; photons with a non-finite field are dropped and counted.
+class PhotonMap {
+public:
+  PhotonMap();
+  ~PhotonMap();
+  PhotonMap(PhotonMap&&) noexcept;
+  PhotonMap& operator=(PhotonMap&&) noexcept;
+
+  /// Orders the photons, finds radii, refits boxes. `channels` is 1 where every power is grey (only
+  /// x is kept), else 3.
+  static PhotonMap build(PhotonList photons, int channels, const RadiusSettings& radii,
+                         KernelShape shape);
+
+  std::size_t size() const;
+  std::size_t bytes() const;
+  int channels() const;
+  MapTimes times() const;
+  std::size_t dropped() const; ///< non-finite photons
+  Boxf bounds() const;         ///< of all spheres
+  float mean_radius() const;
+
+  /// Beam radiance estimate for a tile: adds to tile.radiance (Jarosz et al. 2008, eq. 11, with the
+  /// ray's own sigma_s: see BeamTile).
+  QueryCounts query(BeamTile& tile) const;
+
+  /// One ray, same formula, for whatever does not come in tiles, and to test the tiles against.
+  /// weights: as a Profile with one ray: [group * weight_channels + c][knot].
+  struct RayProfile {
+    Ray ray;
+    float t_begin = 0, step = 1;
+    int knots = 0;
+    const float* weights = nullptr;
+    int weight_channels = 1;
+    const std::vector<PhaseFunction>* phases = nullptr;
+  };
+  QueryCounts query_ray(const RayProfile& profile, Rgb& radiance) const;
+
+  /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
+  /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
+  /// `direction` is the camera ray's, away from the camera.
+  QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
+                          const std::vector<PhaseFunction>& phases, Rgb* in_scattered) const;
+
+private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// Name of the SIMD target that queries run on here, e.g. "AVX3_ZEN4", "AVX2", "SCALAR".
+const char* simd_target();
+
+} // namespace vdbeam

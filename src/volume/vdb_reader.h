@@ -1,0 +1,64 @@
+#pragma once
+
+#include "math/affine.h"
+#include "volume/density_field.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// What was found and mended while a grid was read.
+struct GridRepairs {
+  std::uint64_t nan = 0;      ///< values replaced by 0
+  std::uint64_t infinite = 0; ///< values replaced by 0
+  std::uint64_t negative = 0; ///< values replaced by 0
+};
+
+/// A density grid ready to render.
+struct DensityGrid {
+  DensityField field;     ///< empty() where the grid holds nothing
+  Affine index_to_world;  ///< the file's map
+  GridRepairs repairs;
+  std::uint64_t active_voxels = 0; ///< tiles counted by the voxels they cover
+  std::vector<std::string> notes;  ///< one line each, for the user (repairs, emptiness, conversions)
+};
+
+/// One grid of a file, as `vdbeam info` shows it.
+struct GridSummary {
+  std::string name;       ///< unique name, e.g. "density" or "density[1]"
+  std::string value_type; ///< "float", "half", "vec3s", ...
+  std::string grid_class; ///< "fog volume", "level set", "unknown", ...
+  std::string map_type;   ///< "UniformScaleMap", "AffineMap", "NonlinearFrustumMap", ...
+  bool saved_as_half = false;
+  std::uint64_t active_voxels = 0;
+  std::uint64_t leaf_count = 0, tile_count = 0;
+  Vec3<std::int64_t> index_lower, index_upper; ///< active bounding box, inclusive; lower > upper if empty
+  Affine index_to_world;
+  Boxd world_bounds;
+  double voxel_size[3] = {0, 0, 0};
+  double minimum = 0, maximum = 0, mean = 0; ///< over active voxels, scalar float grids only
+  double background = 0;
+  GridRepairs bad_values; ///< counted, not changed
+};
+
+/// How far an untrusted file may go before it is refused.
+struct ReadLimits {
+  double seconds = 120;
+  std::uint64_t bytes = std::uint64_t(16) << 30;
+};
+
+/// Reads one float or half grid and bricks it, in parallel.
+/// Throws InputError (missing file or grid, naming the grids there are; unsupported type, class or
+/// map) and FrameError (corrupt file, limits exceeded), each within `limits`.
+DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
+                              const ReadLimits& limits = {});
+
+/// Lists every grid of a file; same errors.
+std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits = {});
+
+/// "OpenVDB 10.0.1"
+std::string vdb_library_version();
+
+} // namespace vdbeam
