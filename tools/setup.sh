@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that building vdbeam needs, where they are missing.
+# Exit status: 0 everything is there, 2 it cannot be put there (one line says what to do).
+set -euo pipefail
+
+packages=(
+  # compiler and build tools
+  g++ cmake ninja-build pkg-config ccache
+  # OpenVDB; its development package does not pull in all that its headers and find module need
+  libopenvdb-dev libboost-iostreams-dev libblosc-dev zlib1g-dev
+  # the other libraries
+  libtbb-dev libopenexr-dev libimath-dev libpng-dev libstb-dev libfmt-dev libtomlplusplus-dev
+  libcli11-dev nlohmann-json3-dev libhwy-dev
+  # tests and benchmarks
+  libgtest-dev libgmock-dev libbenchmark-dev
+  # tools
+  python3 python3-numpy python3-matplotlib
+)
+
+if [[ ${1:-} == --list ]]; then
+  echo "${packages[*]}"
+  exit 0
+fi
+if [[ ${VDBEAM_SKIP_SETUP:-} == 1 ]]; then
+  exit 0
+fi
+
+system=$(. /etc/os-release 2>/dev/null && echo "${ID:-unknown} ${VERSION_ID:-}" || echo unknown)
+if [[ $system != "debian 12" ]]; then
+  echo "setup.sh: installs packages on Debian 12 only, this is '$system': install your system's equivalents of ${packages[*]}, then run again with VDBEAM_SKIP_SETUP=1" >&2
+  exit 2
+fi
+
+missing=()
+installed=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null || true)
+for package in "${packages[@]}"; do
+  grep -qxF "$package installed" <<<"$installed" || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  exit 0
+fi
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  if command -v sudo >/dev/null && { [[ -t 0 ]] || sudo -n true 2>/dev/null; }; then
+    as_root=(sudo)
+  else
+    echo "setup.sh: needs root or sudo: run as root: apt-get install ${missing[*]}" >&2
+    exit 2
+  fi
+fi
+
+echo "installing ${missing[*]}"
+apt_get() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q -o DPkg::Lock::Timeout=300 "$@" </dev/null
+}
+if ! { apt_get update && apt_get install -y --no-install-recommends "${missing[@]}"; }; then
+  echo "setup.sh: apt-get failed (its messages are above); to try by hand: apt-get install ${missing[*]}" >&2
+  exit 2
+fi
