@@ -7,7 +7,8 @@
 namespace vdbeam {
 
 /// Draine's phase function (Draine 2003, eq. 4; as in Jendersie and d'Eon 2023, eq. 3):
-///   p(cos) = 1/(4 pi) * (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2) * (1 + alpha cos^2) / (1 + alpha (1 + 2 g^2) / 3)
+///   p(cos) = 1/(4 pi) * (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2) * (1 + alpha cos^2) / (1 + alpha (1
+///   + 2 g^2) / 3)
 /// alpha = 0 is Henyey-Greenstein, g = 0 and alpha = 1 Rayleigh, both 0 isotropic.
 struct DraineLobe {
   float g = 0;
@@ -21,11 +22,16 @@ struct DraineLobe {
 class PhaseFunction {
 public:
   PhaseFunction() = default;
+  /// Throws InputError where a parameter lies outside its range (PhaseSettings).
   explicit PhaseFunction(const PhaseSettings& settings);
 
   /// Value [1/sr]; integrates to 1 over the sphere.
-  float evaluate(float cos_theta) const;
+  float evaluate(float cos_theta) const {
+    const float first = terms_[0].value(cos_theta);
+    return lobe_count_ == 1 ? first : first + terms_[1].value(cos_theta);
+  }
   /// A direction of travel after scattering, distributed exactly as `evaluate`.
+  /// u_lobe, u, v lie in [0, 1).
   Vec3f sample(const Vec3f& direction, float u_lobe, float u, float v) const;
   /// Mean cosine.
   float mean_cosine() const;
@@ -35,7 +41,25 @@ public:
   const DraineLobe& lobe(int i) const { return lobes_[i]; }
 
 private:
+  /// A lobe made ready to evaluate. 1 + g^2 - 2 g cos is computed as (1 - |g|)^2 + 2 |g| (1 -+
+  /// cos), a sum of positive terms, since the plain form loses all digits where |g| is near 1.
+  struct Term {
+    float scale = 0.0795774715f; ///< weight / (4 pi) * (1 - g^2) / (1 + alpha (1 + 2 g^2) / 3)
+    float base = 1;              ///< (1 - |g|)^2
+    float slope = 0;             ///< 2 |g|
+    float side = 1;              ///< sign of g
+    float alpha = 0;
+
+    float value(float cos_theta) const {
+      const float d = base + slope * std::max(0.0f, 1 - side * cos_theta);
+      return scale * (1 + alpha * cos_theta * cos_theta) / (d * std::sqrt(d));
+    }
+  };
+
+  void set_lobe(int i, const DraineLobe& lobe);
+
   std::array<DraineLobe, 2> lobes_;
+  std::array<Term, 2> terms_;
   int lobe_count_ = 1;
 };
 

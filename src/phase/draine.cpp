@@ -1,0 +1,77 @@
+#include "phase/draine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+namespace {
+
+// Everything below is for g >= 0; a negative g mirrors the angle. x stands for 1 - cos.
+//
+// Henyey-Greenstein's distribution w(x) (the probability of a smaller angle) and its inverse, both
+// written so that no two nearly equal numbers are subtracted, neither for g -> 0 nor for g -> 1.
+// With b = 1 - g, s = sqrt(b^2 + 2 g x) and q = (1 - g^2) / s:
+//   w = (1 + g) x / (s (s + b)),  q = b + 2 g (1 - w),  x = b^2 w (1 + g + q) / q^2.
+double invert_henyey_greenstein(double g, double w) {
+  const double b = 1 - g;
+  const double q = b + 2 * g * (1 - w);
+  return b * b * w * (1 + g + q) / (q * q);
+}
+
+struct DraineCdf {
+  double g, alpha, norm;
+
+  DraineCdf(double g_, double alpha_)
+      : g(g_), alpha(alpha_), norm(1 + alpha_ * (1 + 2 * g_ * g_) / 3) {}
+
+  // Draine's distribution as a function of Henyey-Greenstein's, w. Its slope (1 + alpha cos^2) /
+  // norm is smooth and bounded away from 0 for every g, which Newton's method likes. The moments
+  // are
+  //   m1 = integral x dw   = (1 - g^2) x^2 / (s (s + b)^2),
+  //   m2 = integral x^2 dw = (1 - g^2) x^3 (s + 3 b) / (3 s (s + b)^3),
+  // and cos^2 = 1 - 2 x + x^2.
+  double value(double w, double& x, double& slope) const {
+    const double b = 1 - g, c = 1 - g * g;
+    const double q = b + 2 * g * (1 - w);
+    x = b * b * w * (1 + g + q) / (q * q);
+    const double s = c / q;
+    const double ratio = x / (s + b);
+    const double m1 = q * ratio * ratio;
+    const double m2 = m1 * ratio * (s + 3 * b) / 3;
+    slope = (1 + alpha * (1 - x) * (1 - x)) / norm;
+    return ((1 + alpha) * w - 2 * alpha * m1 + alpha * m2) / norm;
+  }
+
+  double invert(double u) const {
+    constexpr double tolerance = 1e-11;
+    constexpr int limit = 60; // bisection alone would be done by then
+    double low = 0, high = 1, w = u, x = 0;
+    for (int i = 0; i < limit; ++i) {
+      double slope = 1;
+      const double error = value(w, x, slope) - u;
+      if (std::abs(error) < tolerance)
+        break;
+      (error > 0 ? high : low) = w;
+      const double next = w - error / slope;
+      w = next > low && next < high ? next : (low + high) / 2;
+    }
+    return x;
+  }
+};
+
+} // namespace
+
+float sample_draine_one_minus_cos(float g, float alpha, float u) {
+  const double size = std::abs(static_cast<double>(g));
+  double x = alpha > 0 ? DraineCdf(size, alpha).invert(u) : invert_henyey_greenstein(size, u);
+  if (g < 0)
+    x = 2 - x;
+  return static_cast<float>(std::clamp(x, 0.0, 2.0));
+}
+
+float draine_mean_cosine(float g, float alpha) {
+  const float g2 = g * g;
+  return g * (1 + alpha * (3 + 2 * g2) / 5) / (1 + alpha * (1 + 2 * g2) / 3);
+}
+
+} // namespace vdbeam
