@@ -6,14 +6,17 @@
 
 namespace vdbeam {
 
-/// What one pass of an estimator gives: one value per pixel and output, row-major from the top left.
+/// What one pass of an estimator gives: one value per pixel and output, row-major from the top
+/// left.
 struct PassImage {
   int width = 0, height = 0;
-  std::vector<Rgb> direct;      ///< single scattering of lights estimated by shadow rays
-  std::vector<Rgb> indirect;    ///< everything else scattered in the volume
-  std::vector<Rgb> background;  ///< lights seen through the volume: Tr * escaped radiance
-  std::vector<float> opacity;   ///< 1 - Tr of the whole ray (mean over channels)
-  std::vector<float> depth;     ///< distance [world] where opacity reaches half its final value; 0 if none
+  std::vector<Rgb> direct;     ///< single scattering of lights estimated by shadow rays
+  std::vector<Rgb> indirect;   ///< everything else scattered in the volume
+  std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
+  std::vector<float> opacity;  ///< 1 - Tr of the whole ray (mean over channels)
+  /// Opacity times the mean distance [world] of the first collision: integral of Tr sigma_t t dt.
+  /// Sum over passes, divided by the sum of opacity, it is the mean depth (AOV volume_Z).
+  std::vector<float> depth;
 
   void resize(int w, int h) {
     width = w;

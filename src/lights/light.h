@@ -8,16 +8,16 @@ namespace vdbeam {
 
 /// Light arriving at a point, drawn by `Light::sample_incident`.
 struct IncidentSample {
-  Vec3f wi;            ///< unit, from the point towards the light
-  float distance = 0;  ///< to the light, infinity for distant ones
-  Rgb value;           ///< radiance / pdf; for a delta light irradiance perpendicular to wi
-  float pdf = 0;       ///< per solid angle; 0 for a delta light (no other strategy can hit it)
+  Vec3f wi;           ///< unit, from the point towards the light
+  float distance = 0; ///< to the light, infinity for distant ones
+  Rgb value;          ///< radiance / pdf; for a delta light irradiance perpendicular to wi
+  float pdf = 0;      ///< per solid angle; 0 for a delta light (no other strategy can hit it)
 };
 
 /// A photon as it leaves a light, already at the edge of the occupied region.
 struct EmittedPhoton {
   Ray ray;
-  Rgb flux;  ///< emitted power / density; the mean over photons is the light's power into the region
+  Rgb flux; ///< emitted power / density; the mean over photons is the light's power into the region
 };
 
 /// A light in render space. All quantities that depend on length are converted when it is made.
@@ -39,6 +39,9 @@ public:
   /// True where only sample_incident can find the light.
   virtual bool is_delta() const = 0;
   virtual LightType type() const = 0;
+  /// False where scattered rays that escape find the light as well as shadow rays would (a constant
+  /// sky), so that the path tracer need not spend any. Never false for a delta light.
+  virtual bool wants_shadow_rays() const { return true; }
 
   DirectLight direct = DirectLight::automatic; ///< how its single scattering is estimated
 };

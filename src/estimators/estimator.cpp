@@ -1,0 +1,19 @@
+#include "estimators/estimator.h"
+
+#include "estimators/path.h"
+#include "vdbeam/error.h"
+
+namespace vdbeam {
+
+std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInput& input) {
+  switch (type) {
+  case EstimatorType::path:
+    return std::make_unique<PathEstimator>(input);
+  case EstimatorType::beam:
+  case EstimatorType::march:
+    break;
+  }
+  throw InputError("unknown estimator");
+}
+
+} // namespace vdbeam

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "estimators/pass_image.h"
+#include "transport/world.h"
+#include "vdbeam/render.h"
+
+#include <memory>
+
+namespace vdbeam {
+
+/// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
+/// number), whatever the threads.
+class Estimator {
+public:
+  virtual ~Estimator() = default;
+
+  /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`.
+  virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
+};
+
+/// What every estimator is made from; the references must outlive it.
+struct EstimatorInput {
+  const World& world;
+  const Camera& camera;
+  std::uint64_t frame = 1;
+};
+
+/// The table of estimators: what `render.estimator` names.
+std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInput& input);
+
+} // namespace vdbeam

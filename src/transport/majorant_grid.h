@@ -1,0 +1,27 @@
+#pragma once
+
+#include "volume/density_field.h"
+
+namespace vdbeam {
+
+/// Local majorants of a density field: for each 8^3 cell an upper bound of the density inside, 0
+/// exactly where the field is empty.
+///
+/// A fluence photon weighs 1 / majorant, so the majorant of a cell may not lie more than a factor
+/// `drop_limit` under that of a neighbour: otherwise a photon from a nearly empty cell, under the
+/// kernel of a ray through the dense one, would be a firefly.
+class MajorantGrid {
+public:
+  static constexpr float drop_limit = 32;
+
+  MajorantGrid() = default;
+  explicit MajorantGrid(const DensityField& field);
+
+  float operator[](std::size_t cell_offset) const { return majorants_[cell_offset]; }
+  std::size_t bytes() const { return majorants_.size() * sizeof(float); }
+
+private:
+  std::vector<float> majorants_;
+};
+
+} // namespace vdbeam

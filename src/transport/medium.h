@@ -1,0 +1,67 @@
+#pragma once
+
+#include "math/affine.h"
+#include "math/ray.h"
+#include "phase/phase_function.h"
+#include "transport/cell_walk.h"
+#include "transport/majorant_grid.h"
+#include "volume/render_space.h"
+
+#include <array>
+#include <vector>
+
+namespace vdbeam {
+
+/// A volume in render space: density grid, coefficients, phase function.
+///   sigma_t(x) = density(x) * extinction * channel_scale,  sigma_s = albedo * sigma_t
+struct Volume {
+  DensityField field;
+  MajorantGrid majorants;    ///< of the density
+  std::array<Vec3f, 3> rows; ///< render space -> local coordinates of the field
+  Vec3f translation;
+  float extinction = 1;       ///< per render unit, of the strongest channel
+  Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
+  Rgb albedo{1, 1, 1};
+  int group = 0;        ///< index into Medium::phases
+  float voxel_size = 1; ///< smallest edge of a voxel, render units
+
+  Vec3f local_point(const Vec3f& p) const { return local_vector(p) + translation; }
+  Vec3f local_vector(const Vec3f& v) const {
+    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
+  }
+  float density(const Vec3f& p) const { return field.sample(local_point(p)); }
+  /// sigma_t of the strongest channel's majorant at a point; 0 outside.
+  float majorant(const Vec3f& p) const;
+  /// The ray in units of the field's 8^3 cells.
+  CellWalk walk_cells(const Ray& ray, float t_begin, float t_end) const {
+    return {local_point(ray.origin) * 0.125f, local_vector(ray.direction) * 0.125f,
+            field.cell_counts(), t_begin, t_end};
+  }
+};
+
+/// All volumes of a scene; they may overlap, and coefficients add.
+struct Medium {
+  std::vector<Volume> volumes;       ///< only those with something in them
+  std::vector<PhaseFunction> phases; ///< one per group of volumes with the same phase function
+  Boxf bounds;                       ///< of all that is not empty, render space
+  bool chromatic = false;            ///< extinction differs between channels
+
+  bool empty() const { return volumes.empty(); }
+  bool isotropic() const;
+  std::size_t bytes() const;
+  /// Part of the ray inside `bounds`; t_begin >= t_end where it misses.
+  void clip(const Ray& ray, float& t_begin, float& t_end) const;
+};
+
+inline float Volume::majorant(const Vec3f& p) const {
+  const Vec3f cell = local_point(p) * 0.125f;
+  const Vec3<int>& n = field.cell_counts();
+  if (!(cell.x >= 0 && cell.y >= 0 && cell.z >= 0 && cell.x < static_cast<float>(n.x) &&
+        cell.y < static_cast<float>(n.y) && cell.z < static_cast<float>(n.z)))
+    return 0;
+  return extinction *
+         majorants[field.cell_offset(static_cast<int>(cell.x), static_cast<int>(cell.y),
+                                     static_cast<int>(cell.z))];
+}
+
+} // namespace vdbeam

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "transport/delta_tracking.h"
+
+namespace vdbeam {
+
+/// One decision of spectral tracking (Kutz et al. 2017, history-aware) at a tentative collision:
+/// real or null, in proportion to what each does to the weight, so that no channel's weight can
+/// grow without bound. With grey extinction this is delta tracking's own decision.
+inline bool collide_really(const Collision& hit, bool chromatic, Rgb& weight, Rng& rng) {
+  const float ratio = hit.sigma_t / hit.majorant;
+  if (!chromatic)
+    return rng.uniform() < ratio;
+  const Rgb real = hit.volume->channel_scale * ratio;
+  const Rgb null = Rgb(1) - real;
+  const float real_share = dot(weight, real), null_share = dot(weight, null);
+  const float probability = real_share / (real_share + null_share);
+  if (rng.uniform() < probability) {
+    weight *= real / probability;
+    return true;
+  }
+  weight *= null / (1 - probability);
+  return false;
+}
+
+/// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel
+/// keeps its value. False where the path ends.
+inline bool survive_scattering(const Rgb& albedo, Rgb& weight, Rng& rng) {
+  const float before = max_component(weight);
+  weight *= albedo;
+  const float after = max_component(weight);
+  if (!(after > 0))
+    return false;
+  if (after < before) {
+    if (rng.uniform() * before >= after)
+      return false;
+    weight *= before / after;
+  }
+  return true;
+}
+
+/// The next real collision along the ray; volume is null where the ray leaves the medium first.
+inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
+  if (medium.empty())
+    return {};
+  float t_begin = 0, t_end = infinity;
+  medium.clip(ray, t_begin, t_end);
+  if (!(t_begin < t_end))
+    return {};
+  MediumTracker tracker(medium, ray, t_begin, t_end);
+  while (true) {
+    const Collision hit = tracker.next(rng);
+    if (hit.volume == nullptr || collide_really(hit, medium.chromatic, weight, rng))
+      return hit;
+  }
+}
+
+} // namespace vdbeam

@@ -1,0 +1,181 @@
+#include "transport/world.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool is_grey(const Rgb& c) {
+  return c.x == c.y && c.y == c.z;
+}
+
+Affine to_affine(const std::array<double, 12>& m) {
+  Affine a;
+  a.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
+  a.translation = {m[3], m[7], m[11]};
+  return a;
+}
+
+/// Local coordinates of the field -> world.
+Affine local_to_world(const DensityGrid& grid, const VolumeSettings& settings) {
+  Affine shift;
+  shift.translation = Vec3d(grid.field.origin());
+  return to_affine(settings.transform).after(grid.index_to_world).after(shift);
+}
+
+Boxd mapped_bounds(const Affine& map, const Boxf& box) {
+  Boxd result;
+  for (int corner = 0; corner < 8; ++corner)
+    result.extend(
+        map.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                   corner & 4 ? box.upper.z : box.lower.z}));
+  return result;
+}
+
+/// Moves the bounds' centre to 0 and scales by the power of two that brings the size to [1, 2).
+RenderSpace choose_space(const Boxd& bounds) {
+  RenderSpace space;
+  if (bounds.empty())
+    return space;
+  space.origin = bounds.center();
+  const double size = max_component(bounds.size());
+  if (size > 0)
+    space.scale = std::exp2(-std::floor(std::log2(size)));
+  return space;
+}
+
+OrientedBox oriented_box(const Affine& local_to_render, const Boxd& local) {
+  const Vec3d size = local.size();
+  return {Vec3f(local_to_render.point(local.lower)),
+          {Vec3f(local_to_render.vector({size.x, 0, 0})),
+           Vec3f(local_to_render.vector({0, size.y, 0})),
+           Vec3f(local_to_render.vector({0, 0, size.z}))}};
+}
+
+void add_region(OccupiedRegion& region, const DensityField& field, const Affine& local_to_render) {
+  const Boxf& occupied = field.occupied();
+  region.boxes.push_back(
+      oriented_box(local_to_render, {Vec3d(occupied.lower), Vec3d(occupied.upper)}));
+  const Vec3<int> n = field.cell_counts();
+  for (int i = 0; i < n.x; ++i)
+    for (int j = 0; j < n.y; ++j)
+      for (int k = 0; k < n.z; ++k) {
+        if (field.cell_maximum(field.cell_offset(i, j, k)) == 0)
+          continue;
+        const Vec3d lower = max(Vec3d(8.0 * i, 8.0 * j, 8.0 * k), Vec3d(occupied.lower));
+        const Vec3d upper =
+            min(Vec3d(8.0 * i + 8, 8.0 * j + 8, 8.0 * k + 8), Vec3d(occupied.upper));
+        if (lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)
+          region.cells.push_back(oriented_box(local_to_render, {lower, upper}));
+      }
+}
+
+int group_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings>& known,
+             const PhaseSettings& phase) {
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (known[i].type == phase.type && known[i].g == phase.g && known[i].g2 == phase.g2 &&
+        known[i].blend == phase.blend && known[i].droplet_diameter == phase.droplet_diameter)
+      return static_cast<int>(i);
+  known.push_back(phase);
+  phases.emplace_back(phase);
+  return static_cast<int>(phases.size()) - 1;
+}
+
+Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
+                   const Affine& local_to_render, double scale) {
+  Volume volume;
+  volume.field = std::move(grid.field);
+  volume.majorants = MajorantGrid(volume.field);
+  const Affine inverse = local_to_render.inverse();
+  for (int i = 0; i < 3; ++i)
+    volume.rows[i] = Vec3f(inverse.rows[i]);
+  volume.translation = Vec3f(inverse.translation);
+  const float strongest = max_component(settings.extinction_scale);
+  volume.extinction = static_cast<float>(settings.extinction * strongest / scale);
+  volume.channel_scale = strongest > 0 ? settings.extinction_scale / strongest : Rgb(1);
+  volume.albedo = settings.albedo;
+  double edge = infinity;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d unit{};
+    unit[a] = 1;
+    edge = std::min(edge, length(local_to_render.vector(unit)));
+  }
+  volume.voxel_size = static_cast<float>(edge);
+  return volume;
+}
+
+void bound_region(World& world, const Boxd& bounds) {
+  world.medium.bounds = {Vec3f(world.space.point(bounds.lower)),
+                         Vec3f(world.space.point(bounds.upper))};
+  // A little wider, so that a ray that grazes the last voxel is not cut by rounding.
+  const Vec3f margin = world.medium.bounds.size() * 1e-5f + Vec3f(1e-6f);
+  world.medium.bounds.lower -= margin;
+  world.medium.bounds.upper += margin;
+  world.region.center = world.medium.bounds.center();
+  world.region.radius = 0.5f * length(world.medium.bounds.size());
+}
+
+bool grey_scene(const Scene& scene, const World& world) {
+  bool grey = !world.medium.chromatic;
+  for (const Volume& volume : world.medium.volumes)
+    grey = grey && is_grey(volume.albedo);
+  for (const LightSettings& light : scene.lights)
+    grey = grey && is_grey(light.irradiance) && is_grey(light.intensity) &&
+           is_grey(light.radiance) && light.image.empty();
+  return grey;
+}
+
+} // namespace
+
+World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
+  const auto start = std::chrono::steady_clock::now();
+  World world;
+  world.settings = scene.render;
+  std::vector<Affine> maps;
+  Boxd bounds;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    world.notes.insert(world.notes.end(), grids[i].notes.begin(), grids[i].notes.end());
+    maps.push_back(local_to_world(grids[i], scene.volumes[i]));
+    if (!grids[i].field.empty())
+      bounds.extend(mapped_bounds(maps[i], grids[i].field.occupied()));
+  }
+  world.space = choose_space(bounds);
+  std::vector<PhaseSettings> known;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const VolumeSettings& settings = scene.volumes[i];
+    const double strongest = settings.extinction * max_component(settings.extinction_scale);
+    if (grids[i].field.empty() || !(strongest > 0))
+      continue;
+    const Affine map = world.space.map().after(maps[i]);
+    add_region(world.region, grids[i].field, map);
+    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale);
+    volume.group = group_of(world.medium.phases, known, settings.phase);
+    world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
+    world.medium.volumes.push_back(std::move(volume));
+  }
+  if (!world.medium.empty())
+    bound_region(world, bounds);
+  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region);
+  world.grey = grey_scene(scene, world);
+  world.seconds_build = seconds_since(start);
+  return world;
+}
+
+World build_world(const Scene& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<DensityGrid> grids;
+  for (const VolumeSettings& volume : scene.volumes)
+    grids.push_back(read_density_grid(volume.file, volume.density));
+  const double seconds_read = seconds_since(start);
+  World world = build_world(scene, std::move(grids));
+  world.seconds_read = seconds_read;
+  return world;
+}
+
+} // namespace vdbeam

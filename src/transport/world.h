@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lights/light_set.h"
+#include "transport/camera.h"
+#include "transport/medium.h"
+#include "volume/vdb_reader.h"
+
+#include <string>
+
+namespace vdbeam {
+
+/// A scene made ready for tracing: everything in render space. Immutable while rendering.
+struct World {
+  RenderSpace space;
+  Medium medium;
+  LightSet lights;
+  OccupiedRegion region;
+  RenderSettings settings;
+  /// Every colour in the scene is a grey: one channel of photon power suffices.
+  bool grey = false;
+  std::vector<std::string> notes; ///< for the user
+  double seconds_read = 0, seconds_build = 0;
+};
+
+/// Reads the volumes and builds the world. Throws InputError and FrameError.
+World build_world(const Scene& scene);
+
+/// The same from fields that are already there: one per scene.volumes entry.
+World build_world(const Scene& scene, std::vector<DensityGrid> grids);
+
+} // namespace vdbeam
