@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/affine.h"
+#include "math/ray.h"
 #include "photonmap/beam_tile.h"
 #include "photonmap/photon.h"
 

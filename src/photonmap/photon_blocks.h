@@ -1,0 +1,79 @@
+#pragma once
+
+#include "math/affine.h"
+
+#include <tbb/cache_aligned_allocator.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vdbeam {
+
+/// Photons in full blocks of 16, each block a structure of arrays: one row of 16 floats per field.
+/// The last block is padded with photons of radius 0 and power 0.
+class PhotonBlocks {
+public:
+  static constexpr std::size_t width = 16;
+  enum Field : int { x = 0, y = 1, z = 2, radius = 3, power = 4 };
+
+  PhotonBlocks() = default;
+  PhotonBlocks(std::size_t count, int channels, bool directions)
+      : count_(count), channels_(channels), directions_(directions),
+        stride_(width * (4 + channels + (directions ? 3 : 0))),
+        rows_(block_count() * stride_, 0.0f) {}
+
+  std::size_t count() const { return count_; }
+  std::size_t block_count() const { return (count_ + width - 1) / width; }
+  int channels() const { return channels_; }
+  bool has_directions() const { return directions_; }
+  /// First field of the direction's three; only where has_directions().
+  int direction_field() const { return power + channels_; }
+
+  const float* row(std::size_t block, int field) const {
+    return rows_.data() + block * stride_ + field * width;
+  }
+  float* row(std::size_t block, int field) {
+    return rows_.data() + block * stride_ + field * width;
+  }
+  float at(std::size_t photon, int field) const {
+    return row(photon / width, field)[photon % width];
+  }
+  float& at(std::size_t photon, int field) { return row(photon / width, field)[photon % width]; }
+  Vec3f position(std::size_t photon) const { return {at(photon, x), at(photon, y), at(photon, z)}; }
+  std::size_t bytes() const { return rows_.size() * sizeof(float); }
+
+private:
+  std::size_t count_ = 0;
+  int channels_ = 1;
+  bool directions_ = false;
+  std::size_t stride_ = 0;
+  std::vector<float, tbb::cache_aligned_allocator<float>> rows_;
+};
+
+/// Bounding boxes of eight sibling nodes; a missing sibling is an empty box.
+struct alignas(32) BoxGroup {
+  float lower[3][8];
+  float upper[3][8];
+};
+
+/// The implicit 8-ary tree over consecutive blocks: group g of level 0 has the boxes of blocks 8 g
+/// to 8 g + 7, group g of level l + 1 those of the groups 8 g to 8 g + 7 of level l. The last level
+/// is one group.
+struct BlockTree {
+  static constexpr int max_levels = 12;
+  std::vector<std::vector<BoxGroup, tbb::cache_aligned_allocator<BoxGroup>>> levels;
+  Boxf bounds;
+
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const auto& level : levels)
+      sum += level.size() * sizeof(BoxGroup);
+    return sum;
+  }
+};
+
+/// Boxes around the photons' spheres, rounded outwards.
+BlockTree build_block_tree(const PhotonBlocks& blocks);
+
+} // namespace vdbeam

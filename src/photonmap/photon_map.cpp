@@ -1,0 +1,235 @@
+#include "photonmap/photon_map.h"
+
+#include "math/kernels.h"
+#include "photonmap/kernel_radii.h"
+#include "photonmap/photon_blocks.h"
+#include "photonmap/photon_order.h"
+
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+
+namespace vdbeam {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool finite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+float phase_value(const PhaseFunction& phase, float cos_theta) {
+  float sum = 0;
+  for (int i = 0; i < phase.lobe_count(); ++i) {
+    const DraineLobe& lobe = phase.lobe(i);
+    const float g = lobe.g, x = 1 + g * g - 2 * g * cos_theta;
+    sum += lobe.weight * (1 - g * g) / (4 * pi * x * std::sqrt(x)) *
+           (1 + lobe.alpha * cos_theta * cos_theta) / (1 + lobe.alpha * (1 + 2 * g * g) / 3);
+  }
+  return sum;
+}
+
+std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
+  std::vector<OrderedPhoton> ordered;
+  ordered.reserve(photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+    if (finite(photons.position[i]) && finite(photons.power[i]) &&
+        (photons.direction.empty() || finite(photons.direction[i])))
+      ordered.push_back({photons.position[i], static_cast<std::uint32_t>(i)});
+  return ordered;
+}
+
+PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedPhoton>& order,
+                           int channels) {
+  PhotonBlocks blocks(order.size(), channels, !photons.direction.empty());
+  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
+    const std::uint32_t from = order[i].index;
+    for (int axis = 0; axis < 3; ++axis)
+      blocks.at(i, axis) = order[i].position[axis];
+    for (int c = 0; c < channels; ++c)
+      blocks.at(i, PhotonBlocks::power + c) = photons.power[from][c];
+    if (blocks.has_directions())
+      for (int axis = 0; axis < 3; ++axis)
+        blocks.at(i, blocks.direction_field() + axis) = photons.direction[from][axis];
+  });
+  return blocks;
+}
+
+} // namespace
+
+struct PhotonMap::Data {
+  PhotonBlocks blocks;
+  BlockTree tree;
+  KernelShape shape = KernelShape::biweight;
+  MapTimes times;
+  std::size_t dropped = 0;
+  float mean_radius = 0;
+};
+
+PhotonMap::PhotonMap() : data_(std::make_unique<Data>()) {}
+PhotonMap::~PhotonMap() = default;
+PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
+PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
+
+PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSettings& radii,
+                           KernelShape shape) {
+  PhotonMap map;
+  Data& data = *map.data_;
+  data.shape = shape;
+  auto start = Clock::now();
+  std::vector<OrderedPhoton> order = finite_photons(photons);
+  data.dropped = photons.size() - order.size();
+  order_photons(order);
+  data.blocks = gather_blocks(photons, order, channels);
+  data.times.order = seconds_since(start);
+
+  start = Clock::now();
+  find_kernel_radii(data.blocks, radii);
+  data.times.radii = seconds_since(start);
+
+  start = Clock::now();
+  data.tree = build_block_tree(data.blocks);
+  double sum = 0;
+  for (std::size_t i = 0; i < data.blocks.count(); ++i)
+    sum += data.blocks.at(i, PhotonBlocks::radius);
+  data.mean_radius =
+      data.blocks.count() ? static_cast<float>(sum / static_cast<double>(data.blocks.count())) : 0;
+  data.times.build = seconds_since(start);
+  return map;
+}
+
+std::size_t PhotonMap::size() const {
+  return data_->blocks.count();
+}
+std::size_t PhotonMap::bytes() const {
+  return data_->blocks.bytes() + data_->tree.bytes();
+}
+int PhotonMap::channels() const {
+  return data_->blocks.channels();
+}
+MapTimes PhotonMap::times() const {
+  return data_->times;
+}
+std::size_t PhotonMap::dropped() const {
+  return data_->dropped;
+}
+Boxf PhotonMap::bounds() const {
+  return data_->tree.bounds;
+}
+float PhotonMap::mean_radius() const {
+  return data_->mean_radius;
+}
+
+QueryCounts PhotonMap::query(BeamTile& tile) const {
+  QueryCounts counts;
+  const std::size_t channels =
+      static_cast<std::size_t>(std::max(this->channels(), tile.weight_channels));
+  if (tile.radiance.size() < channels * BeamTile::ray_count)
+    tile.radiance.resize(channels * BeamTile::ray_count, 0.0f);
+  const Vec3d origin =
+      Vec3d(tile.reference) - Vec3d(tile.axis_w) * static_cast<double>(tile.camera_distance);
+  std::vector<float> weights;
+  for (int r = 0; r < BeamTile::ray_count; ++r) {
+    const BeamTile::Profile& profile = tile.profiles[r / BeamTile::rays_per_subtile];
+    if (profile.knots < 2)
+      continue;
+    RayProfile ray;
+    ray.ray.direction =
+        tile.axis_u * tile.du[r] + tile.axis_v * tile.dv[r] + tile.axis_w * tile.dw[r];
+    // From the point abreast of the reference, so that a far camera costs no precision.
+    const float shift = tile.camera_distance * tile.dw[r];
+    ray.ray.origin = Vec3f(origin + Vec3d(ray.ray.direction) * static_cast<double>(shift));
+    ray.t_begin = profile.t_begin - shift;
+    ray.step = profile.step;
+    ray.knots = profile.knots;
+    ray.weight_channels = tile.weight_channels;
+    ray.phases = tile.phases;
+    const std::size_t rows = tile.phases->size() * tile.weight_channels * profile.knots;
+    weights.resize(rows);
+    for (std::size_t k = 0; k < rows; ++k)
+      weights[k] = tile.weights[profile.offset + k * BeamTile::rays_per_subtile +
+                                r % BeamTile::rays_per_subtile];
+    ray.weights = weights.data();
+    Rgb radiance(0);
+    const QueryCounts c = query_ray(ray, radiance);
+    counts.contributions += c.contributions;
+    counts.candidates += c.candidates;
+    counts.blocks += c.blocks;
+    for (std::size_t ch = 0; ch < channels; ++ch)
+      tile.radiance[ch * BeamTile::ray_count + r] += radiance[static_cast<int>(ch)];
+  }
+  return counts;
+}
+
+QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const {
+  const PhotonBlocks& blocks = data_->blocks;
+  QueryCounts counts;
+  const float last = static_cast<float>(profile.knots - 1);
+  for (std::size_t i = 0; profile.knots >= 2 && i < blocks.count(); ++i) {
+    ++counts.candidates;
+    const Vec3f q = blocks.position(i) - profile.ray.origin;
+    const Vec3f e = cross(q, profile.ray.direction);
+    const float radius = blocks.at(i, PhotonBlocks::radius), r2 = radius * radius;
+    const float d2 = dot(e, e);
+    if (!(d2 < r2))
+      continue;
+    const float f = (dot(q, profile.ray.direction) - profile.t_begin) / profile.step;
+    if (!(f >= 0 && f <= last))
+      continue;
+    ++counts.contributions;
+    const int k = std::min(static_cast<int>(f), profile.knots - 2);
+    const float fraction = f - static_cast<float>(k);
+    const float kernel = disc_kernel(data_->shape, d2 / r2) / r2;
+    for (std::size_t g = 0; g < profile.phases->size(); ++g) {
+      float cos_theta = 0;
+      if (blocks.has_directions())
+        for (int axis = 0; axis < 3; ++axis)
+          cos_theta -= blocks.at(i, blocks.direction_field() + axis) * profile.ray.direction[axis];
+      const float common = kernel * phase_value((*profile.phases)[g], cos_theta);
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t row = g * profile.weight_channels + c % profile.weight_channels;
+        const float* w = profile.weights + row * profile.knots + k;
+        radiance[c] += common * (w[0] + fraction * (w[1] - w[0])) *
+                       blocks.at(i, PhotonBlocks::power + c % blocks.channels());
+      }
+    }
+  }
+  return counts;
+}
+
+QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
+                                   const std::vector<PhaseFunction>& phases,
+                                   Rgb* in_scattered) const {
+  const PhotonBlocks& blocks = data_->blocks;
+  QueryCounts counts;
+  for (std::size_t g = 0; g < phases.size(); ++g)
+    in_scattered[g] = Rgb(0);
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    ++counts.candidates;
+    const Vec3f q = blocks.position(i) - point;
+    const float radius = blocks.at(i, PhotonBlocks::radius), r2 = radius * radius;
+    const float d2 = dot(q, q);
+    if (!(d2 < r2))
+      continue;
+    ++counts.contributions;
+    float cos_theta = 0;
+    if (blocks.has_directions())
+      for (int axis = 0; axis < 3; ++axis)
+        cos_theta -= blocks.at(i, blocks.direction_field() + axis) * direction[axis];
+    const float kernel = ball_kernel(data_->shape, d2 / r2) / (r2 * radius);
+    for (std::size_t g = 0; g < phases.size(); ++g)
+      for (int c = 0; c < 3; ++c)
+        in_scattered[g][c] += kernel * phase_value(phases[g], cos_theta) *
+                              blocks.at(i, PhotonBlocks::power + c % blocks.channels());
+  }
+  return counts;
+}
+
+const char* simd_target() {
+  return "SCALAR";
+}
+
+} // namespace vdbeam
