@@ -7,13 +7,13 @@
 
 namespace vdbeam {
 
-/// A scalar field on an integer lattice with OpenVDB's convention: voxel i sits at index i, values in
-/// between are trilinear, and outside the stored voxels the field is 0 (so a border voxel ramps to 0
-/// over one voxel).
+/// A scalar field on an integer lattice with OpenVDB's convention: voxel i sits at index i, values
+/// in between are trilinear, and outside the stored voxels the field is 0 (so a border voxel ramps
+/// to 0 over one voxel).
 ///
-/// Storage: the lattice box is cut in cells of 8^3; each cell is empty, uniform, or a *brick* of 9^3
-/// values (its own 8^3 and one apron layer at the upper sides), so that every trilinear sample reads
-/// one brick and the largest value of a cell's brick bounds every sample in the cell.
+/// Storage: the lattice box is cut in cells of 8^3; each cell is empty, uniform, or a *brick* of
+/// 9^3 values (its own 8^3 and one apron layer at the upper sides), so that every trilinear sample
+/// reads one brick and the largest value of a cell's brick bounds every sample in the cell.
 ///
 /// "Local" coordinates are index coordinates less `origin()`, so they are never negative inside and
 /// small enough for single precision; cell (i, j, k) covers local [8i, 8i + 8) etc.
@@ -22,7 +22,7 @@ public:
   static constexpr int cell_width = 8;
   static constexpr int brick_width = 9;
   static constexpr int brick_size = brick_width * brick_width * brick_width;
-  static constexpr std::int32_t empty_cell = -1; ///< index table: the whole cell is 0
+  static constexpr std::int32_t empty_cell = -1;   ///< index table: the whole cell is 0
   static constexpr std::int32_t uniform_base = -2; ///< index table: -2 - n is uniform value n
 
   DensityField() = default;

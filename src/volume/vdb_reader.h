@@ -18,11 +18,11 @@ struct GridRepairs {
 
 /// A density grid ready to render.
 struct DensityGrid {
-  DensityField field;     ///< empty() where the grid holds nothing
-  Affine index_to_world;  ///< the file's map
+  DensityField field;    ///< empty() where the grid holds nothing
+  Affine index_to_world; ///< the file's map
   GridRepairs repairs;
   std::uint64_t active_voxels = 0; ///< tiles counted by the voxels they cover
-  std::vector<std::string> notes;  ///< one line each, for the user (repairs, emptiness, conversions)
+  std::vector<std::string> notes; ///< one line each, for the user (repairs, emptiness, conversions)
 };
 
 /// One grid of a file, as `vdbeam info` shows it.
@@ -34,7 +34,8 @@ struct GridSummary {
   bool saved_as_half = false;
   std::uint64_t active_voxels = 0;
   std::uint64_t leaf_count = 0, tile_count = 0;
-  Vec3<std::int64_t> index_lower, index_upper; ///< active bounding box, inclusive; lower > upper if empty
+  Vec3<std::int64_t> index_lower,
+      index_upper; ///< active bounding box, inclusive; lower > upper if empty
   Affine index_to_world;
   Boxd world_bounds;
   double voxel_size[3] = {0, 0, 0};

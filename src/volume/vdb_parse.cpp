@@ -1,0 +1,160 @@
+#include "volume/vdb_parse.h"
+
+#include "math/affine.h"
+#include "vdbeam/error.h"
+#include "volume/mapped_file.h"
+#include "volume/raw_grid.h"
+#include "volume/vdb_names.h"
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace vdbeam {
+
+namespace {
+
+std::vector<std::string> grid_names(openvdb::io::File& file) {
+  std::vector<std::string> names;
+  for (auto name = file.beginName(); name != file.endName(); ++name)
+    names.push_back(name.gridName());
+  return names;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& grid, const std::string& why) {
+  throw InputError(fmt::format("{}: grid \"{}\" {}", path, grid, why));
+}
+
+/// What can be refused before the grid's voxels are read.
+void check_kind(const std::string& path, const std::string& name, const openvdb::GridBase& grid) {
+  if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>())
+    refuse(path, name,
+           fmt::format("holds {} values, but a density must be a float or half grid",
+                       grid.valueType()));
+  const openvdb::math::Transform& transform = grid.transform();
+  if (!transform.isLinear())
+    refuse(path, name,
+           fmt::format("has a {}, which is not affine (a frustum?); resample it to a uniform grid",
+                       transform.mapType()));
+  if (grid.getGridClass() == openvdb::GRID_STAGGERED)
+    refuse(path, name, "is a staggered vector grid, not a density");
+}
+
+std::array<double, 12> affine_rows(const std::string& path, const std::string& name,
+                                   const openvdb::math::Transform& transform) {
+  const openvdb::math::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
+  std::array<double, 12> rows{};
+  bool finite = true;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) {
+      rows[4 * i + j] = matrix(j, i); // OpenVDB multiplies row vectors from the left
+      finite = finite && std::isfinite(rows[4 * i + j]);
+    }
+  if (!finite || !(std::abs(matrix.det()) > 0))
+    refuse(path, name, "has a transform that is singular or not finite");
+  return rows;
+}
+
+template <class Value>
+float to_float(Value value) {
+  if (std::abs(value) > std::numeric_limits<float>::max())
+    return static_cast<float>(std::copysign(std::numeric_limits<double>::infinity(), value));
+  return static_cast<float>(value);
+}
+
+template <class Tree>
+std::vector<RawTile> collect_tiles(const Tree& tree, std::uint64_t& active_voxels) {
+  std::vector<RawTile> tiles;
+  auto tile = tree.cbeginValueAll();
+  tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    const openvdb::CoordBBox box = tile.getBoundingBox();
+    if (tile.isValueOn())
+      active_voxels += box.volume();
+    if (tile.getValue() != 0)
+      tiles.push_back({{box.min().x(), box.min().y(), box.min().z()},
+                       box.max().x() - box.min().x() + 1,
+                       to_float(tile.getValue())});
+  }
+  return tiles;
+}
+
+template <class Leaf>
+void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
+  constexpr std::size_t batch = 64;
+  std::vector<float> values;
+  std::vector<std::int32_t> origins;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const auto* data = leaves[i]->buffer().data();
+    for (int v = 0; v < leaf_size; ++v)
+      values.push_back(to_float(data[v]));
+    if (values.size() == batch * leaf_size || i + 1 == leaves.size()) {
+      write_all(descriptor, values.data(), values.size() * sizeof(float));
+      values.clear();
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      origins.push_back(leaves[i]->origin()[axis]);
+  }
+  write_all(descriptor, origins.data(), origins.size() * sizeof(std::int32_t));
+}
+
+template <class Grid>
+void write_grid(const std::string& path, const std::string& name, const Grid& grid,
+                int descriptor) {
+  using Leaf = typename Grid::TreeType::LeafNodeType;
+  static_assert(Leaf::SIZE == leaf_size);
+  RawGridHeader header;
+  header.index_to_world = affine_rows(path, name, grid.transform());
+  header.level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+  if (header.level_set ? !(grid.background() > 0) : !(grid.background() == 0))
+    refuse(path, name,
+           header.level_set
+               ? fmt::format("is a level set with the background {}, which must be above 0",
+                             grid.background())
+               : fmt::format("has the background value {}, so the medium would have no end; set "
+                             "its background to 0 (for a level set: its class to \"level set\")",
+                             grid.background()));
+
+  std::vector<const Leaf*> leaves;
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    leaves.push_back(leaf.getLeaf());
+    header.active_voxels += leaf->onVoxelCount();
+  }
+  std::sort(leaves.begin(), leaves.end(),
+            [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });
+  const std::vector<RawTile> tiles = collect_tiles(grid.tree(), header.active_voxels);
+  header.leaf_count = leaves.size();
+  header.tile_count = tiles.size();
+
+  std::array<char, RawGridHeader::values_offset> page{};
+  std::memcpy(page.data(), &header, sizeof header);
+  write_all(descriptor, page.data(), page.size());
+  write_leaves(leaves, descriptor);
+  write_all(descriptor, tiles.data(), tiles.size() * sizeof(RawTile));
+}
+
+} // namespace
+
+void prepare_openvdb() {
+  openvdb::initialize();
+}
+
+void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor) {
+  openvdb::io::File file(path);
+  file.open(false); // delayed loading hangs or crashes on malformed files
+  if (!file.hasGrid(grid_name))
+    throw InputError(missing_grid_message(path, grid_name, grid_names(file)));
+  check_kind(path, grid_name, *file.readGridMetadata(grid_name));
+  const openvdb::GridBase::Ptr grid = file.readGrid(grid_name);
+  check_kind(path, grid_name, *grid);
+  if (grid->isType<openvdb::FloatGrid>())
+    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(*grid), descriptor);
+  else
+    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(*grid), descriptor);
+}
+
+} // namespace vdbeam
