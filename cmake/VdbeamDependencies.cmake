@@ -2,6 +2,7 @@
 find_package(TBB CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
 find_package(Imath CONFIG REQUIRED)
+find_package(PNG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(tomlplusplus CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
@@ -17,6 +18,6 @@ list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_CXX_LIBRARY_ARCHITECTURE}/cmake/O
 find_package(OpenVDB REQUIRED COMPONENTS openvdb)
 set(CMAKE_MODULE_PATH ${vdbeam_saved_module_path})
 
-set(VDBEAM_LIBRARIES OpenVDB::openvdb TBB::tbb OpenEXR::OpenEXR Imath::Imath fmt::fmt
+set(VDBEAM_LIBRARIES OpenVDB::openvdb TBB::tbb OpenEXR::OpenEXR Imath::Imath PNG::PNG fmt::fmt
     tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json PkgConfig::HWY)
 set(VDBEAM_CLI_LIBRARIES CLI11::CLI11 fmt::fmt TBB::tbb nlohmann_json::nlohmann_json)

@@ -1,0 +1,104 @@
+#include "vdbeam/metrics.h"
+
+#include "film/flip.h"
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+constexpr double mrse_offset = 0.01;
+constexpr double worst_fraction = 0.001; ///< of the pixels, left out of relMSE
+
+using Planes = std::array<const float*, 3>;
+
+Planes rgb_planes(const Image& image, const char* which) {
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  const char* const names[] = {"R", "G", "B"};
+  Planes planes{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const ImageChannel* channel = image.find(names[c]);
+    if (!channel || channel->data.size() != pixels || pixels == 0)
+      throw InputError(
+          fmt::format("the {} has no channel {}; R, G and B are compared", which, names[c]));
+    planes[c] = channel->data.data();
+  }
+  return planes;
+}
+
+void check_sizes(const Image& image, const Image& reference) {
+  if (image.width != reference.width || image.height != reference.height)
+    throw InputError(
+        fmt::format("the image is {} x {} pixels, its reference {} x {}; the sizes must "
+                    "be equal",
+                    image.width, image.height, reference.width, reference.height));
+}
+
+/// Mean over the pixels but the worst ones. The sum is in pixel order, so it is reproducible.
+double trimmed_mean(const std::vector<double>& errors) {
+  const std::size_t dropped =
+      static_cast<std::size_t>(worst_fraction * static_cast<double>(errors.size()));
+  const std::size_t kept = errors.size() - dropped;
+  std::vector<double> sorted = errors;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(kept - 1),
+                   sorted.end());
+  const double threshold = sorted[kept - 1];
+  double sum = 0;
+  std::size_t below = 0;
+  for (const double error : errors)
+    if (error < threshold) {
+      sum += error;
+      ++below;
+    }
+  return (sum + static_cast<double>(kept - below) * threshold) / static_cast<double>(kept);
+}
+
+/// v / r - 1, where both may be 0.
+double relative_difference(double value, double reference) {
+  return value == reference ? 0 : value / reference - 1;
+}
+
+} // namespace
+
+ImageError image_error(const Image& image, const Image& reference) {
+  check_sizes(image, reference);
+  const Planes v = rgb_planes(image, "image"), r = rgb_planes(reference, "reference");
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  std::vector<double> relative(pixels);
+  double squares = 0, mrse = 0, sum_v = 0, sum_r = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double pixel = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = v[c][i], truth = r[c][i];
+      const double square = (value - truth) * (value - truth);
+      squares += square;
+      mrse += square / ((truth + mrse_offset) * (truth + mrse_offset));
+      pixel += square / (truth * truth + mrse_offset);
+      sum_v += value;
+      sum_r += truth;
+    }
+    // NaN does not sort; it is as bad as infinity.
+    relative[i] = std::isnan(pixel) ? std::numeric_limits<double>::infinity() : pixel / 3;
+  }
+  const double count = 3 * static_cast<double>(pixels);
+  ImageError error;
+  error.rmse = std::sqrt(squares / count);
+  error.mrse = mrse / count;
+  error.relmse = trimmed_mean(relative);
+  error.bias = relative_difference(sum_v, sum_r);
+  return error;
+}
+
+ImageError compare_images(const Image& image, const Image& reference) {
+  ImageError error = image_error(image, reference);
+  error.flip = mean_flip(image, reference);
+  return error;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,131 @@
+#include "output/atomic_file.h"
+
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/types.h>
+#include <unistd.h>
+
+namespace vdbeam {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void throw_unwritable(const std::string& path, int error) {
+  const char* remedy = "";
+  if (error == ENOENT)
+    remedy = "; create its folder first";
+  else if (error == ENOSPC || error == EDQUOT)
+    remedy = "; free some space or write elsewhere";
+  else if (error == EACCES || error == EPERM || error == EROFS)
+    remedy = "; write to a folder that you own";
+  throw FrameError(fmt::format("{}: cannot be written: {}{}", path, std::strerror(error), remedy));
+}
+
+/// The file behind `path` if it is a symbolic link, so that the link survives the rename.
+std::string resolve_target(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    return path;
+  if (fs::is_directory(status))
+    throw_unwritable(path, EISDIR);
+  // Renaming over a device would replace the device.
+  if (!fs::is_regular_file(status))
+    throw FrameError(path + ": cannot be written: not a regular file; give a file name");
+  const fs::path resolved = fs::canonical(path, error);
+  return error ? path : resolved.string();
+}
+
+/// Opens a new file beside `target`; its mode follows the umask, unlike mkstemp's.
+int open_temporary(const std::string& target, std::string& temporary) {
+  static std::atomic<unsigned> counter{0};
+  const fs::path folder = fs::path(target).parent_path();
+  const std::string name = fs::path(target).filename().string();
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    // The name is cut so that it stays within the usual limit of 255 bytes.
+    temporary =
+        (folder / fmt::format(".{}.{}-{}.tmp", name.substr(0, 200), getpid(), counter++)).string();
+    const int descriptor = open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST)
+      return descriptor;
+  }
+  return -1;
+}
+
+void sync_folder(const std::string& target) {
+  const fs::path folder = fs::path(target).parent_path() / ".";
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0)
+    return;
+  // Some file systems cannot sync a folder; the file itself is already safe then.
+  (void)fsync(descriptor);
+  close(descriptor);
+}
+
+} // namespace
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+  if (path.empty())
+    throw FrameError("an output file has an empty name; give a file name");
+  target_ = resolve_target(path);
+  const int descriptor = open_temporary(target_, temporary_);
+  if (descriptor < 0)
+    throw_unwritable(path_, errno);
+  file_ = fdopen(descriptor, "w+b");
+  if (!file_) {
+    const int error = errno;
+    close(descriptor);
+    unlink(temporary_.c_str());
+    throw_unwritable(path_, error);
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (!file_)
+    return;
+  std::fclose(file_);
+  unlink(temporary_.c_str());
+}
+
+void AtomicFile::fail(int error) {
+  if (error_ == 0)
+    error_ = error != 0 ? error : EIO;
+  throw_unwritable(path_, error_);
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  if (std::fwrite(data, 1, bytes, file_) != bytes)
+    fail(errno);
+}
+
+std::uint64_t AtomicFile::position() const {
+  return static_cast<std::uint64_t>(ftello(file_));
+}
+
+void AtomicFile::seek(std::uint64_t position) {
+  if (fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0)
+    fail(errno);
+}
+
+void AtomicFile::commit() {
+  if (error_ != 0)
+    fail(error_);
+  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0)
+    fail(errno);
+  std::FILE* file = file_;
+  file_ = nullptr;
+  if (std::fclose(file) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const int error = errno;
+    unlink(temporary_.c_str());
+    fail(error);
+  }
+  sync_folder(target_);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace vdbeam {
+
+/// A file that appears under its name only when it is complete. Writes go to a temporary name in
+/// the same folder; commit() syncs it to the disk and renames it; without commit() it is removed.
+class AtomicFile {
+public:
+  /// Creates the temporary file. Throws FrameError where the folder is missing or not writable, or
+  /// where `path` names something other than a regular file.
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  /// Appends at the position. Throws FrameError with the system's reason (disk full, quota).
+  void write(const void* data, std::size_t bytes);
+  std::uint64_t position() const;
+  void seek(std::uint64_t position);
+  /// Makes the file visible. Throws FrameError, also for a write that failed earlier and whose
+  /// exception somebody in between swallowed.
+  void commit();
+
+private:
+  [[noreturn]] void fail(int error);
+
+  std::string path_;   ///< as the user gave it, for messages
+  std::string target_; ///< with symbolic links resolved
+  std::string temporary_;
+  std::FILE* file_ = nullptr;
+  int error_ = 0; ///< errno of the first failure
+};
+
+} // namespace vdbeam

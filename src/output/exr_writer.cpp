@@ -1,0 +1,139 @@
+#include "output/atomic_file.h"
+#include "vdbeam/error.h"
+#include "vdbeam/image_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfFramesPerSecond.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+#include <half.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace vdbeam {
+namespace {
+
+class AtomicStream : public Imf::OStream {
+public:
+  explicit AtomicStream(AtomicFile& file) : OStream(file.path().c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    file_.write(bytes, static_cast<std::size_t>(count));
+  }
+  std::uint64_t tellp() override { return file_.position(); }
+  void seekp(std::uint64_t position) override { file_.seek(position); }
+
+private:
+  AtomicFile& file_;
+};
+
+void check_image(const Image& image, const std::string& path) {
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  if (image.width <= 0 || image.height <= 0 || image.channels.empty())
+    throw FrameError(fmt::format("{}: nothing to write: the image is {} x {} with {} channels",
+                                 path, image.width, image.height, image.channels.size()));
+  for (const ImageChannel& channel : image.channels)
+    if (channel.data.size() != pixels)
+      throw FrameError(fmt::format("{}: channel {} has {} values, the image {} pixels", path,
+                                   channel.name, channel.data.size(), pixels));
+}
+
+/// Whether every finite value has a finite half. A value over the range would become infinite.
+bool fits_half(const ImageChannel& channel) {
+  for (const float value : channel.data)
+    if (std::isfinite(value) && std::abs(value) > HALF_MAX)
+      return false;
+  return true;
+}
+
+void add_attributes(const Image& image, const std::string& path, Imf::Header& header) {
+  Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709, D65
+  for (const auto& [name, text] : image.metadata)
+    header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, value] : image.numbers) {
+    if (name == "framesPerSecond") // a standard attribute with a type of its own
+      Imf::addFramesPerSecond(header, Imf::guessExactFps(value));
+    else
+      header.insert(name, Imf::DoubleAttribute(value));
+  }
+  for (const auto& [name, values] : image.matrices) {
+    if (values.size() != 16)
+      throw FrameError(
+          fmt::format("{}: matrix {} has {} values instead of 16", path, name, values.size()));
+    Imath::M44f matrix;
+    for (int i = 0; i < 16; ++i)
+      matrix[i / 4][i % 4] = values[static_cast<std::size_t>(i)];
+    header.insert(name, Imf::M44fAttribute(matrix));
+  }
+}
+
+/// A channel as the file stores it. `halves` stays empty for a float channel.
+struct StoredChannel {
+  const ImageChannel* source = nullptr;
+  std::vector<half> halves;
+};
+
+StoredChannel store_channel(const ImageChannel& channel) {
+  StoredChannel stored{&channel, {}};
+  if (!channel.half || !fits_half(channel))
+    return stored;
+  stored.halves.resize(channel.data.size());
+  for (std::size_t i = 0; i < channel.data.size(); ++i)
+    stored.halves[i] = half(channel.data[i]);
+  return stored;
+}
+
+Imf::Slice make_slice(const StoredChannel& channel, int width) {
+  // OpenEXR only reads from the slices of an output file, yet asks for char*.
+  const bool is_half = !channel.halves.empty();
+  const void* base = is_half ? static_cast<const void*>(channel.halves.data())
+                             : static_cast<const void*>(channel.source->data.data());
+  const std::size_t size = is_half ? sizeof(half) : sizeof(float);
+  return Imf::Slice(is_half ? Imf::HALF : Imf::FLOAT, static_cast<char*>(const_cast<void*>(base)),
+                    size, size * static_cast<std::size_t>(width));
+}
+
+void write_channels(const Image& image, AtomicFile& file) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  add_attributes(image, file.path(), header);
+
+  std::vector<StoredChannel> stored(image.channels.size());
+  tbb::parallel_for(std::size_t{0}, stored.size(),
+                    [&](std::size_t i) { stored[i] = store_channel(image.channels[i]); });
+  Imf::FrameBuffer pixels;
+  for (const StoredChannel& channel : stored) {
+    const Imf::Slice slice = make_slice(channel, image.width);
+    header.channels().insert(channel.source->name, Imf::Channel(slice.type));
+    pixels.insert(channel.source->name, slice);
+  }
+  AtomicStream stream(file);
+  Imf::OutputFile output(stream, header, 0);
+  output.setFrameBuffer(pixels);
+  output.writePixels(image.height);
+}
+
+} // namespace
+
+void write_exr(const Image& image, const std::string& path) {
+  check_image(image, path);
+  AtomicFile file(path);
+  try {
+    write_channels(image, file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw FrameError(fmt::format("{}: cannot be written: {}", path, error.what()));
+  }
+  file.commit();
+}
+
+} // namespace vdbeam

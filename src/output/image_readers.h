@@ -1,0 +1,23 @@
+#pragma once
+
+#include "vdbeam/image.h"
+
+#include <cstdint>
+#include <string>
+
+namespace vdbeam {
+
+/// Limits that are checked before pixels are allocated: no file asks for more than 4 GiB.
+inline constexpr std::int64_t max_image_side = std::int64_t{1} << 20;
+inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 28;
+inline constexpr std::int64_t max_image_values = std::int64_t{1} << 30;
+
+/// A flat EXR of any pixel types, its data window placed in its display window (0 outside); the
+/// first part of several. Y alone becomes R, G, B too. Throws InputError.
+Image read_exr(const std::string& path);
+
+/// A Radiance RGBE picture, flat or run-length encoded, in any of the eight orientations; EXPOSURE
+/// and PRIMARIES lines: the former is divided out, the latter ignored. Throws InputError.
+Image read_hdr(const std::string& path);
+
+} // namespace vdbeam

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "vdbeam/image.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace vdbeam {
+
+/// What a writer may use besides the image.
+struct WriteOptions {
+  double exposure = 0; ///< stops, for 8-bit formats
+};
+
+/// One kind of output file.
+struct OutputFormat {
+  std::string_view extension;   ///< lower case, with its dot
+  std::string_view description; ///< for --help
+  void (*write)(const Image& image, const std::string& path, const WriteOptions& options);
+};
+
+/// Every format, in the order of --help. A new one is a writer and one line of this table.
+std::span<const OutputFormat> output_formats();
+
+/// The format of a path, by its extension without regard to case. Throws InputError, naming the
+/// known ones.
+const OutputFormat& output_format(const std::string& path);
+
+/// Writes `image` in the format that the extension of `path` names. Throws InputError for an
+/// unknown extension and FrameError where the file cannot be written.
+void write_image(const Image& image, const std::string& path, const WriteOptions& options = {});
+
+} // namespace vdbeam
