@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Checks the rules of the source tree that no compiler checks; docs/architecture.md explains them.
+
+Prints one line per violation, "file:line: what", and exits 1 where there is one.
+"""
+import pathlib
+import re
+import sys
+
+# A folder of src includes only from itself and from the folders before it.
+LAYERS = ["math", "volume", "phase", "lights", "photonmap", "transport", "estimators", "film",
+          "output", "scene", "render", "cli"]
+LINE_LIMIT = 400
+PUBLIC_LINE_LIMIT = 150
+CODE = {".h", ".cpp", ".py", ".sh", ".cmake"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+# No library's type belongs in the public headers.
+FOREIGN = re.compile(r"\b(openvdb|nanovdb|embree|rtc[A-Z]\w*|tbb|Imath|Imf|toml|nlohmann|hwy|CLI)\b")
+# Below src/cli nothing prints to the terminal and nothing ends the process.
+PRINTS = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.])(std::)?(printf|puts|fputs|perror)\s*\("
+                    r"|\bfprintf\s*\(\s*std(out|err)|\bfmt::print\s*\(\s*(\"|std(out|err))")
+EXITS = re.compile(r"(?<![\w.>])(std::)?(exit|quick_exit|abort|terminate)\s*\(")
+LEFTOVERS = re.compile(r"\b(TO" r"DO|FIX" r"ME|XX" r"X|NOLI" r"NT\w*)\b")
+
+
+def code_part(line):
+    """The line without its // comment and without the contents of its strings."""
+    return re.sub(r"//.*", "", re.sub(r'"(\\.|[^"\\])*"', '""', line))
+
+
+def check_include(path, quote, name):
+    """What is wrong with an include in `path` (relative to the root), or None."""
+    parts = path.parts
+    if parts[0] == "include":
+        if quote == '"' and not name.startswith("vdbeam/"):
+            return f'public headers include only the standard library and "vdbeam/...", got "{name}"'
+        if quote == "<" and ("/" in name or "." in name):
+            return f"public headers include only the standard library and vdbeam, got <{name}>"
+        return None
+    if parts[0] != "src":
+        return None
+    if re.match(r"(openvdb|nanovdb)/", name) and not (parts[1] == "volume" and path.suffix == ".cpp"):
+        return f"OpenVDB headers belong in src/volume/*.cpp, got {name}"
+    if quote == "<" or name.startswith("vdbeam/"):
+        return None
+    layer, target = parts[1], name.split("/")[0]
+    if layer not in LAYERS:
+        return f"folder src/{layer} is not in the list of layers"
+    if target not in LAYERS:
+        return f'include from src as "folder/file.h", got "{name}"'
+    if LAYERS.index(target) > LAYERS.index(layer):
+        return f"src/{layer} may not include from src/{target}, which comes after it"
+    return None
+
+
+def check_file(path, text):
+    """Violations of one file as (line number, message); `path` is relative to the root."""
+    lines = text.splitlines()
+    found = []
+    public = path.parts[0] == "include"
+    limit = PUBLIC_LINE_LIMIT if public else LINE_LIMIT
+    if len(lines) > limit:
+        found.append((len(lines), f"{len(lines)} lines, the limit is {limit}"))
+    if path.suffix == ".h" and "#pragma once" not in text:
+        found.append((1, "a header begins with #pragma once"))
+    library = public or (path.parts[0] == "src" and path.parts[1] != "cli")
+    for number, line in enumerate(lines, 1):
+        include = INCLUDE.match(line)
+        if include and path.suffix in {".h", ".cpp"}:
+            message = check_include(path, *include.groups())
+            if message:
+                found.append((number, message))
+        if LEFTOVERS.search(line):
+            found.append((number, "unfinished work or a silenced warning does not belong in the tree"))
+        code = code_part(line)
+        if public and not include and FOREIGN.search(code):
+            found.append((number, "no other library's type in a public header"))
+        if library and path.suffix in {".h", ".cpp"}:
+            if PRINTS.search(code):
+                found.append((number, "only src/cli prints"))
+            if EXITS.search(code):
+                found.append((number, "only src/cli ends the process"))
+    return found
+
+
+def check_tree(root):
+    """Every violation below `root` as "file:line: message"."""
+    result = []
+    for folder in ("include", "src", "tests", "benchmarks", "tools", "cmake"):
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix in CODE and file.is_file():
+                path = file.relative_to(root)
+                for number, message in check_file(path, file.read_text(encoding="utf-8")):
+                    result.append(f"{path}:{number}: {message}")
+    return result
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
+    violations = check_tree(root)
+    print("\n".join(violations) or "the layout is as it should be")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Checks the C++ sources: tools/lint.sh [--format | --tidy] [FILE...]; both and all files by default.
+# Needs clang-format and clang-tidy 14 (apt-get install clang-format clang-tidy); --tidy also needs a
+# configured release build (tools/test.sh). Changes nothing.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+format=1 tidy=1
+case ${1:-} in
+  --format) tidy=0; shift ;;
+  --tidy) format=0; shift ;;
+esac
+if [[ $# -gt 0 ]]; then
+  files=("$@")
+else
+  mapfile -t files < <(find include src tests benchmarks -name '*.h' -o -name '*.cpp' | sort)
+fi
+
+status=0
+if ((format)); then
+  "$(command -v clang-format-14 || echo clang-format)" --dry-run -Werror "${files[@]}" || status=1
+fi
+if ((tidy)); then
+  mapfile -t sources < <(printf '%s\n' "${files[@]}" | grep '^src/.*\.cpp$')
+  # g++ alone knows some of the flags that the build uses.
+  printf '%s\0' "${sources[@]}" | xargs -0 -n 1 -P "$(nproc)" \
+    "$(command -v clang-tidy-14 || echo clang-tidy)" -p build/release --quiet \
+    --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument || status=1
+fi
+exit "$status"
