@@ -2,7 +2,6 @@
 
 #include "vdbeam/vec.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

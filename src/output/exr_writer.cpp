@@ -14,7 +14,6 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <half.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>

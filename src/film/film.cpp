@@ -1,0 +1,185 @@
+#include "film/film.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace vdbeam {
+namespace {
+
+/// Pixels of one task. Sums over the image are sums of blocks in order, whatever the threads.
+constexpr std::size_t block_size = 4096;
+
+template <class Body>
+void for_each_block(std::size_t pixels, const Body& body) {
+  tbb::parallel_for(std::size_t{0}, (pixels + block_size - 1) / block_size, [&](std::size_t block) {
+    body(block, block * block_size, std::min(pixels, (block + 1) * block_size));
+  });
+}
+
+/// a + b exactly, as a rounded sum and its error: Knuth, The Art of Computer Programming 2, section
+/// 4.2.2, theorem B. Needs arithmetic without re-association.
+struct Sum {
+  double rounded, error;
+};
+inline Sum two_sum(double a, double b) {
+  const double s = a + b, t = s - a;
+  return {s, (a - (s - t)) + (b - t)};
+}
+
+static_assert(sizeof(Rgb) == 3 * sizeof(float));
+const float* components(const std::vector<Rgb>& colours) {
+  return reinterpret_cast<const float*>(colours.data());
+}
+
+inline float finite_or_zero(float value) {
+  return std::isfinite(value) ? value : 0;
+}
+
+/// Adds values [begin, end) and returns how many were not finite.
+std::uint64_t add_values(CompensatedSums& sums, const float* values, std::size_t begin,
+                         std::size_t end) {
+  std::uint64_t invalid = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    invalid += std::isfinite(values[i]) ? 0 : 1;
+    sums.add(i, finite_or_zero(values[i]));
+  }
+  return invalid;
+}
+
+void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size_t begin,
+                  std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i)
+    sums.merge(i, other);
+}
+
+} // namespace
+
+inline void CompensatedSums::add(std::size_t i, double value) {
+  const Sum sum = two_sum(high_[i], value);
+  const Sum renormalised = two_sum(sum.rounded, low_[i] + sum.error);
+  high_[i] = renormalised.rounded;
+  low_[i] = static_cast<float>(renormalised.error);
+}
+
+inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) {
+  const Sum sum = two_sum(high_[i], other.high_[i]);
+  const double low = double{low_[i]} + other.low_[i] + sum.error;
+  const Sum renormalised = two_sum(sum.rounded, low);
+  high_[i] = renormalised.rounded;
+  low_[i] = static_cast<float>(renormalised.error);
+}
+
+Film::Film(int width, int height)
+    : width_(width), height_(height), direct_(3 * pixels()), indirect_(3 * pixels()),
+      background_(3 * pixels()), opacity_(pixels()), depth_(pixels()), depth_passes_(pixels()),
+      squares_(3 * pixels()) {}
+
+void Film::check_size(int width, int height) const {
+  if (width != width_ || height != height_)
+    throw std::invalid_argument(fmt::format("a film of {} x {} pixels cannot take {} x {}", width_,
+                                            height_, width, height));
+}
+
+std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::size_t end) {
+  const float* direct = components(pass.direct);
+  const float* indirect = components(pass.indirect);
+  const float* background = components(pass.background);
+  std::uint64_t invalid = add_values(direct_, direct, 3 * begin, 3 * end);
+  invalid += add_values(indirect_, indirect, 3 * begin, 3 * end);
+  invalid += add_values(background_, background, 3 * begin, 3 * end);
+  invalid += add_values(opacity_, pass.opacity.data(), begin, end);
+  invalid += add_values(depth_, pass.depth.data(), begin, end);
+  for (std::size_t i = begin; i < end; ++i)
+    depth_passes_[i] += finite_or_zero(pass.depth[i]) > 0 ? 1 : 0;
+  for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
+    const double total = double{finite_or_zero(direct[i])} + finite_or_zero(indirect[i]) +
+                         finite_or_zero(background[i]);
+    squares_[i] += total * total;
+  }
+  return invalid;
+}
+
+void Film::add(const PassImage& pass) {
+  check_size(pass.width, pass.height);
+  std::vector<std::uint64_t> invalid((pixels() + block_size - 1) / block_size);
+  for_each_block(pixels(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    invalid[block] = add_pixels(pass, begin, end);
+  });
+  invalid_values_ = std::accumulate(invalid.begin(), invalid.end(), invalid_values_);
+  ++passes_;
+}
+
+void Film::merge(const Film& other) {
+  check_size(other.width_, other.height_);
+  for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    merge_values(direct_, other.direct_, 3 * begin, 3 * end);
+    merge_values(indirect_, other.indirect_, 3 * begin, 3 * end);
+    merge_values(background_, other.background_, 3 * begin, 3 * end);
+    merge_values(opacity_, other.opacity_, begin, end);
+    merge_values(depth_, other.depth_, begin, end);
+    for (std::size_t i = begin; i < end; ++i)
+      depth_passes_[i] += other.depth_passes_[i];
+    for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+      squares_[i] += other.squares_[i];
+  });
+  passes_ += other.passes_;
+  invalid_values_ += other.invalid_values_;
+}
+
+Image Film::develop() const {
+  Image image;
+  image.width = width_;
+  image.height = height_;
+  for (const char* name : {"R", "G", "B", "A", "volume.R", "volume.G", "volume.B",
+                           "volume_direct.R", "volume_direct.G", "volume_direct.B",
+                           "volume_indirect.R", "volume_indirect.G", "volume_indirect.B"})
+    image.channels.push_back({name, std::vector<float>(pixels())});
+  for (const char* name : {"volume_opacity", "volume_Z"})
+    image.channels.push_back({name, std::vector<float>(pixels()), false});
+
+  enum : std::size_t { rgb = 0, alpha = 3, volume = 4, direct = 7, indirect = 10, opacity = 13 };
+  const double passes = std::max(passes_, 1);
+  for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    const auto set = [&](std::size_t channel, std::size_t i, double sum, double count) {
+      image.channels[channel].data[i] = static_cast<float>(sum / count);
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      // The high parts are the correctly rounded sums.
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = direct_.high(3 * i + c), n = indirect_.high(3 * i + c);
+        set(direct + c, i, d, passes);
+        set(indirect + c, i, n, passes);
+        set(volume + c, i, d + n, passes);
+        set(rgb + c, i, d + n + background_.high(3 * i + c), passes);
+      }
+      set(alpha, i, opacity_.high(i), passes);
+      set(opacity, i, opacity_.high(i), passes);
+      set(opacity + 1, i, depth_.high(i), std::max(depth_passes_[i], 1u));
+    }
+  });
+  return image;
+}
+
+double Film::mrse_estimate() const {
+  if (passes_ < 2 || pixels() == 0)
+    return std::numeric_limits<double>::infinity();
+  const double n = passes_;
+  std::vector<double> sums((pixels() + block_size - 1) / block_size);
+  for_each_block(pixels(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
+      const double mean = (direct_.high(i) + indirect_.high(i) + background_.high(i)) / n;
+      // Rounding may leave a constant with a tiny negative variance.
+      const double variance = std::max(0.0, (squares_[i] - n * mean * mean) / (n - 1));
+      sums[block] += variance / (n * (mean + 0.01) * (mean + 0.01));
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0) / (3 * static_cast<double>(pixels()));
+}
+
+} // namespace vdbeam

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "estimators/pass_image.h"
+#include "vdbeam/image.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdbeam {
+
+/// One sum per value, each a double and a float of what the double rounded off: 77 bits, 12 bytes.
+/// 100,000 floats of like size need 41 bits, so sums are exact, and the same for any order and
+/// grouping, unless values differ by more than 2^36; beyond that the error is 2^-77 of the sum.
+class CompensatedSums {
+public:
+  explicit CompensatedSums(std::size_t count) : high_(count), low_(count) {}
+
+  void add(std::size_t i, double value);
+  /// Adds another's sum `i`.
+  void merge(std::size_t i, const CompensatedSums& other);
+  double high(std::size_t i) const { return high_[i]; }
+  float low(std::size_t i) const { return low_[i]; }
+
+private:
+  std::vector<double> high_;
+  std::vector<float> low_;
+};
+
+/// The mean of passes. It holds 160 bytes per pixel (1.3 GB at 3840 x 2160) whatever the number of
+/// passes, and developing it needs 60 more.
+///
+/// Pass values that are not finite count as 0, so that one bad path cannot destroy a frame; see
+/// invalid_values().
+class Film {
+public:
+  Film(int width, int height);
+
+  /// Adds one pass. Its size must be the film's (std::invalid_argument).
+  void add(const PassImage& pass);
+  /// Adds the passes of another film of the same size (std::invalid_argument).
+  void merge(const Film& other);
+
+  int passes() const { return passes_; }
+  /// Values of the passes so far that were NaN or infinite.
+  std::uint64_t invalid_values() const { return invalid_values_; }
+  static constexpr std::size_t bytes_per_pixel() { return 160; }
+
+  /// R, G, B: direct + indirect + background; A: the mean opacity; and the AOVs volume.* (direct +
+  /// indirect), volume_direct.*, volume_indirect.* (half), volume_opacity and volume_Z (float).
+  /// volume_Z [world] is the mean over the passes that met the volume, 0 where none did. Everything
+  /// is black before the first pass.
+  Image develop() const;
+
+  /// The MRSE to expect of develop()'s R, G, B, apart from bias, from the spread of the passes: the
+  /// mean over pixels and channels of s^2 / (n (mean + 0.01)^2), s^2 the unbiased sample variance
+  /// of n passes. Infinite for fewer than 2 passes.
+  double mrse_estimate() const;
+
+private:
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
+  std::uint64_t add_pixels(const PassImage& pass, std::size_t begin, std::size_t end);
+  void check_size(int width, int height) const;
+
+  int width_, height_;
+  int passes_ = 0;
+  std::uint64_t invalid_values_ = 0;
+  CompensatedSums direct_, indirect_, background_; ///< 3 per pixel
+  CompensatedSums opacity_, depth_;
+  std::vector<std::uint32_t> depth_passes_; ///< passes with a depth
+  std::vector<double> squares_; ///< 3 per pixel: sums of (direct + indirect + background)^2
+};
+
+} // namespace vdbeam
