@@ -1,9 +1,12 @@
 #pragma once
 
+#include "volume/mapped_file.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace vdbeam {
@@ -30,5 +33,25 @@ struct RawGrid {
   /// Called with how many leaves from the first on are not needed any more (ever more of them).
   std::function<void(std::size_t)> release = [](std::size_t) {};
 };
+
+/// How a grid travels from the reader process: this header, padding up to `values_offset`,
+/// leaf_count x 512 floats, leaf_count x 3 int32 origins, tile_count x RawTile.
+struct RawGridHeader {
+  static constexpr std::size_t values_offset = 4096;
+  static constexpr std::uint64_t magic_number = 0x76646265616d3031;
+
+  std::uint64_t magic = magic_number;
+  std::uint64_t leaf_count = 0;
+  std::uint64_t tile_count = 0;
+  std::uint64_t active_voxels = 0;
+  std::array<double, 12> index_to_world{}; ///< row-major 3x4
+  std::uint32_t level_set = 0;
+};
+
+/// The grid in a file of that layout; it refers to the file's memory. Trusts nothing, since a
+/// malformed VDB may have broken the process that wrote it: throws FrameError, opening with
+/// `label`, where the sizes, the order of the leaves or the tiles' shapes are not what they must
+/// be.
+RawGrid view_raw_grid(const std::string& label, MappedFile& file, RawGridHeader& header);
 
 } // namespace vdbeam

@@ -1,6 +1,5 @@
 #include "volume/vdb_parse.h"
 
-#include "math/affine.h"
 #include "vdbeam/error.h"
 #include "volume/mapped_file.h"
 #include "volume/raw_grid.h"
@@ -13,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
 
 namespace vdbeam {
 
@@ -38,10 +38,8 @@ void check_kind(const std::string& path, const std::string& name, const openvdb:
   const openvdb::math::Transform& transform = grid.transform();
   if (!transform.isLinear())
     refuse(path, name,
-           fmt::format("has a {}, which is not affine (a frustum?); resample it to a uniform grid",
+           fmt::format("has a {}, not an affine transform; resample it to a uniform grid",
                        transform.mapType()));
-  if (grid.getGridClass() == openvdb::GRID_STAGGERED)
-    refuse(path, name, "is a staggered vector grid, not a density");
 }
 
 std::array<double, 12> affine_rows(const std::string& path, const std::string& name,
@@ -59,28 +57,48 @@ std::array<double, 12> affine_rows(const std::string& path, const std::string& n
   return rows;
 }
 
-template <class Value>
-float to_float(Value value) {
-  if (std::abs(value) > std::numeric_limits<float>::max())
-    return static_cast<float>(std::copysign(std::numeric_limits<double>::infinity(), value));
+float to_float(float value) {
+  return value;
+}
+float to_float(double value) {
+  if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
+    return std::copysign(std::numeric_limits<float>::infinity(), value < 0 ? -1.0f : 1.0f);
   return static_cast<float>(value);
 }
 
-template <class Tree>
-std::vector<RawTile> collect_tiles(const Tree& tree, std::uint64_t& active_voxels) {
-  std::vector<RawTile> tiles;
+/// Calls `visit(tile iterator)` for each tile that matters: not 0, or in a level set not outside.
+template <class Tree, class Visit>
+void for_each_tile(const Tree& tree, bool level_set, Visit visit) {
   auto tile = tree.cbeginValueAll();
   tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
+  for (; tile; ++tile)
+    if (level_set ? !(tile.getValue() >= 0) : tile.getValue() != 0)
+      visit(tile);
+}
+
+template <class Tree>
+std::vector<RawTile> collect_tiles(const Tree& tree, bool level_set) {
+  std::size_t count = 0;
+  for_each_tile(tree, level_set, [&count](const auto&) { ++count; });
+  std::vector<RawTile> tiles;
+  tiles.reserve(count); // a growing vector would need three times the memory
+  for_each_tile(tree, level_set, [&tiles](const auto& tile) {
     const openvdb::CoordBBox box = tile.getBoundingBox();
-    if (tile.isValueOn())
-      active_voxels += box.volume();
-    if (tile.getValue() != 0)
-      tiles.push_back({{box.min().x(), box.min().y(), box.min().z()},
-                       box.max().x() - box.min().x() + 1,
-                       to_float(tile.getValue())});
-  }
+    tiles.push_back({{box.min().x(), box.min().y(), box.min().z()},
+                     static_cast<std::int32_t>(box.dim().x()),
+                     to_float(tile.getValue())});
+  });
   return tiles;
+}
+
+template <class Tree>
+std::uint64_t active_tile_voxels(const Tree& tree) {
+  std::uint64_t count = 0;
+  auto tile = tree.cbeginValueOn();
+  tile.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    count += tile.getVoxelCount();
+  return count;
 }
 
 template <class Leaf>
@@ -88,6 +106,7 @@ void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
   constexpr std::size_t batch = 64;
   std::vector<float> values;
   std::vector<std::int32_t> origins;
+  origins.reserve(3 * leaves.size());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const auto* data = leaves[i]->buffer().data();
     for (int v = 0; v < leaf_size; ++v)
@@ -103,30 +122,39 @@ void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
 }
 
 template <class Grid>
+void check_background(const std::string& path, const std::string& name, const Grid& grid,
+                      bool level_set) {
+  if (level_set && !(grid.background() > 0))
+    refuse(path, name,
+           fmt::format("is a level set with the background {}, which must be above 0",
+                       grid.background()));
+  if (!level_set && grid.background() != 0)
+    refuse(path, name,
+           fmt::format("has the background value {}, so the medium would have no end; set the "
+                       "background to 0 (or, for a level set, its class to \"level set\")",
+                       grid.background()));
+}
+
+template <class Grid>
 void write_grid(const std::string& path, const std::string& name, const Grid& grid,
                 int descriptor) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
   static_assert(Leaf::SIZE == leaf_size);
   RawGridHeader header;
   header.index_to_world = affine_rows(path, name, grid.transform());
-  header.level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-  if (header.level_set ? !(grid.background() > 0) : !(grid.background() == 0))
-    refuse(path, name,
-           header.level_set
-               ? fmt::format("is a level set with the background {}, which must be above 0",
-                             grid.background())
-               : fmt::format("has the background value {}, so the medium would have no end; set "
-                             "its background to 0 (for a level set: its class to \"level set\")",
-                             grid.background()));
+  const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+  header.level_set = level_set;
+  check_background(path, name, grid, level_set);
 
   std::vector<const Leaf*> leaves;
+  header.active_voxels = active_tile_voxels(grid.tree());
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     leaves.push_back(leaf.getLeaf());
     header.active_voxels += leaf->onVoxelCount();
   }
   std::sort(leaves.begin(), leaves.end(),
             [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });
-  const std::vector<RawTile> tiles = collect_tiles(grid.tree(), header.active_voxels);
+  const std::vector<RawTile> tiles = collect_tiles(grid.tree(), level_set);
   header.leaf_count = leaves.size();
   header.tile_count = tiles.size();
 
@@ -140,7 +168,15 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
 } // namespace
 
 void prepare_openvdb() {
-  openvdb::initialize();
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
+void write_grid_names(const std::string& path, int descriptor) {
+  openvdb::io::File file(path);
+  file.open(false);
+  for (const std::string& name : grid_names(file))
+    write_all(descriptor, (name + '\n').data(), name.size() + 1);
 }
 
 void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor) {

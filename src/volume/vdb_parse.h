@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
 
 namespace vdbeam {
@@ -9,25 +7,17 @@ namespace vdbeam {
 /// The OpenVDB side of reading. Everything here may hang, crash or throw on a malformed file, and
 /// uses no thread but its own, so that it can run in a forked child process.
 
-/// How `write_raw_grid` lays a grid out: this header, padding up to `values_offset`, leaf_count x
-/// 512 floats, leaf_count x 3 int32 origins, tile_count x RawTile.
-struct RawGridHeader {
-  static constexpr std::size_t values_offset = 4096;
-  static constexpr std::uint64_t magic_number = 0x76646265616d3031;
-
-  std::uint64_t magic = magic_number;
-  std::uint64_t leaf_count = 0;
-  std::uint64_t tile_count = 0;
-  std::uint64_t active_voxels = 0;
-  std::array<double, 12> index_to_world{}; ///< row-major 3x4
-  std::uint32_t level_set = 0;
-};
-
-/// Must be called once, before any fork: registers OpenVDB's grid types.
+/// Registers OpenVDB's grid types; must be called before the fork.
 void prepare_openvdb();
 
-/// Reads one grid and writes it to `descriptor`. Throws InputError (no such grid, unsupported type,
-/// class, map or background), and whatever OpenVDB throws.
+/// Reads one grid and writes it to `descriptor`, laid out as RawGridHeader says. Throws InputError
+/// (no such grid, unsupported type, class, map or background), and whatever OpenVDB throws.
 void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor);
+
+/// Writes the names of a file's grids, each ended by a line feed.
+void write_grid_names(const std::string& path, int descriptor);
+
+/// Reads one grid of any type and writes its GridSummary (see vdb_reader.h) as CBOR.
+void write_summary(const std::string& path, const std::string& grid_name, int descriptor);
 
 } // namespace vdbeam

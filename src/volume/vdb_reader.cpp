@@ -2,56 +2,55 @@
 
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
-#include "volume/mapped_file.h"
+#include "volume/guarded_process.h"
 #include "volume/raw_grid.h"
+#include "volume/summary_codec.h"
 #include "volume/vdb_parse.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <openvdb/version.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <cstring>
 
 namespace vdbeam {
 
 namespace {
 
-/// Trusts nothing that comes from the parser: a malformed file may have broken it without a crash.
-RawGrid view_raw_grid(const std::string& label, const MappedFile& file, RawGridHeader& header) {
-  const auto corrupt = [&label](bool is_corrupt) {
-    if (is_corrupt)
-      throw FrameError(label + ": the file is corrupt");
-  };
-  corrupt(file.size() < RawGridHeader::values_offset);
-  std::memcpy(&header, file.data(), sizeof header);
-  const std::uint64_t leaf_bytes = leaf_size * sizeof(float) + 3 * sizeof(std::int32_t);
-  const std::uint64_t payload = file.size() - RawGridHeader::values_offset;
-  corrupt(header.magic != RawGridHeader::magic_number);
-  corrupt(header.leaf_count > payload / leaf_bytes || header.tile_count > payload);
-  corrupt(header.leaf_count * leaf_bytes + header.tile_count * sizeof(RawTile) != payload);
+constexpr std::size_t maximum_grids = 1000;
 
-  RawGrid grid;
-  grid.leaf_count = header.leaf_count;
-  std::byte* values = file.data() + RawGridHeader::values_offset;
-  std::byte* origins = values + grid.leaf_count * leaf_size * sizeof(float);
-  grid.leaf_values = reinterpret_cast<float*>(values);
-  grid.leaf_origins = reinterpret_cast<const std::int32_t*>(origins);
-  grid.level_set = header.level_set != 0;
-  grid.tiles.resize(header.tile_count);
-  if (!grid.tiles.empty())
-    std::memcpy(grid.tiles.data(), origins + grid.leaf_count * 3 * sizeof(std::int32_t),
-                header.tile_count * sizeof(RawTile));
+/// The size of a file that can be read at all; InputError otherwise.
+std::uint64_t check_file(const std::string& path) {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0)
+    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (!S_ISREG(status.st_mode))
+    throw InputError(path + ": is not a regular file");
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0)
+    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  constexpr char magic[] = {' ', 'B', 'D', 'V'};
+  char start[sizeof magic];
+  if (::read(file.get(), start, sizeof start) != sizeof start ||
+      std::memcmp(start, magic, sizeof magic) != 0)
+    throw InputError(path + ": is not a VDB file");
+  return static_cast<std::uint64_t>(status.st_size);
+}
 
-  for (std::size_t leaf = 0; leaf < grid.leaf_count; ++leaf) {
-    const std::int32_t* origin = grid.leaf_origins + 3 * leaf;
-    corrupt(origin[0] % leaf_width != 0 || origin[1] % leaf_width != 0 ||
-            origin[2] % leaf_width != 0);
-    corrupt(leaf > 0 && !std::lexicographical_compare(origin - 3, origin, origin, origin + 3));
-  }
-  for (const RawTile& tile : grid.tiles)
-    corrupt(tile.width < leaf_width || (tile.width & (tile.width - 1)) != 0 ||
-            tile.origin[0] % leaf_width != 0 || tile.origin[1] % leaf_width != 0 ||
-            tile.origin[2] % leaf_width != 0);
-  return grid;
+/// What a well-formed file of this size can need at most, never more than the user's limits. A node
+/// of OpenVDB's tree takes at least its two bit masks of the file, which bounds the memory to 34
+/// bytes per byte of file for float values, 66 for double, and 80 more for a list of its tiles.
+GuardLimits guard_limits(std::uint64_t file_bytes, const ReadLimits& limits) {
+  GuardLimits guard;
+  guard.seconds = limits.seconds;
+  guard.cpu_seconds = std::min(limits.seconds, 10 + 1e-6 * static_cast<double>(file_bytes));
+  guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 160 * file_bytes);
+  return guard;
 }
 
 std::string repairs_note(const std::string& label, const GridRepairs& repairs) {
@@ -66,18 +65,22 @@ std::string repairs_note(const std::string& label, const GridRepairs& repairs) {
   return fmt::format("{}: values replaced by 0: {}", label, list);
 }
 
+Affine to_affine(const std::array<double, 12>& m) {
+  Affine affine;
+  affine.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
+  affine.translation = {m[3], m[7], m[11]};
+  return affine;
+}
+
 } // namespace
 
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
                               const ReadLimits& limits) {
   const std::string label = fmt::format("{}: grid \"{}\"", path, grid_name);
+  const GuardLimits guard = guard_limits(check_file(path), limits);
   prepare_openvdb();
-  MappedFile file;
-  {
-    const Descriptor memory = create_memory_file();
-    write_raw_grid(path, grid_name, memory.get());
-    file = MappedFile(memory.get());
-  }
+  MappedFile file =
+      run_guarded(path, guard, [&](int output) { write_raw_grid(path, grid_name, output); });
   RawGridHeader header;
   RawGrid raw = view_raw_grid(label, file, header);
   raw.release = [&file](std::size_t leaves) {
@@ -89,10 +92,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   grid.field = std::move(bricked.field);
   grid.repairs = bricked.repairs;
   grid.active_voxels = header.active_voxels;
-  const auto& m = header.index_to_world;
-  grid.index_to_world.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]},
-                              Vec3d{m[8], m[9], m[10]}};
-  grid.index_to_world.translation = {m[3], m[7], m[11]};
+  grid.index_to_world = to_affine(header.index_to_world);
   if (header.level_set)
     grid.notes.push_back(label + ": is a level set, made a fog volume");
   if (grid.repairs.nan + grid.repairs.infinite + grid.repairs.negative > 0)
@@ -100,6 +100,30 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   if (grid.field.empty())
     grid.notes.push_back(label + ": is empty, nothing to render");
   return grid;
+}
+
+std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  GuardLimits guard = guard_limits(check_file(path), limits);
+  prepare_openvdb();
+  const MappedFile list =
+      run_guarded(path, guard, [&](int output) { write_grid_names(path, output); });
+  const std::string text(reinterpret_cast<const char*>(list.data()), list.size());
+  if (std::count(text.begin(), text.end(), '\n') > static_cast<std::ptrdiff_t>(maximum_grids))
+    throw FrameError(fmt::format("{}: holds more than {} grids", path, maximum_grids));
+
+  // One process per grid, so that no more than one is in memory at a time.
+  std::vector<GridSummary> summaries;
+  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
+    const std::string name = text.substr(begin, end - begin);
+    const double passed = std::chrono::duration<double>(Clock::now() - start).count();
+    guard.seconds = std::max(limits.seconds - passed, 0.0);
+    const MappedFile summary =
+        run_guarded(path, guard, [&](int output) { write_summary(path, name, output); });
+    summaries.push_back(decode_summary(path, summary.data(), summary.size()));
+  }
+  return summaries;
 }
 
 std::string vdb_library_version() {

@@ -1,0 +1,267 @@
+#include "volume/guarded_process.h"
+
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <optional>
+
+namespace vdbeam {
+
+namespace {
+
+enum class Outcome : std::uint32_t { done = 1, input_error, frame_error, no_memory, exception };
+
+/// The child's last words; small enough that a pipe takes them whole.
+struct Message {
+  Outcome outcome = Outcome::done;
+  std::array<char, 2000> text{};
+};
+
+/// The child's state, in globals because the functions that need it (a terminate handler and a
+/// context's entry) take no arguments. Only ever set in a child.
+const std::function<void(int)>* child_work = nullptr;
+int child_output = -1;
+int child_pipe = -1;
+
+[[noreturn]] void leave(Outcome outcome, const char* text) {
+  Message message;
+  message.outcome = outcome;
+  std::strncpy(message.text.data(), text, message.text.size() - 1);
+  const ssize_t written = ::write(child_pipe, &message, sizeof message);
+  ::_exit(written == sizeof message ? 0 : 1);
+}
+
+[[noreturn]] void report_exception() {
+  try {
+    std::rethrow_exception(std::current_exception());
+  } catch (const InputError& error) {
+    leave(Outcome::input_error, error.what());
+  } catch (const FrameError& error) {
+    leave(Outcome::frame_error, error.what());
+  } catch (const std::bad_alloc&) {
+    leave(Outcome::no_memory, "");
+  } catch (const std::exception& error) {
+    leave(Outcome::exception, error.what());
+  } catch (...) {
+    leave(Outcome::exception, "unknown");
+  }
+}
+
+void run_work() {
+  (*child_work)(child_output);
+  leave(Outcome::done, "");
+}
+
+/// Runs the work on a stack of its own. There an exception that nothing catches finds no frame to
+/// unwind to, so the terminate handler gets it while nothing is destroyed yet: destroying half-read
+/// OpenVDB trees would enter TBB, whose other threads do not exist in this process.
+[[noreturn]] void run_on_own_stack() {
+  std::set_terminate(report_exception);
+  constexpr std::size_t bytes = std::size_t(16) << 20;
+  void* stack = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
+  if (stack == MAP_FAILED)
+    leave(Outcome::no_memory, "");
+  ::ucontext_t context;
+  ::getcontext(&context);
+  context.uc_stack.ss_sp = stack;
+  context.uc_stack.ss_size = bytes;
+  context.uc_link = nullptr;
+  ::makecontext(&context, run_work, 0);
+  ::setcontext(&context);
+  ::_exit(1);
+}
+
+void limit(int resource, std::uint64_t value) {
+  rlimit old;
+  if (::getrlimit(static_cast<__rlimit_resource>(resource), &old) != 0)
+    return;
+  const rlim_t wanted = std::min<rlim_t>(value, old.rlim_max);
+  const rlimit now{wanted, wanted};
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
+}
+
+std::uint64_t address_space_bytes() {
+  const Descriptor file(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC));
+  std::array<char, 64> text{};
+  if (::read(file.get(), text.data(), text.size() - 1) <= 0)
+    return 0;
+  return std::strtoull(text.data(), nullptr, 10) *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Where memory runs out all the same, the child should go, not the renderer.
+void volunteer_for_out_of_memory_killer() {
+  const Descriptor file(::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC));
+  const char score[] = "1000";
+  if (file.get() >= 0 && ::write(file.get(), score, sizeof score - 1) < 0)
+    return; // not allowed here; the limits below still hold
+}
+
+[[noreturn]] void be_the_child(pid_t parent, const GuardLimits& limits) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent)
+    ::_exit(1);
+  for (int number = 1; number < 32; ++number)
+    ::signal(number, SIG_DFL);
+  // An interrupt reaches the whole process group; the parent decides what it means. SIGXFSZ
+  // ignored makes a write beyond the limit an error.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGXFSZ, SIGPIPE,
+                           SIGALRM, SIGVTALRM, SIGPROF})
+    ::signal(number, SIG_IGN);
+  const int null = ::open("/dev/null", O_RDWR);
+  ::dup2(null, STDOUT_FILENO);
+  ::dup2(null, STDERR_FILENO);
+  volunteer_for_out_of_memory_killer();
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, limits.bytes);
+  limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.cpu_seconds, 1.0))));
+  limit(RLIMIT_AS, address_space_bytes() + limits.bytes);
+  run_on_own_stack();
+}
+
+/// The parent's end: a child process, ended and reaped at the latest by the destructor.
+class Child {
+public:
+  Child(pid_t id, Descriptor pipe) : id_(id), pipe_(std::move(pipe)) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() { end(); }
+
+  /// Waits for the message; nothing where the child died without one or the time is over.
+  std::optional<Message> wait(double seconds);
+  /// Kills the child if it still runs. Returns its wait status, or -1 where someone else took it.
+  int end() {
+    if (!reaped_)
+      ::kill(id_, SIGKILL);
+    reap(0);
+    return status_;
+  }
+  bool died() const { return reaped_; }
+
+private:
+  void reap(int options) {
+    pid_t found = 0;
+    while (!reaped_ && (found = ::waitpid(id_, &status_, options)) < 0 && errno == EINTR) {
+    }
+    if (found < 0)
+      status_ = -1;
+    reaped_ = reaped_ || found != 0;
+  }
+  std::optional<Message> receive(int milliseconds);
+
+  pid_t id_;
+  Descriptor pipe_;
+  int status_ = -1;
+  bool reaped_ = false;
+};
+
+std::optional<Message> Child::receive(int milliseconds) {
+  pollfd ready{pipe_.get(), POLLIN, 0};
+  Message message;
+  if (::poll(&ready, 1, milliseconds) <= 0 || !(ready.revents & POLLIN) ||
+      ::read(pipe_.get(), &message, sizeof message) != sizeof message)
+    return std::nullopt;
+  message.text.back() = 0;
+  return message;
+}
+
+std::optional<Message> Child::wait(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  while (std::chrono::duration<double>(Clock::now() - start).count() < seconds) {
+    // A child that dies says nothing, and the pipe may stay open in a sibling forked meanwhile, so
+    // its death is looked for now and then.
+    if (auto message = receive(20))
+      return message;
+    reap(WNOHANG);
+    if (reaped_)
+      return receive(0);
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void throw_failure(const std::string& label, const GuardLimits& limits,
+                                const std::optional<Message>& message, bool died, int status) {
+  const double gib = static_cast<double>(limits.bytes) / (1 << 30);
+  if (!message) {
+    if (!died)
+      throw FrameError(fmt::format("{}: reading took more than {:g} s; the file is corrupt, or the "
+                                   "disk too slow",
+                                   label, limits.seconds));
+    if (status >= 0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+      throw FrameError(fmt::format("{}: reading took more than {:g} s of processor time; the file "
+                                   "is corrupt",
+                                   label, std::ceil(limits.cpu_seconds)));
+    if (status >= 0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+      throw FrameError(label + ": the reader was killed; is the machine out of memory?");
+    throw FrameError(label + ": the file is corrupt, it crashed the reader");
+  }
+  std::string text(message->text.data());
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  switch (message->outcome) {
+  case Outcome::input_error:
+    throw InputError(text);
+  case Outcome::frame_error:
+    throw FrameError(text);
+  case Outcome::no_memory:
+    throw FrameError(fmt::format("{}: reading needs more than {:.2f} GiB; the file is corrupt, or "
+                                 "larger than the limit",
+                                 label, gib));
+  default:
+    throw FrameError(fmt::format("{}: the file is corrupt or cut short ({})", label, text));
+  }
+}
+
+} // namespace
+
+MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
+                       const std::function<void(int)>& work) {
+  const Descriptor output = create_memory_file();
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw FrameError(fmt::format("{}: cannot make a pipe: {}", label, std::strerror(errno)));
+  Descriptor read_end(ends[0]), write_end(ends[1]);
+
+  const pid_t parent = ::getpid();
+  const pid_t id = ::fork();
+  if (id < 0)
+    throw FrameError(
+        fmt::format("{}: cannot start a reader process: {}", label, std::strerror(errno)));
+  if (id == 0) {
+    child_work = &work;
+    child_output = output.get();
+    child_pipe = write_end.get();
+    be_the_child(parent, limits);
+  }
+  write_end = Descriptor();
+  Child child(id, std::move(read_end));
+  const std::optional<Message> message = child.wait(limits.seconds);
+  const bool died = child.died();
+  const int status = child.end();
+  if (!message || message->outcome != Outcome::done)
+    throw_failure(label, limits, message, died, status);
+  return MappedFile(output.get());
+}
+
+} // namespace vdbeam

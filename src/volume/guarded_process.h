@@ -1,0 +1,28 @@
+#pragma once
+
+#include "volume/mapped_file.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace vdbeam {
+
+/// What a guarded child process may use.
+struct GuardLimits {
+  double seconds = 120;     ///< of wall-clock time
+  double cpu_seconds = 120; ///< of processor time
+  std::uint64_t bytes = 0;  ///< of memory on top of what the parent has, and of output
+};
+
+/// Runs `work(descriptor)` in a forked child process and returns what it wrote to the descriptor (a
+/// file in memory). Whatever the work does, crash, hang or ask for endless memory, this process
+/// carries on: every failure throws one line that opens with `label`, within the limits. An Error
+/// that the work throws arrives as it is, any other exception as a FrameError.
+///
+/// The child has one thread, and the work must not start or use others: no TBB (docs/decisions.md
+/// says why). It ends without running destructors, also where an exception ends the work.
+MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
+                       const std::function<void(int)>& work);
+
+} // namespace vdbeam

@@ -1,0 +1,124 @@
+#include "volume/mapped_file.h"
+#include "volume/summary_codec.h"
+#include "volume/vdb_parse.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace vdbeam {
+
+namespace {
+
+/// Statistics of the active values of a float or double grid.
+struct ValueStatistics {
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
+  double sum = 0;
+  std::uint64_t count = 0;
+  GridRepairs bad;
+
+  void add(double value, std::uint64_t weight) {
+    if (std::isnan(value)) {
+      bad.nan += weight;
+    } else if (std::isinf(value)) {
+      bad.infinite += weight;
+    } else {
+      bad.negative += value < 0 ? weight : 0;
+      minimum = std::min(minimum, value);
+      maximum = std::max(maximum, value);
+      sum += value * static_cast<double>(weight);
+      count += weight;
+    }
+  }
+  void store(GridSummary& summary) const {
+    summary.bad_values = bad;
+    summary.minimum = count > 0 ? minimum : 0;
+    summary.maximum = count > 0 ? maximum : 0;
+    summary.mean = count > 0 ? sum / static_cast<double>(count) : 0;
+  }
+};
+
+/// Counts by hand what OpenVDB's own functions would count through TBB.
+template <class Grid>
+void summarize_tree(const Grid& grid, GridSummary& summary) {
+  using Tree = typename Grid::TreeType;
+  constexpr bool is_scalar = std::is_floating_point_v<typename Grid::ValueType>;
+  ValueStatistics statistics;
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    ++summary.leaf_count;
+    summary.active_voxels += leaf->onVoxelCount();
+    if constexpr (is_scalar)
+      for (auto value = leaf->cbeginValueOn(); value; ++value)
+        statistics.add(value.getValue(), 1);
+  }
+  auto tile = grid.tree().cbeginValueOn();
+  tile.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    ++summary.tile_count;
+    summary.active_voxels += tile.getVoxelCount();
+    if constexpr (is_scalar)
+      statistics.add(tile.getValue(), tile.getVoxelCount());
+  }
+  if constexpr (is_scalar) {
+    statistics.store(summary);
+    summary.background = grid.background();
+  }
+}
+
+Boxd box_in_world(const openvdb::math::Transform& transform, const openvdb::CoordBBox& box) {
+  Boxd world;
+  for (int corner = 0; corner < 8; ++corner) {
+    const openvdb::Vec3d at = transform.indexToWorld(openvdb::Vec3d(
+        corner & 1 ? box.max().x() : box.min().x(), corner & 2 ? box.max().y() : box.min().y(),
+        corner & 4 ? box.max().z() : box.min().z()));
+    world.extend({at.x(), at.y(), at.z()});
+  }
+  return world;
+}
+
+void summarize_map(const openvdb::math::Transform& transform, GridSummary& summary) {
+  summary.map_type = transform.mapType();
+  const openvdb::Vec3d size = transform.voxelSize();
+  for (int axis = 0; axis < 3; ++axis)
+    summary.voxel_size[axis] = size[axis];
+  if (!transform.isLinear())
+    return;
+  const openvdb::math::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
+  for (int i = 0; i < 3; ++i) {
+    summary.index_to_world.rows[i] = {matrix(0, i), matrix(1, i), matrix(2, i)};
+    summary.index_to_world.translation[i] = matrix(3, i);
+  }
+}
+
+} // namespace
+
+void write_summary(const std::string& path, const std::string& grid_name, int descriptor) {
+  openvdb::io::File file(path);
+  file.open(false);
+  const openvdb::GridBase::Ptr grid = file.readGrid(grid_name);
+  GridSummary summary;
+  summary.name = grid_name;
+  summary.saved_as_half = grid->saveFloatAsHalf();
+  summary.value_type =
+      summary.saved_as_half && grid->valueType() == "float" ? "half" : grid->valueType();
+  summary.grid_class = openvdb::GridBase::gridClassToMenuName(grid->getGridClass());
+  summary.index_lower = Vec3<std::int64_t>(0);
+  summary.index_upper = Vec3<std::int64_t>(-1);
+  summarize_map(grid->transform(), summary);
+  grid->apply<openvdb::GridTypes>([&summary](const auto& typed) {
+    summarize_tree(typed, summary);
+    openvdb::CoordBBox box;
+    if (summary.active_voxels > 0 && typed.tree().evalActiveVoxelBoundingBox(box)) {
+      summary.index_lower = {box.min().x(), box.min().y(), box.min().z()};
+      summary.index_upper = {box.max().x(), box.max().y(), box.max().z()};
+      summary.world_bounds = box_in_world(typed.transform(), box);
+    }
+  });
+  const std::vector<std::uint8_t> bytes = encode_summary(summary);
+  write_all(descriptor, bytes.data(), bytes.size());
+}
+
+} // namespace vdbeam
