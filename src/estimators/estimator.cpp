@@ -1,5 +1,6 @@
 #include "estimators/estimator.h"
 
+#include "estimators/beam.h"
 #include "estimators/path.h"
 #include "vdbeam/error.h"
 
@@ -10,6 +11,7 @@ std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInp
   case EstimatorType::path:
     return std::make_unique<PathEstimator>(input);
   case EstimatorType::beam:
+    return std::make_unique<BeamEstimator>(input);
   case EstimatorType::march:
     break;
   }

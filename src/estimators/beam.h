@@ -1,0 +1,23 @@
+#pragma once
+
+#include "estimators/photon_stage.h"
+#include "estimators/tile_rays.h"
+
+namespace vdbeam {
+
+/// The beam radiance estimate (Jarosz, Zwicker, Jensen 2008, eq. 11) for heterogeneous media: per
+/// camera ray one query gathers all photons along it,
+///   L = sum_i K(d_i, r_i) Tr(0, t_i) sigma_s(t_i) p(w_i, -d) flux_i / majorant_i,
+/// to which single scattering of the sampled lights and what is seen through the medium are added.
+class BeamEstimator : public Estimator {
+public:
+  explicit BeamEstimator(const EstimatorInput& input) : input_(input), stage_(input) {}
+
+  void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
+
+private:
+  EstimatorInput input_;
+  PhotonStage stage_;
+};
+
+} // namespace vdbeam

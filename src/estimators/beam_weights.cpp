@@ -1,0 +1,190 @@
+#include "estimators/beam_weights.h"
+
+#include "math/sampling.h"
+
+namespace vdbeam {
+
+namespace {
+
+/// Frame and directions. The reference lies on the central ray, beside the medium's centre.
+void fill_frame(const World& world, const Camera& camera, const TileRays& rays, BeamTile& tile) {
+  const Vec3d w = camera.direction(rays.x0() + 0.5 * 16, rays.y0() + 0.5 * 16);
+  Vec3d u, v;
+  orthonormal_frame(w, u, v);
+  const double distance = std::max(0.0, dot(Vec3d(world.region.center) - camera.origin(), w));
+  tile.reference = Vec3f(camera.origin() + w * distance);
+  tile.axis_u = Vec3f(u);
+  tile.axis_v = Vec3f(v);
+  tile.axis_w = Vec3f(w);
+  tile.camera_distance = static_cast<float>(distance);
+  for (int i = 0; i < TileRays::count; ++i) {
+    tile.du[i] = static_cast<float>(dot(rays[i].direction, u));
+    tile.dv[i] = static_cast<float>(dot(rays[i].direction, v));
+    tile.dw[i] = static_cast<float>(dot(rays[i].direction, w));
+  }
+}
+
+/// Where a sub-tile's knots lie: spacing by the lattice crossings of its rays, finer where one piece
+/// takes a visible share of the light.
+struct KnotRange {
+  double begin = infinity, end = -infinity;
+  int intervals = 0;
+};
+
+KnotRange choose_knots(const TileRays& rays, int subtile) {
+  constexpr float finest_piece = 0.5f; // visible optical depth per interval
+  constexpr int most_intervals = 1024;
+  KnotRange range;
+  std::size_t pieces = 0;
+  float sharpest = 0, deepest = 0;
+  for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i) {
+    const DepthProfile& profile = rays[i].profile;
+    if (profile.empty())
+      continue;
+    range.begin = std::min(range.begin, profile.front() + rays[i].camera.shift);
+    range.end = std::max(range.end, profile.back() + rays[i].camera.shift);
+    pieces = std::max(pieces, profile.knots());
+    sharpest = std::max(sharpest, profile.sharpest_piece());
+    deepest = std::max(deepest, std::min(profile.total(profile.knots() - 1), 14.0f));
+  }
+  if (pieces == 0)
+    return range;
+  // A lattice line is crossed about 1.5 times per voxel.
+  double intervals = std::max({16.0, 0.67 * static_cast<double>(pieces), 4.0 * deepest});
+  intervals *= std::max(1.0f, std::min(sharpest / finest_piece, 8.0f));
+  range.intervals = static_cast<int>(std::min<double>(intervals, most_intervals));
+  return range;
+}
+
+class WeightWriter {
+public:
+  WeightWriter(const World& world, const WeightSettings& settings, BeamTile& tile)
+      : world_(world), settings_(settings), tile_(tile),
+        groups_(static_cast<int>(world.medium.phases.size())) {}
+
+  void write(const TileRays& rays, int subtile, const KnotRange& range) {
+    BeamTile::Profile& profile = tile_.profiles[subtile];
+    profile = {};
+    if (range.intervals == 0)
+      return;
+    profile.step = static_cast<float>((range.end - range.begin) / range.intervals);
+    // A knot in the middle of each interval, and one of weight 0 before and after.
+    profile.knots = range.intervals + 2;
+    profile.t_begin = static_cast<float>(range.begin - 0.5 * profile.step);
+    profile.offset = tile_.weights.size();
+    tile_.weights.resize(profile.offset + static_cast<std::size_t>(profile.knots) * 16 * groups_ *
+                                              tile_.weight_channels);
+    for (int ray = 0; ray < 16; ++ray) {
+      const TileRays::PixelRay& pixel = rays[16 * subtile + ray];
+      if (!pixel.profile.empty())
+        write_ray(pixel, static_cast<float>(range.begin - pixel.camera.shift), profile, ray);
+    }
+  }
+
+private:
+  void write_ray(const TileRays::PixelRay& pixel, float begin, const BeamTile::Profile& profile,
+                 int ray) {
+    const std::size_t volumes = world_.medium.volumes.size();
+    ProfileCursor cursor(pixel.profile);
+    before_.assign(volumes, 0);
+    after_.assign(volumes, 0);
+    for (int k = 1; k + 1 < profile.knots; ++k) {
+      cursor.move_to(begin + static_cast<float>(k) * profile.step);
+      for (std::size_t v = 0; v < volumes; ++v)
+        after_[v] = cursor.tau(v);
+      if (settings_.store == PhotonStore::scatter)
+        write_transmittance(profile, k, ray);
+      else if (volumes == 1 && tile_.weight_channels == 1)
+        write_simple(profile, k, ray);
+      else
+        write_scattering(profile, k, ray);
+      std::swap(before_, after_);
+    }
+  }
+
+  float* weight(const BeamTile::Profile& profile, int group, int channel, int knot, int ray) {
+    const std::size_t table = static_cast<std::size_t>(group) * tile_.weight_channels + channel;
+    return &tile_.weights[profile.offset + (table * profile.knots + knot) * 16 + ray];
+  }
+
+  void write_simple(const BeamTile::Profile& profile, int knot, int ray) {
+    const float piece = after_[0] - before_[0];
+    if (piece > 0)
+      *weight(profile, 0, 0, knot, ray) =
+          std::exp(-before_[0]) * -std::expm1(-piece) / profile.step;
+  }
+
+  void write_scattering(const BeamTile::Profile& profile, int knot, int ray) {
+    const std::vector<Volume>& volumes = world_.medium.volumes;
+    for (int c = 0; c < tile_.weight_channels; ++c) {
+      float tau_before = 0, tau_after = 0;
+      for (std::size_t v = 0; v < volumes.size(); ++v) {
+        tau_before += volumes[v].channel_scale[c] * before_[v];
+        tau_after += volumes[v].channel_scale[c] * after_[v];
+      }
+      const float piece = tau_after - tau_before;
+      if (!(piece > 0))
+        continue;
+      const float scattered = std::exp(-tau_before) * -std::expm1(-piece) / profile.step;
+      for (std::size_t v = 0; v < volumes.size(); ++v) {
+        const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
+        const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
+        *weight(profile, volumes[v].group, c, knot, ray) += scattered * share * albedo;
+      }
+    }
+  }
+
+  /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several phase
+  /// functions share by their volumes' part in the interval.
+  void write_transmittance(const BeamTile::Profile& profile, int knot, int ray) {
+    const std::vector<Volume>& volumes = world_.medium.volumes;
+    for (int c = 0; c < tile_.weight_channels; ++c) {
+      float tau = 0, piece = 0;
+      for (std::size_t v = 0; v < volumes.size(); ++v) {
+        tau += volumes[v].channel_scale[c] * 0.5f * (before_[v] + after_[v]);
+        piece += volumes[v].albedo[c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]);
+      }
+      const float tr = std::exp(-tau);
+      if (!(piece > 0)) {
+        *weight(profile, volumes[0].group, c, knot, ray) += tr;
+        continue;
+      }
+      for (std::size_t v = 0; v < volumes.size(); ++v)
+        *weight(profile, volumes[v].group, c, knot, ray) +=
+            tr * volumes[v].albedo[c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]) /
+            piece;
+    }
+  }
+
+  const World& world_;
+  const WeightSettings& settings_;
+  BeamTile& tile_;
+  int groups_;
+  std::vector<float> before_, after_;
+};
+
+} // namespace
+
+void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
+                    const WeightSettings& settings, BeamTile& tile) {
+  fill_frame(world, camera, rays, tile);
+  tile.phases = &world.medium.phases;
+  const bool coloured = world.medium.chromatic || !settings.albedo_in_power;
+  tile.weight_channels = coloured ? 3 : 1;
+  tile.weights.clear();
+  WeightWriter writer(world, settings, tile);
+  for (int subtile = 0; subtile < BeamTile::subtile_count; ++subtile) {
+    KnotRange range = choose_knots(rays, subtile);
+    if (range.intervals > 0 && settings.store == PhotonStore::scatter) {
+      const double width = (range.end - range.begin) / range.intervals;
+      const double begin = std::max(0.0, range.begin - settings.reach);
+      const double end = range.end + settings.reach;
+      range.intervals = static_cast<int>(std::min(2048.0, std::ceil((end - begin) / width)));
+      range.begin = begin;
+      range.end = end;
+    }
+    writer.write(rays, subtile, range);
+  }
+}
+
+} // namespace vdbeam

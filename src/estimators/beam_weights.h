@@ -1,0 +1,22 @@
+#pragma once
+
+#include "estimators/tile_rays.h"
+
+namespace vdbeam {
+
+/// How the rays of a tile weigh a photon at distance t.
+struct WeightSettings {
+  PhotonStore store = PhotonStore::fluence;
+  bool albedo_in_power = true; ///< the photons carry the albedo that all volumes share
+  float reach = 0;             ///< scatter storage: how far beyond the medium photons are gathered
+};
+
+/// Fills the tile's frame, directions and weight tables from its rays.
+///
+/// Fluence storage: W at a knot is the mean of Tr sigma_s over the knot's interval, taken from exact
+/// optical depths at its ends, (Tr(a) - Tr(b)) / (b - a) * albedo. So the table's integral is exact
+/// however stiff the medium, and no voxel can be missed. Scatter storage: W = Tr.
+void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
+                    const WeightSettings& settings, BeamTile& tile);
+
+} // namespace vdbeam

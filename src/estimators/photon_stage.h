@@ -1,0 +1,47 @@
+#pragma once
+
+#include "estimators/estimator.h"
+#include "photonmap/photon_map.h"
+#include "transport/photon_tracing.h"
+
+namespace vdbeam {
+
+/// The photon pass that `beam` and `march` share: how many paths, which lights' first flight is left
+/// to shadow rays, how wide the kernels are, and the map itself.
+class PhotonStage {
+public:
+  explicit PhotonStage(const EstimatorInput& input);
+
+  /// Traces and builds the map of a pass. Radii shrink from pass to pass.
+  void shoot(int pass, RenderStatistics& statistics);
+
+  const PhotonMap& map() const { return map_; }
+  /// Per light: single scattering by shadow rays instead of photons.
+  const std::vector<bool>& sampled_lights() const { return sampled_; }
+  /// Shadow-ray samples per camera ray.
+  int direct_samples() const { return direct_samples_; }
+  /// Colour that is already in the photons' power (the albedo that all volumes share).
+  bool albedo_in_power() const { return common_albedo_; }
+  bool needs_map() const { return needs_map_; }
+
+  /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
+  static float radius_scale(int pass, double alpha);
+
+private:
+  void choose_lights();
+  void choose_counts();
+  RadiusSettings radii(int pass) const;
+
+  EstimatorInput input_;
+  std::vector<bool> sampled_;
+  bool common_albedo_ = false;
+  bool needs_map_ = true;
+  int direct_samples_ = 1;
+  double keep_ = 1;
+  double neighbours_ = 0;
+  std::uint64_t target_photons_ = 0; ///< stored per pass
+  std::uint64_t paths_ = 0;          ///< per pass, adjusted to the target after the first
+  PhotonMap map_;
+};
+
+} // namespace vdbeam

@@ -1,0 +1,26 @@
+#include "estimators/tile_rays.h"
+
+namespace vdbeam {
+
+void TileRays::prepare(const World& world, const Camera& camera, const RngKey& key, int x0,
+                       int y0) {
+  x0_ = x0;
+  y0_ = y0;
+  for (int i = 0; i < count; ++i) {
+    const int subtile = i / 16, ray = i % 16;
+    const int x = x0 + subtile % 4 * 4 + ray % 4, y = y0 + subtile / 4 * 4 + ray / 4;
+    PixelRay& out = rays_[i];
+    out.inside = x < camera.width() && y < camera.height();
+    const int px = std::min(x, camera.width() - 1), py = std::min(y, camera.height() - 1);
+    out.pixel = static_cast<std::size_t>(py) * camera.width() + px;
+    Rng rng(key, RngStage::camera, out.pixel);
+    const double jitter_x = rng.uniform(), jitter_y = rng.uniform();
+    out.direction = camera.direction(px + jitter_x, py + jitter_y);
+    out.camera = camera_ray(world, camera, px + jitter_x, py + jitter_y);
+    const float t_end = out.inside ? out.camera.t_end : out.camera.t_begin;
+    out.profile.build(world.medium, out.camera.ray, out.camera.t_begin, t_end,
+                      static_cast<float>(world.settings.cutoff));
+  }
+}
+
+} // namespace vdbeam

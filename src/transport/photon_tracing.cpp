@@ -1,0 +1,152 @@
+#include "transport/photon_tracing.h"
+
+#include "transport/scattering.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace vdbeam {
+
+namespace {
+
+/// Paths in a task: its photons stay together and in order, so the list does not depend on threads.
+constexpr std::uint64_t paths_per_chunk = 512;
+
+/// First path number of each light: lights share the paths by power.
+std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths) {
+  std::vector<double> power(lights.size());
+  double total = 0;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    total += power[i] = mean_component(Vec3d(lights[i].power()));
+  std::vector<std::uint64_t> first{0};
+  double sum = 0;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    sum += power[i];
+    std::uint64_t end =
+        total > 0 ? static_cast<std::uint64_t>(std::llround(sum / total * static_cast<double>(paths)))
+                  : 0;
+    if (power[i] > 0) // no light is left out altogether
+      end = std::max(end, first.back() + 1);
+    first.push_back(end);
+  }
+  return first;
+}
+
+/// Traces one chunk of paths into one list.
+class PathTracer {
+public:
+  PathTracer(const World& world, const PhotonPassSettings& settings)
+      : world_(world), settings_(settings) {}
+
+  void trace(std::uint64_t number, std::size_t light, std::uint64_t light_paths) {
+    Rng rng(settings_.key, RngStage::photon, number);
+    EmittedPhoton photon = world_.lights[light].emit(rng);
+    Rgb flux = photon.flux / static_cast<float>(light_paths);
+    if (!(max_component(flux) > 0))
+      return;
+    Ray ray = photon.ray;
+    for (int bounces = 0;; ++bounces) {
+      if (settings_.max_bounces && bounces >= *settings_.max_bounces)
+        return;
+      const bool storable = bounces > 0 || !settings_.skip_first_flight[light];
+      const Collision hit = fly(ray, flux, storable, rng);
+      if (hit.volume == nullptr || !survive_scattering(hit.volume->albedo, flux, rng))
+        return;
+      const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+      const PhaseFunction& phase = world_.medium.phases[hit.volume->group];
+      ray = {ray.at(hit.t), phase.sample(ray.direction, u_lobe, u, v)};
+    }
+  }
+
+  PhotonList photons;
+  std::uint64_t collisions = 0;
+
+private:
+  /// To the next real collision, storing on the way.
+  Collision fly(const Ray& ray, Rgb& flux, bool storable, Rng& rng) {
+    const Medium& medium = world_.medium;
+    float t_begin = 0, t_end = infinity;
+    medium.clip(ray, t_begin, t_end);
+    if (!(t_begin < t_end))
+      return {};
+    MediumTracker tracker(medium, ray, t_begin, t_end);
+    while (true) {
+      const Collision hit = tracker.next(rng);
+      if (hit.volume == nullptr)
+        return hit;
+      if (storable && settings_.store == PhotonStore::fluence)
+        store(ray, hit.t, flux / total_majorant(ray, hit), rng);
+      const bool real = collide_really(hit, medium.chromatic, flux, rng);
+      if (!real)
+        continue;
+      if (storable && settings_.store == PhotonStore::scatter)
+        store(ray, hit.t, flux * hit.volume->albedo, rng);
+      return hit;
+    }
+  }
+
+  /// Rate of tentative collisions at the point: the majorants of overlapping volumes add.
+  float total_majorant(const Ray& ray, const Collision& hit) const {
+    if (world_.medium.volumes.size() == 1)
+      return hit.majorant;
+    float sum = hit.majorant;
+    const Vec3f point = ray.at(hit.t);
+    for (const Volume& volume : world_.medium.volumes)
+      if (&volume != hit.volume)
+        sum += volume.majorant(point);
+    return sum;
+  }
+
+  void store(const Ray& ray, float t, const Rgb& power, Rng& rng) {
+    ++collisions;
+    if (settings_.keep < 1 && rng.uniform() >= settings_.keep)
+      return;
+    photons.position.push_back(ray.at(t));
+    if (settings_.directions)
+      photons.direction.push_back(ray.direction);
+    photons.power.push_back(power * settings_.factor / settings_.keep);
+  }
+
+  const World& world_;
+  const PhotonPassSettings& settings_;
+};
+
+} // namespace
+
+PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings) {
+  PhotonPass pass;
+  if (world.medium.empty() || settings.paths == 0)
+    return pass;
+  const std::vector<std::uint64_t> first = share_paths(world.lights, settings.paths);
+  const std::uint64_t paths = first.back();
+  const std::uint64_t chunks = (paths + paths_per_chunk - 1) / paths_per_chunk;
+  std::vector<PathTracer> tracers(chunks, PathTracer(world, settings));
+  tbb::parallel_for(
+      tbb::blocked_range<std::uint64_t>(0, chunks, 1),
+      [&](const tbb::blocked_range<std::uint64_t>& range) {
+        for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
+          const std::uint64_t end = std::min(paths, (chunk + 1) * paths_per_chunk);
+          std::size_t light = 0;
+          for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {
+            while (path >= first[light + 1])
+              ++light;
+            tracers[chunk].trace(path, light, first[light + 1] - first[light]);
+          }
+        }
+      });
+  std::uint64_t collisions = 0;
+  std::size_t stored = 0;
+  for (const PathTracer& tracer : tracers) {
+    collisions += tracer.collisions;
+    stored += tracer.photons.size();
+  }
+  pass.photons.position.reserve(stored);
+  pass.photons.direction.reserve(settings.directions ? stored : 0);
+  pass.photons.power.reserve(stored);
+  for (PathTracer& tracer : tracers)
+    pass.photons.append(tracer.photons);
+  pass.mean_collisions = paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
+  return pass;
+}
+
+} // namespace vdbeam
