@@ -24,8 +24,8 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
   }
 }
 
-/// Where a sub-tile's knots lie: spacing by the lattice crossings of its rays, finer where one piece
-/// takes a visible share of the light.
+/// Where a sub-tile's knots lie: spacing by the lattice crossings of its rays, finer where one
+/// piece takes a visible share of the light.
 struct KnotRange {
   double begin = infinity, end = -infinity;
   int intervals = 0;
@@ -134,8 +134,8 @@ private:
     }
   }
 
-  /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several phase
-  /// functions share by their volumes' part in the interval.
+  /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several
+  /// phase functions share by their volumes' part in the interval.
   void write_transmittance(const BeamTile::Profile& profile, int knot, int ray) {
     const std::vector<Volume>& volumes = world_.medium.volumes;
     for (int c = 0; c < tile_.weight_channels; ++c) {
@@ -150,9 +150,9 @@ private:
         continue;
       }
       for (std::size_t v = 0; v < volumes.size(); ++v)
-        *weight(profile, volumes[v].group, c, knot, ray) +=
-            tr * volumes[v].albedo[c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]) /
-            piece;
+        *weight(profile, volumes[v].group, c, knot, ray) += tr * volumes[v].albedo[c] *
+                                                            volumes[v].channel_scale[c] *
+                                                            (after_[v] - before_[v]) / piece;
     }
   }
 

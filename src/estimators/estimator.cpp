@@ -1,6 +1,7 @@
 #include "estimators/estimator.h"
 
 #include "estimators/beam.h"
+#include "estimators/march.h"
 #include "estimators/path.h"
 #include "vdbeam/error.h"
 
@@ -13,7 +14,7 @@ std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInp
   case EstimatorType::beam:
     return std::make_unique<BeamEstimator>(input);
   case EstimatorType::march:
-    break;
+    return std::make_unique<MarchEstimator>(input);
   }
   throw InputError("unknown estimator");
 }

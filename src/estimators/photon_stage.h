@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// The photon pass that `beam` and `march` share: how many paths, which lights' first flight is left
-/// to shadow rays, how wide the kernels are, and the map itself.
+/// The photon pass that `beam` and `march` share: how many paths, which lights' first flight is
+/// left to shadow rays, how wide the kernels are, and the map itself.
 class PhotonStage {
 public:
   explicit PhotonStage(const EstimatorInput& input);

@@ -35,8 +35,8 @@ public:
       sum += medium.volumes[v].channel_scale * tau(knot, v);
     return sum;
   }
-  /// Largest optical depth of one piece, weighted with what is seen of it: how fine a resampling has
-  /// to be.
+  /// Largest optical depth of one piece, weighted with what is seen of it: how fine a resampling
+  /// has to be.
   float sharpest_piece() const;
   /// Integral of Tr sigma_t t dt (mean over channels is not taken: strongest channel).
   float opacity_depth() const;

@@ -23,8 +23,9 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
   for (std::size_t i = 0; i < lights.size(); ++i) {
     sum += power[i];
     std::uint64_t end =
-        total > 0 ? static_cast<std::uint64_t>(std::llround(sum / total * static_cast<double>(paths)))
-                  : 0;
+        total > 0
+            ? static_cast<std::uint64_t>(std::llround(sum / total * static_cast<double>(paths)))
+            : 0;
     if (power[i] > 0) // no light is left out altogether
       end = std::max(end, first.back() + 1);
     first.push_back(end);
@@ -121,19 +122,18 @@ PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings)
   const std::uint64_t paths = first.back();
   const std::uint64_t chunks = (paths + paths_per_chunk - 1) / paths_per_chunk;
   std::vector<PathTracer> tracers(chunks, PathTracer(world, settings));
-  tbb::parallel_for(
-      tbb::blocked_range<std::uint64_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::uint64_t>& range) {
-        for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
-          const std::uint64_t end = std::min(paths, (chunk + 1) * paths_per_chunk);
-          std::size_t light = 0;
-          for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {
-            while (path >= first[light + 1])
-              ++light;
-            tracers[chunk].trace(path, light, first[light + 1] - first[light]);
-          }
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, chunks, 1),
+                    [&](const tbb::blocked_range<std::uint64_t>& range) {
+                      for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
+                        const std::uint64_t end = std::min(paths, (chunk + 1) * paths_per_chunk);
+                        std::size_t light = 0;
+                        for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {
+                          while (path >= first[light + 1])
+                            ++light;
+                          tracers[chunk].trace(path, light, first[light + 1] - first[light]);
+                        }
+                      }
+                    });
   std::uint64_t collisions = 0;
   std::size_t stored = 0;
   for (const PathTracer& tracer : tracers) {
@@ -145,7 +145,8 @@ PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings)
   pass.photons.power.reserve(stored);
   for (PathTracer& tracer : tracers)
     pass.photons.append(tracer.photons);
-  pass.mean_collisions = paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
+  pass.mean_collisions =
+      paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
   return pass;
 }
 

@@ -7,27 +7,29 @@ namespace vdbeam {
 
 /// What a photon pass needs to know.
 struct PhotonPassSettings {
-  std::uint64_t paths = 0;   ///< light paths emitted
+  std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
-  float keep = 1;            ///< share of the storable collisions that is kept, each at 1 / keep
+  float keep = 1; ///< share of the storable collisions that is kept, each at 1 / keep
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;
-  bool directions = true;    ///< false: no phase function needs them
-  Rgb factor{1, 1, 1};       ///< stored powers are multiplied by it
+  bool directions = true; ///< false: no phase function needs them
+  Rgb factor{1, 1, 1};    ///< stored powers are multiplied by it
   RngKey key;
 };
 
 struct PhotonPass {
-  PhotonList photons;        ///< power divided by the number of paths already
+  PhotonList photons;         ///< power divided by the number of paths already
   double mean_collisions = 0; ///< storable collisions per path, before `keep`
 };
 
-/// Shoots photons from all lights and stores them; parallel, and the same for any number of threads.
+/// Shoots photons from all lights and stores them; parallel, and the same for any number of
+/// threads.
 ///
-/// Fluence storage: at every tentative collision of delta tracking, null or real, flux / majorant: an
-/// unbiased sample of the fluence, whose weight is bounded by the local majorant (docs/physics.md).
-/// Scatter storage: at every real collision the scattered flux (Jensen and Christensen 1998).
+/// Fluence storage: at every tentative collision of delta tracking, null or real, flux / majorant:
+/// an unbiased sample of the fluence, whose weight is bounded by the local majorant
+/// (docs/physics.md). Scatter storage: at every real collision the scattered flux (Jensen and
+/// Christensen 1998).
 PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings);
 
 } // namespace vdbeam

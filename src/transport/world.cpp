@@ -141,6 +141,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
   Boxd bounds;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     world.notes.insert(world.notes.end(), grids[i].notes.begin(), grids[i].notes.end());
+    world.active_voxels.push_back(grids[i].field.empty() ? 0 : grids[i].active_voxels);
     maps.push_back(local_to_world(grids[i], scene.volumes[i]));
     if (!grids[i].field.empty())
       bounds.extend(mapped_bounds(maps[i], grids[i].field.occupied()));

@@ -18,7 +18,8 @@ struct World {
   RenderSettings settings;
   /// Every colour in the scene is a grey: one channel of photon power suffices.
   bool grey = false;
-  std::vector<std::string> notes; ///< for the user
+  std::vector<std::string> notes;           ///< for the user
+  std::vector<std::uint64_t> active_voxels; ///< per volume of the scene; 0: left out as empty
   double seconds_read = 0, seconds_build = 0;
 };
 

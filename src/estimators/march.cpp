@@ -1,0 +1,99 @@
+#include "estimators/march.h"
+
+#include "estimators/tile_shading.h"
+
+namespace vdbeam {
+
+namespace {
+
+/// Marches one ray. Within a step the gather point is jittered and weighs what the step scatters,
+/// Tr(a) - Tr(b), exactly; with scatter storage Tr times the step's length.
+class RayMarcher {
+public:
+  RayMarcher(const World& world, const PhotonStage& stage) : world_(world), stage_(stage) {
+    float voxel = infinity;
+    for (const Volume& volume : world.medium.volumes)
+      voxel = std::min(voxel, volume.voxel_size);
+    step_ = static_cast<float>(world.settings.step) * voxel;
+    reach_ = world.settings.store == PhotonStore::scatter ? 4 * stage.map().mean_radius() : 0;
+  }
+
+  Rgb march(const TileRays::PixelRay& ray, Rng& rng, QueryCounts& counts) {
+    const Medium& medium = world_.medium;
+    const float begin =
+        std::max(static_cast<float>(-ray.camera.shift), ray.profile.front() - reach_);
+    const float end = ray.profile.back() + reach_;
+    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / step_)));
+    const float step = (end - begin) / static_cast<float>(steps);
+    ProfileCursor cursor(ray.profile);
+    std::vector<float> before(medium.volumes.size()), after(medium.volumes.size());
+    gathered_.resize(medium.phases.size());
+    Rgb sum;
+    for (int i = 0; i < steps; ++i) {
+      const float t = begin + step * (static_cast<float>(i) + rng.uniform());
+      cursor.move_to(begin + step * static_cast<float>(i + 1));
+      for (std::size_t v = 0; v < after.size(); ++v)
+        after[v] = cursor.tau(v);
+      if (reach_ > 0 || before != after) {
+        std::fill(gathered_.begin(), gathered_.end(), Rgb());
+        const QueryCounts c = stage_.map().query_point(
+            ray.camera.ray.at(t), ray.camera.ray.direction, medium.phases, gathered_.data());
+        counts.contributions += c.contributions;
+        sum += weigh(before, after, step);
+      }
+      before = after;
+    }
+    return sum;
+  }
+
+private:
+  Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step) const {
+    const std::vector<Volume>& volumes = world_.medium.volumes;
+    const bool scatter = world_.settings.store == PhotonStore::scatter;
+    Rgb tau, piece;
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+      tau += volumes[v].channel_scale * before[v];
+      piece += volumes[v].channel_scale * (after[v] - before[v]);
+    }
+    Rgb sum;
+    for (int c = 0; c < 3; ++c) {
+      const float tr = std::exp(-tau[c]);
+      const float whole =
+          scatter ? std::exp(-0.5f * piece[c]) * tr * step : tr * -std::expm1(-piece[c]);
+      for (std::size_t v = 0; v < volumes.size(); ++v) {
+        const float share = piece[c] > 0
+                                ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
+                                : 1 / static_cast<float>(volumes.size());
+        const float albedo = scatter || stage_.albedo_in_power() ? 1 : volumes[v].albedo[c];
+        sum[c] += whole * share * albedo * gathered_[volumes[v].group][c];
+      }
+    }
+    return sum;
+  }
+
+  const World& world_;
+  const PhotonStage& stage_;
+  float step_ = 0, reach_ = 0;
+  std::vector<Rgb> gathered_;
+};
+
+} // namespace
+
+void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
+  stage_.shoot(pass, statistics);
+  shade_tiles(input_, stage_, pass, image, statistics,
+              [&](TileScratch& scratch, const RngKey& key) {
+                RayMarcher marcher(input_.world, stage_);
+                QueryCounts counts;
+                for (int i = 0; i < TileRays::count; ++i) {
+                  const TileRays::PixelRay& ray = scratch.rays[i];
+                  if (!ray.inside || ray.profile.empty())
+                    continue;
+                  Rng rng(key, RngStage::march, ray.pixel);
+                  image.indirect[ray.pixel] = marcher.march(ray, rng, counts);
+                }
+                scratch.statistics.contributions += counts.contributions;
+              });
+}
+
+} // namespace vdbeam

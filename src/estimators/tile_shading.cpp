@@ -1,0 +1,74 @@
+#include "estimators/tile_shading.h"
+
+#include "estimators/direct_light.h"
+#include "estimators/pixel_tiles.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <chrono>
+
+namespace vdbeam {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point a, Clock::time_point b) {
+  return std::chrono::duration<double>(b - a).count();
+}
+
+/// Everything on a pixel's ray but the photons.
+void shade_ray(const World& world, const PhotonStage& stage, const RngKey& key,
+               const TileRays::PixelRay& ray, PassImage& image) {
+  Rng rng(key, RngStage::direct, ray.pixel);
+  Rgb tr(1);
+  if (!ray.profile.empty()) {
+    const Rgb tau = ray.profile.channels(world.medium, ray.profile.knots() - 1);
+    tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+    image.direct[ray.pixel] = direct_light(world, ray.camera.ray, ray.profile,
+                                           stage.sampled_lights(), stage.direct_samples(), rng);
+    const float opacity = 1 - mean_component(tr);
+    image.opacity[ray.pixel] = opacity;
+    image.depth[ray.pixel] = static_cast<float>(
+        (ray.profile.opacity_depth() + ray.camera.shift * opacity) / world.space.scale);
+  }
+  image.background[ray.pixel] = tr * world.lights.escaped_radiance(Vec3f(ray.direction));
+}
+
+} // namespace
+
+void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass, PassImage& image,
+                 RenderStatistics& statistics,
+                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather) {
+  const World& world = input.world;
+  const Camera& camera = input.camera;
+  image.resize(camera.width(), camera.height());
+  const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
+  tbb::enumerable_thread_specific<TileScratch> scratches;
+  for_each_tile(camera.width(), camera.height(), [&](int x0, int y0, int, int) {
+    TileScratch& scratch = scratches.local();
+    const Clock::time_point start = Clock::now();
+    scratch.rays.prepare(world, camera, key, x0, y0);
+    const Clock::time_point profiled = Clock::now();
+    for (int i = 0; i < TileRays::count; ++i)
+      if (scratch.rays[i].inside)
+        shade_ray(world, stage, key, scratch.rays[i], image);
+    const Clock::time_point shaded = Clock::now();
+    if (stage.map().size() > 0)
+      gather(scratch, key);
+    scratch.statistics.profile += seconds_between(start, profiled);
+    scratch.statistics.direct += seconds_between(profiled, shaded);
+    scratch.statistics.query += seconds_between(shaded, Clock::now());
+  });
+  // Stage seconds are processor seconds of the tiles, shared out over the threads that worked.
+  const double threads = static_cast<double>(std::max<std::size_t>(1, scratches.size()));
+  for (const TileScratch& scratch : scratches) {
+    statistics.profile += scratch.statistics.profile / threads;
+    statistics.direct += scratch.statistics.direct / threads;
+    statistics.query += scratch.statistics.query / threads;
+    statistics.contributions += scratch.statistics.contributions;
+  }
+  statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "estimators/estimator.h"
+#include "estimators/photon_stage.h"
+#include "estimators/tile_rays.h"
+
+#include <functional>
+
+namespace vdbeam {
+
+/// What a thread keeps from tile to tile.
+struct TileScratch {
+  TileRays rays;
+  BeamTile tile;
+  RenderStatistics statistics;
+};
+
+/// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
+/// direct light, what is seen through the medium, and the stage times. `gather` adds what the
+/// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics.
+void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass, PassImage& image,
+                 RenderStatistics& statistics,
+                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather);
+
+} // namespace vdbeam

@@ -1,0 +1,142 @@
+#include "render/plan.h"
+
+#include "film/film.h"
+#include "volume/vdb_reader.h"
+
+namespace vdbeam {
+
+namespace {
+
+bool is_grey(const Rgb& c) {
+  return c.x == c.y && c.y == c.z;
+}
+
+/// What of the scene decides the stages.
+struct Needs {
+  bool medium = false, scatters = false, photons = false, first_flight = false;
+  bool shadow_rays = false, anisotropic = false, chromatic = false, coloured = false;
+  bool environment = false, several_bounces = true;
+};
+
+/// Whether single scattering of a light is left to photons (the rule that the renderer follows).
+bool left_to_photons(const LightSettings& light, const RenderSettings& render) {
+  DirectLight direct = light.direct.value_or(render.direct);
+  if (direct == DirectLight::automatic)
+    direct = light.type == LightType::environment && light.image.empty() ? DirectLight::photons
+                                                                         : DirectLight::sampled;
+  return direct == DirectLight::photons;
+}
+
+Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
+  Needs needs;
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const VolumeSettings& volume = scene.volumes[i];
+    if (volumes[i].empty || !(volume.extinction > 0))
+      continue;
+    needs.medium = true;
+    needs.scatters = needs.scatters || max_component(volume.albedo) > 0;
+    needs.anisotropic = needs.anisotropic || volume.phase.type == PhaseType::rayleigh ||
+                        volume.phase.type == PhaseType::mie || volume.phase.g != 0 ||
+                        (volume.phase.type == PhaseType::two_lobe && volume.phase.g2 != 0);
+    needs.chromatic = needs.chromatic || !is_grey(volume.extinction_scale);
+    needs.coloured = needs.coloured || !is_grey(volume.albedo);
+  }
+  needs.several_bounces = !scene.render.max_bounces || *scene.render.max_bounces > 1;
+  for (const LightSettings& light : scene.lights) {
+    const bool environment = light.type == LightType::environment;
+    needs.environment = needs.environment || environment;
+    const Rgb& colour = light.type == LightType::distant ? light.irradiance
+                        : environment                    ? light.radiance
+                                                         : light.intensity;
+    needs.coloured = needs.coloured || !is_grey(colour) || !light.image.empty();
+    if (left_to_photons(light, scene.render))
+      needs.first_flight = true;
+    else
+      needs.shadow_rays = true;
+  }
+  needs.coloured = needs.coloured || needs.chromatic;
+  const bool photon_estimator = scene.render.estimator != EstimatorType::path;
+  const bool bounces = !scene.render.max_bounces || *scene.render.max_bounces > 0;
+  needs.scatters = needs.scatters && needs.medium && !scene.lights.empty() && bounces;
+  needs.photons =
+      photon_estimator && needs.scatters && (needs.several_bounces || needs.first_flight);
+  needs.shadow_rays = needs.shadow_rays && needs.scatters;
+  return needs;
+}
+
+std::string first_reason(std::initializer_list<std::pair<bool, const char*>> reasons) {
+  for (const auto& [applies, reason] : reasons)
+    if (applies)
+      return reason;
+  return "the scene uses it";
+}
+
+} // namespace
+
+RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
+  const Needs needs = find_needs(scene, volumes);
+  const RenderSettings& render = scene.render;
+  const bool path = render.estimator == EstimatorType::path;
+  RenderPlan plan;
+  const auto add = [&plan](const char* name, bool needed, const std::string& reason) {
+    plan.stages.push_back({name, needed, reason});
+  };
+  const char* const no_medium = "no volume has any density";
+  const char* const no_scattering = "nothing scatters: albedo 0, no light, or no bounces";
+  add("read", !scene.volumes.empty(), scene.volumes.empty() ? "no volumes" : "density grids only");
+  add("majorants", needs.medium, needs.medium ? "the medium is not empty" : no_medium);
+  add("surfaces", false, "no surfaces in the scene");
+  add("photons", needs.photons,
+      first_reason({{!needs.scatters, no_scattering},
+                    {path, "the path estimator shoots none"},
+                    {!needs.photons, "single bounce, all by shadow rays"}}));
+  add("map", needs.photons, needs.photons ? "photons are gathered" : "no photons");
+  add("neighbours", needs.photons && render.kernel == KernelRadius::adaptive,
+      first_reason({{!needs.photons, "no photons"},
+                    {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"}}));
+  add("photon directions", needs.photons && needs.anisotropic,
+      first_reason({{!needs.photons, "no photons"},
+                    {!needs.anisotropic, "all phase functions are isotropic"}}));
+  add("photon colour", needs.photons && needs.coloured,
+      first_reason({{!needs.photons, "no photons"}, {!needs.coloured, "all colours are grey"}}));
+  add("spectral tracking", needs.scatters && needs.chromatic,
+      needs.chromatic ? "extinction differs between channels" : "extinction is grey");
+  add("depth profiles", !path && needs.medium,
+      first_reason({{!needs.medium, no_medium}, {path, "the path estimator needs none"}}));
+  add("shadow rays", needs.shadow_rays,
+      first_reason({{!needs.scatters, no_scattering},
+                    {!needs.shadow_rays, "every light is left to photons or to escaping rays"}}));
+  add("beam query", needs.photons && render.estimator == EstimatorType::beam,
+      first_reason({{!needs.photons, "no photons"},
+                    {render.estimator != EstimatorType::beam, "another estimator"}}));
+  add("march", needs.photons && render.estimator == EstimatorType::march,
+      first_reason({{!needs.photons, "no photons"},
+                    {render.estimator != EstimatorType::march, "another estimator"}}));
+  add("paths", path && needs.medium,
+      first_reason({{!path, "another estimator"}, {!needs.medium, no_medium}}));
+  add("environment", needs.environment,
+      needs.environment ? "a light surrounds the scene" : "no environment light");
+
+  constexpr std::uint64_t bytes_per_voxel = 6; // a brick of 9^3 floats per 8^3 voxels
+  for (const VolumeFacts& volume : volumes)
+    plan.volume_bytes += volume.active_voxels * bytes_per_voxel;
+  if (needs.photons)
+    plan.photon_bytes = render.photons.value_or(400000) * (needs.coloured ? 110 : 90);
+  plan.film_bytes =
+      static_cast<std::uint64_t>(scene.image.width) * scene.image.height * Film::bytes_per_pixel();
+  return plan;
+}
+
+RenderPlan make_plan(const Scene& scene) {
+  std::vector<VolumeFacts> facts;
+  for (const VolumeSettings& volume : scene.volumes) {
+    VolumeFacts fact;
+    for (const GridSummary& grid : summarize_vdb(volume.file))
+      if (grid.name == volume.density)
+        fact = {grid.active_voxels == 0, grid.active_voxels};
+    facts.push_back(fact);
+  }
+  return plan_stages(scene, facts);
+}
+
+} // namespace vdbeam
