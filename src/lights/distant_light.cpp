@@ -1,0 +1,127 @@
+#include "lights/cone.h"
+#include "lights/entry_sampler.h"
+#include "lights/light_table.h"
+#include "lights/silhouette_mask.h"
+
+namespace vdbeam {
+namespace {
+
+// Up to this tangent of the angular radius photons are aimed through the mask of the light's axis;
+// a wider light sees the region from too many sides for one mask.
+constexpr double widest_mask = 0.1;
+
+/// The sun: parallel light of a given irradiance.
+class ParallelLight final : public Light {
+public:
+  ParallelLight(const Vec3d& direction, const Rgb& irradiance, const OccupiedRegion& region)
+      : direction_(direction), irradiance_(irradiance), mask_(direction_, 0, region) {}
+
+  IncidentSample sample_incident(const Vec3f&, float, float) const override {
+    return {-direction_, infinity, irradiance_, 0};
+  }
+  float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
+  Rgb escaped_radiance(const Vec3f&) const override { return {}; }
+  EmittedPhoton emit(Rng& rng) const override {
+    if (mask_.area() <= 0)
+      return {{{}, direction_}, {}};
+    const std::uint32_t pixel = rng.bits();
+    const float u = rng.uniform(), v = rng.uniform();
+    const SilhouetteMask::Point start = mask_.sample(pixel, u, v);
+    return {{start.position + direction_ * start.depth, direction_}, irradiance_ * mask_.area()};
+  }
+  Rgb power() const override { return irradiance_ * mask_.area(); }
+  bool is_delta() const override { return true; }
+  LightType type() const override { return LightType::distant; }
+
+private:
+  Vec3f direction_;
+  Rgb irradiance_;
+  SilhouetteMask mask_;
+};
+
+/// The sun as a disc of constant radiance L: a plane that faces it receives E = pi L sin^2(radius).
+class DiscLight final : public Light {
+public:
+  DiscLight(const Vec3d& direction, const Rgb& irradiance, double radius_degrees,
+            const OccupiedRegion& region)
+      : axis_(direction), cone_{direction, one_minus_cos_degrees(radius_degrees)},
+        mask_(axis_, static_cast<float>(spread()), masked() ? region : OccupiedRegion{}),
+        boxes_(region.boxes) {
+    const double solid_angle = cone_.solid_angle();
+    // E / (pi sin^2) * solid angle, without the small numbers.
+    total_ = Rgb(Vec3d(irradiance) * (2 / (2 - cone_.one_minus_cos)));
+    pdf_ = static_cast<float>(1 / solid_angle);
+    radiance_ = Rgb(Vec3d(total_) / solid_angle);
+    for (int i = 0; i < 3; ++i)
+      radiance_[i] = std::min(radiance_[i], std::numeric_limits<float>::max());
+  }
+
+  IncidentSample sample_incident(const Vec3f&, float u, float v) const override {
+    return {Vec3f(-cone_.sample(u, v)), infinity, total_, pdf_};
+  }
+  float incident_pdf(const Vec3f&, const Vec3f& wi) const override { return shows(wi) ? pdf_ : 0; }
+  Rgb escaped_radiance(const Vec3f& direction) const override {
+    return shows(direction) ? radiance_ : Rgb{};
+  }
+  EmittedPhoton emit(Rng& rng) const override {
+    return masked() ? emit_through_mask(rng) : emit_to_boxes(rng);
+  }
+  Rgb power() const override {
+    return total_ * (masked() ? mask_.area() : boxes_.projected_area(axis_));
+  }
+  bool is_delta() const override { return false; }
+  LightType type() const override { return LightType::distant; }
+
+private:
+  double spread() const {
+    const double cosine = 1 - cone_.one_minus_cos;
+    return std::sqrt(cone_.one_minus_cos * (2 - cone_.one_minus_cos)) / std::max(cosine, 1e-9);
+  }
+  bool masked() const { return spread() <= widest_mask; }
+  // The chord between unit vectors: |a - b|^2 = 2 (1 - cos), exact for narrow discs.
+  bool shows(const Vec3f& direction) const {
+    const Vec3d chord = Vec3d(direction) + cone_.axis;
+    return dot(chord, chord) <= 2 * cone_.one_minus_cos;
+  }
+  EmittedPhoton emit_through_mask(Rng& rng) const {
+    if (mask_.area() <= 0)
+      return {{{}, axis_}, {}};
+    const std::uint32_t pixel = rng.bits();
+    const float u = rng.uniform(), v = rng.uniform();
+    const SilhouetteMask::Point start = mask_.sample(pixel, u, v);
+    const float u_direction = rng.uniform(), v_direction = rng.uniform();
+    const Vec3f direction(cone_.sample(u_direction, v_direction));
+    const float cosine = dot(direction, axis_); // the mask's plane is seen at this angle
+    return {{start.position + direction * (start.depth / cosine), direction},
+            total_ * (mask_.area() * cosine)};
+  }
+  EmittedPhoton emit_to_boxes(Rng& rng) const {
+    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    const float u_direction = rng.uniform(), v_direction = rng.uniform();
+    const Vec3f direction(cone_.sample(u_direction, v_direction));
+    const EntrySampler::Entry entry = boxes_.sample_line(direction, u_face, u, v);
+    return {{entry.point, direction}, total_ * entry.weight};
+  }
+
+  Vec3f axis_;
+  Cone cone_; ///< of the directions of travel
+  SilhouetteMask mask_;
+  EntrySampler boxes_;
+  Rgb total_; ///< radiance times solid angle
+  Rgb radiance_;
+  float pdf_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<Light> make_distant_light(const LightSettings& settings,
+                                          const LightContext& context) {
+  const Vec3d direction = unit_direction(settings.direction, "light.direction");
+  if (settings.angular_radius <= 0)
+    return std::make_unique<ParallelLight>(direction, settings.irradiance, context.region);
+  // Narrower discs than this have no width in single precision; a hemisphere is the widest.
+  const double radius = std::clamp(settings.angular_radius, 1e-5, 90.0);
+  return std::make_unique<DiscLight>(direction, settings.irradiance, radius, context.region);
+}
+
+} // namespace vdbeam

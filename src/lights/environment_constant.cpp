@@ -1,0 +1,47 @@
+#include "lights/entry_sampler.h"
+#include "lights/environment_image.h"
+#include "lights/light_table.h"
+#include "math/sampling.h"
+#include "vdbeam/image_file.h"
+
+namespace vdbeam {
+namespace {
+
+/// The same radiance from everywhere.
+class ConstantEnvironment final : public Light {
+public:
+  ConstantEnvironment(const Rgb& radiance, const OccupiedRegion& region)
+      : radiance_(radiance), boxes_(region.boxes) {}
+
+  IncidentSample sample_incident(const Vec3f&, float u, float v) const override {
+    return {sample_sphere(u, v), infinity, radiance_ * (4 * pi), density};
+  }
+  float incident_pdf(const Vec3f&, const Vec3f&) const override { return density; }
+  Rgb escaped_radiance(const Vec3f&) const override { return radiance_; }
+  EmittedPhoton emit(Rng& rng) const override {
+    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    const float u_direction = rng.uniform(), v_direction = rng.uniform();
+    const EntrySampler::Entry entry = boxes_.sample_surface(u_face, u, v, u_direction, v_direction);
+    return {{entry.point, entry.direction}, radiance_ * entry.weight};
+  }
+  Rgb power() const override { return radiance_ * (pi * boxes_.surface_area()); }
+  bool is_delta() const override { return false; }
+  LightType type() const override { return LightType::environment; }
+
+private:
+  static constexpr float density = 1 / (4 * pi);
+
+  Rgb radiance_;
+  EntrySampler boxes_;
+};
+
+} // namespace
+
+std::unique_ptr<Light> make_environment_light(const LightSettings& settings,
+                                              const LightContext& context) {
+  if (settings.image.empty())
+    return std::make_unique<ConstantEnvironment>(settings.radiance, context.region);
+  return make_environment_image(read_image(settings.image), settings.image, settings, context);
+}
+
+} // namespace vdbeam

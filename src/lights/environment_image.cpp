@@ -1,0 +1,190 @@
+#include "lights/environment_image.h"
+
+#include "lights/entry_sampler.h"
+#include "lights/sphere_table.h"
+#include "math/affine.h"
+#include "vdbeam/error.h"
+
+#include <fmt/core.h>
+
+#include <numbers>
+
+namespace vdbeam {
+namespace {
+
+double luminance(const Rgb& c) {
+  return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) +
+         0.0722 * static_cast<double>(c.z);
+}
+
+// Radiance as it can be used: a sun that overflowed its half floats is as bright as they go,
+// anything else that is no radiance is none.
+float usable(float value) {
+  constexpr float largest_half = 65504;
+  if (value == infinity)
+    return largest_half;
+  return value > 0 ? value : 0;
+}
+
+/// Radiance over the sphere, in the image's own frame (z up, x where the turn is 0).
+class RadianceMap {
+public:
+  RadianceMap(const Image& image, const std::string& name, const Rgb& factor)
+      : width_(image.width), height_(image.height) {
+    const ImageChannel* grey = image.find("Y");
+    const ImageChannel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
+    const std::size_t count = static_cast<std::size_t>(std::max(0, width_)) * std::max(0, height_);
+    for (const ImageChannel*& channel : channels) {
+      if (!channel)
+        channel = grey;
+      if (!channel || count == 0 || channel->data.size() != count)
+        throw InputError(
+            fmt::format("light.image {} must hold the channels R, G, B or Y; it lacks some", name));
+    }
+    pixels_.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+      for (int c = 0; c < 3; ++c)
+        pixels_[i][c] =
+            std::min(usable(channels[c]->data[i]) * factor[c], std::numeric_limits<float>::max());
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Bilinear; the turn wraps around, the poles' rows extend to the poles.
+  Rgb lookup(double theta_share, double turn) const {
+    const double x = turn * width_ - 0.5, y = theta_share * height_ - 0.5;
+    const double x0 = std::floor(x), y0 = std::floor(y);
+    const float fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
+    const int i = static_cast<int>(x0), j = static_cast<int>(y0);
+    const Rgb top = pixel(i, j) * (1 - fx) + pixel(i + 1, j) * fx;
+    const Rgb bottom = pixel(i, j + 1) * (1 - fx) + pixel(i + 1, j + 1) * fx;
+    return top * (1 - fy) + bottom * fy;
+  }
+
+  /// Luminance integrated over each pixel: the bilinear interpolant's mean has weights 1/8, 6/8,
+  /// 1/8 each way, so it is positive wherever the interpolant is not 0 throughout.
+  std::vector<double> pixel_integrals() const {
+    std::vector<double> along(pixels_.size()), result(pixels_.size());
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x)
+        along[offset(x, y)] = luminance(pixel(x - 1, y)) / 8 + luminance(pixel(x, y)) * 0.75 +
+                              luminance(pixel(x + 1, y)) / 8;
+    for (int y = 0; y < height_; ++y) {
+      const double band =
+          std::cos(std::numbers::pi * y / height_) - std::cos(std::numbers::pi * (y + 1) / height_);
+      for (int x = 0; x < width_; ++x)
+        result[offset(x, y)] =
+            band * (along[offset(x, std::max(0, y - 1))] / 8 + along[offset(x, y)] * 0.75 +
+                    along[offset(x, std::min(height_ - 1, y + 1))] / 8);
+    }
+    return result;
+  }
+
+private:
+  std::size_t offset(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
+  const Rgb& pixel(int x, int y) const {
+    const int wrapped = x < 0 ? x + width_ : (x >= width_ ? x - width_ : x);
+    return pixels_[offset(wrapped, std::clamp(y, 0, height_ - 1))];
+  }
+
+  int width_, height_;
+  std::vector<Rgb> pixels_;
+};
+
+// Rows: the directions, in render space, that are x, y, z of the image's own frame.
+std::array<Vec3d, 3> image_axes(const Vec3d& up_setting, double rotation_degrees) {
+  const Vec3d up = unit_direction(up_setting, "camera.up");
+  // The smallest rotation that takes +y to `up`, applied to +x and +z (Rodrigues, axis y x up).
+  const Vec3d y{0, 1, 0};
+  const auto turned = [&](const Vec3d& a) {
+    if (up.y < -1 + 1e-9) // opposite: half a turn about x
+      return Vec3d{a.x, -a.y, -a.z};
+    const Vec3d axis = cross(y, up);
+    return a * up.y + cross(axis, a) + axis * (dot(axis, a) / (1 + up.y));
+  };
+  const double angle = rotation_degrees * (std::numbers::pi / 180);
+  const auto spun = [&](const Vec3d& a) { // a is perpendicular to up
+    return a * std::cos(angle) + cross(up, a) * std::sin(angle);
+  };
+  // The turn runs from left to right: it is 0 at -z, 1/4 at +x, 1/2 at +z, 3/4 at -x.
+  return {spun(turned({0, 0, -1})), spun(turned({1, 0, 0})), up};
+}
+
+class EnvironmentImage final : public Light {
+public:
+  EnvironmentImage(const Image& image, const std::string& name, const LightSettings& settings,
+                   const LightContext& context)
+      : map_(image, name, settings.radiance),
+        table_(map_.pixel_integrals(), map_.width(), map_.height()),
+        axes_(image_axes(context.up, settings.rotation)), boxes_(context.region.boxes) {
+    power_ = estimate_power(*this);
+  }
+
+  IncidentSample sample_incident(const Vec3f&, float u, float v) const override {
+    const Drawn drawn = draw(u, v);
+    return {drawn.direction, infinity, drawn.value, drawn.pdf};
+  }
+  float incident_pdf(const Vec3f&, const Vec3f& wi) const override {
+    const Place place = locate(wi);
+    return table_.pdf(place.theta_share, place.turn);
+  }
+  Rgb escaped_radiance(const Vec3f& direction) const override {
+    const Place place = locate(direction);
+    return map_.lookup(place.theta_share, place.turn);
+  }
+  EmittedPhoton emit(Rng& rng) const override {
+    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    const float u_direction = rng.uniform(), v_direction = rng.uniform();
+    const Drawn drawn = draw(u_direction, v_direction);
+    const EntrySampler::Entry entry = boxes_.sample_line(-drawn.direction, u_face, u, v);
+    return {{entry.point, -drawn.direction}, drawn.value * entry.weight};
+  }
+  Rgb power() const override { return power_; }
+  bool is_delta() const override { return false; }
+  LightType type() const override { return LightType::environment; }
+
+private:
+  struct Place {
+    double theta_share, turn;
+  };
+  struct Drawn {
+    Vec3f direction; ///< towards the light
+    Rgb value;       ///< radiance / pdf
+    float pdf;
+  };
+
+  Place locate(const Vec3f& direction) const {
+    const Vec3d d(direction);
+    const double x = dot(axes_[0], d), y = dot(axes_[1], d), z = dot(axes_[2], d);
+    const double turn = std::atan2(y, x) / (2 * std::numbers::pi);
+    return {std::atan2(std::sqrt(x * x + y * y), z) / std::numbers::pi, turn < 0 ? turn + 1 : turn};
+  }
+  Drawn draw(float u, float v) const {
+    const SphereTable::Sample s = table_.sample(u, v);
+    if (!(s.pdf > 0))
+      return {Vec3f(axes_[2]), {}, 0};
+    const double sin_theta = std::sqrt(std::max(0.0, 1 - s.cos_theta * s.cos_theta));
+    const double phi = 2 * std::numbers::pi * s.turn;
+    const Vec3d d = axes_[0] * (sin_theta * std::cos(phi)) +
+                    axes_[1] * (sin_theta * std::sin(phi)) + axes_[2] * s.cos_theta;
+    const double theta_share = std::atan2(sin_theta, s.cos_theta) / std::numbers::pi;
+    return {Vec3f(d), map_.lookup(theta_share, s.turn) / s.pdf, s.pdf};
+  }
+
+  RadianceMap map_;
+  SphereTable table_;
+  std::array<Vec3d, 3> axes_;
+  EntrySampler boxes_;
+  Rgb power_;
+};
+
+} // namespace
+
+std::unique_ptr<Light> make_environment_image(const Image& image, const std::string& name,
+                                              const LightSettings& settings,
+                                              const LightContext& context) {
+  return std::make_unique<EnvironmentImage>(image, name, settings, context);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "lights/light_table.h"
+#include "vdbeam/image.h"
+
+namespace vdbeam {
+
+/// A light-probe image all around, in latitude and longitude as OpenEXR lays it out (ImfEnvmap.h):
+/// the top row is `up`; for up = +y the middle column is +z and a quarter from the left is +x. For
+/// any other `up` the whole is turned by the smallest rotation that takes +y there. `rotation` then
+/// turns it about `up`, counter-clockwise seen from above. Radiance is interpolated bilinearly.
+///
+/// `name` is for messages. Throws InputError where the image has neither R, G, B nor Y.
+std::unique_ptr<Light> make_environment_image(const Image& image, const std::string& name,
+                                              const LightSettings& settings,
+                                              const LightContext& context);
+
+} // namespace vdbeam

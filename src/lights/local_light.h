@@ -1,0 +1,40 @@
+#pragma once
+
+#include "lights/light.h"
+#include "lights/light_context.h"
+#include "lights/local_aim.h"
+
+namespace vdbeam {
+
+/// What point and spot lights share: a place, an intensity, and a factor that depends on direction.
+/// Positions stay in double precision, for a light may be far away.
+class LocalLight : public Light {
+public:
+  IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
+  float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
+  Rgb escaped_radiance(const Vec3f&) const override { return {}; }
+  EmittedPhoton emit(Rng& rng) const override;
+  bool is_delta() const override { return true; }
+
+protected:
+  /// Photons leave within `emission_cone`, which must hold every direction in which the light both
+  /// shines and meets the region.
+  LocalLight(const LightSettings& settings, const LightContext& context, const Cone& emission_cone);
+
+  /// Share of the full intensity that goes along `direction`, in [0, 1].
+  virtual double share(const Vec3d& direction) const = 0;
+
+  static Vec3d render_position(const LightSettings& settings, const LightContext& context) {
+    return context.space.point(settings.position);
+  }
+  const Vec3d& intensity() const { return intensity_; } ///< render units
+  const Cone& emission_cone() const { return cone_; }
+
+private:
+  Vec3d position_;
+  Vec3d intensity_;
+  Cone cone_;
+  OccupiedRegion sphere_; ///< centre and radius alone
+};
+
+} // namespace vdbeam

@@ -1,0 +1,29 @@
+#include "lights/light_table.h"
+#include "lights/local_aim.h"
+#include "lights/local_light.h"
+
+namespace vdbeam {
+namespace {
+
+/// A point that shines alike in all directions.
+class PointLight final : public LocalLight {
+public:
+  PointLight(const LightSettings& settings, const LightContext& context)
+      : LocalLight(settings, context,
+                   cone_towards(render_position(settings, context), context.region)) {}
+
+  Rgb power() const override { return Rgb(intensity() * emission_cone().solid_angle()); }
+  LightType type() const override { return LightType::point; }
+
+private:
+  double share(const Vec3d&) const override { return 1; }
+};
+
+} // namespace
+
+std::unique_ptr<Light> make_point_light(const LightSettings& settings,
+                                        const LightContext& context) {
+  return std::make_unique<PointLight>(settings, context);
+}
+
+} // namespace vdbeam
