@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""tools/error_vs_time.py with a stand-in for the renderer whose error is known: C / seconds."""
+
+import csv
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TOOL = ROOT / "tools/error_vs_time.py"
+
+# Accepts the options that DESIGN's `render` has, and refuses others.
+FAKE_RENDERER = """#!/usr/bin/python3
+import argparse, json, sys
+parser = argparse.ArgumentParser()
+parser.add_argument("command", choices=["render"])
+parser.add_argument("scene")
+for name in ("-o", "--report", "--estimator", "--time", "--reference"):
+    parser.add_argument(name)
+for name in ("--seed", "--passes", "--threads"):
+    parser.add_argument(name, type=int)
+options = parser.parse_args()
+with open(__file__ + ".log", "a") as log:
+    print(options.scene, options.estimator, options.seed, options.reference, file=log)
+if "broken" in options.scene:
+    print("broken.toml:3: medium.g must lie in (-1, 1), got 1.2", file=sys.stderr)
+    sys.exit(2)
+budget = float(options.time.rstrip("s"))
+product = {"beam": 0.002, "march": 0.05, "path": 0.03}[options.estimator]
+product *= 1 + 0.1 * (options.seed % 3 - 1)
+passes = []
+for i in range(1, 41):
+    seconds = budget * i / 40
+    entry = {"pass": i, "seconds": seconds, "photons": 1000,
+             "error_estimate": None if i == 1 else product / seconds}
+    if options.reference:
+        entry.update(rmse=0.1, mrse=product / seconds, relmse=0.1, bias=-0.001)
+    passes.append(entry)
+open(options.o, "w").close()
+json.dump({"passes": passes}, open(options.report, "w"))
+"""
+
+
+class ErrorVsTime(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.output = self.folder / "out"
+        self.binary = self.folder / "vdbeam"
+        self.binary.write_text(FAKE_RENDERER, encoding="utf-8")
+        self.binary.chmod(0o755)
+        for name in ("cloud", "smoke", "broken"):
+            (self.folder / f"{name}.toml").write_text(f"# {name}\n", encoding="utf-8")
+
+    def run_tool(self, *arguments, scenes=("cloud", "smoke"), plots=False):
+        command = [TOOL, "--binary", self.binary, "--output", self.output, "--time", "8",
+                   "--scenes", *(self.folder / f"{name}.toml" for name in scenes), *arguments]
+        command += [] if plots else ["--no-plots"]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def calls(self):
+        log = Path(f"{self.binary}.log").read_text(encoding="utf-8")
+        return [line.split()[1:] for line in log.splitlines()]
+
+    def table_row(self, scene, estimator):
+        for line in (self.output / "table.md").read_text(encoding="utf-8").splitlines():
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            if cells[:2] == [scene, estimator]:
+                return cells
+        self.fail(f"no row of {scene} {estimator}")
+
+    def test_writes_curves_plots_and_table(self):
+        result = self.run_tool(plots=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(self.output / "curves.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2 * 3 * 3 * 40)
+        self.assertEqual(rows[0]["scene"], "cloud")
+        self.assertAlmostEqual(float(rows[1]["seconds"]) * float(rows[1]["mrse"]), 0.002)
+        for scene in ("cloud", "smoke"):
+            self.assertEqual((self.output / f"{scene}.png").read_bytes()[:4], b"\x89PNG")
+            self.assertIn("<svg", (self.output / f"{scene}.svg").read_text(encoding="utf-8"))
+        beam = self.table_row("cloud", "beam")
+        self.assertEqual(beam[2:4], ["3", "40"])
+        self.assertEqual(beam[6], "-0.10 %")
+        # Seeds 1, 2, 3 have factors 1, 1.1, 0.9: the geometric mean of the products is 0.00199.
+        self.assertEqual(beam[7:], ["0.002", "0.002", "0.002"])
+        # 0.03 / 8 s: an error of 0.001 is never reached.
+        self.assertEqual(self.table_row("smoke", "path")[7:], ["0.03", "-", "0.03"])
+
+    def test_estimators_take_turns_and_references_are_cached(self):
+        self.assertEqual(self.run_tool("--seeds", "4,6-7", scenes=("cloud",)).returncode, 0)
+        calls = self.calls()
+        self.assertEqual(calls[0], ["path", "999983", "None"])
+        self.assertEqual([call[:2] for call in calls[1:]],
+                         [[e, s] for s in "467" for e in ("beam", "march", "path")])
+        self.assertTrue(all(call[2].endswith(".exr") for call in calls[1:]))
+        self.assertEqual(self.run_tool("--seeds", "1", scenes=("cloud",)).returncode, 0)
+        self.assertEqual(len([c for c in self.calls() if c[1] == "999983"]), 1)
+        (self.folder / "cloud.toml").write_text("# changed\n", encoding="utf-8")
+        self.assertEqual(self.run_tool("--seeds", "1", scenes=("cloud",)).returncode, 0)
+        self.assertEqual(len([c for c in self.calls() if c[1] == "999983"]), 2)
+
+    def test_given_reference_and_options_are_passed_on(self):
+        result = self.run_tool("--reference", "cloud=/r/true.exr", "--estimators", "beam",
+                               "--option=--threads=2", scenes=("cloud",))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.calls(), [["beam", str(s), "/r/true.exr"] for s in (1, 2, 3)])
+
+    def test_plots_again_without_rendering(self):
+        self.assertNotEqual(self.run_tool("--plot-only").returncode, 0)
+        self.assertEqual(self.run_tool("--seeds", "1").returncode, 0)
+        count = len(self.calls())
+        (self.output / "curves.csv").unlink()
+        self.assertEqual(self.run_tool("--plot-only").returncode, 0)
+        self.assertTrue((self.output / "curves.csv").exists())
+        self.assertFalse((self.output / "cloud.png").exists())
+        self.assertEqual(len(self.calls()), count)
+
+    def test_failures_are_one_clear_line(self):
+        result = self.run_tool(scenes=("broken",))
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn("medium.g must lie in (-1, 1)", result.stderr)
+        for arguments in (["--seeds", "x"], ["--time", "-1"], ["--reference", "sky=a.exr"]):
+            self.assertEqual(self.run_tool(*arguments).returncode, 2, arguments)
+
+    def test_reports_without_errors_are_refused(self):
+        self.assertEqual(self.run_tool("--seeds", "1", scenes=("cloud",)).returncode, 0)
+        report = self.output / "runs/cloud.beam.1.json"
+        for text, reason in (("{", "not a readable report"), ("{}", "no passes"),
+                             ('{"passes": [{"pass": 1, "seconds": 1}]}', "no mrse")):
+            report.write_text(text, encoding="utf-8")
+            result = self.run_tool("--plot-only", "--seeds", "1", scenes=("cloud",))
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(reason, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

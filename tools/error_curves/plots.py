@@ -1,0 +1,43 @@
+"""Log-log plots of error against seconds."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .report import group_runs, join_seeds
+
+# Told apart also without colour: each estimator has its own line style.
+STYLES = {"beam": ("#0072b2", "-"), "march": ("#d55e00", "--"), "path": ("#009e73", "-.")}
+OTHER = ("#555555", ":")
+
+
+def plot_scene(runs, scene, path_stem, noise=None):
+    """Writes PATH_STEM.png and PATH_STEM.svg: a line per estimator (the geometric mean over the
+    seeds), a band from the least to the largest, and the reference's own noise."""
+    plt.rcParams["svg.hashsalt"] = "vdbeam"  # the same file for the same data
+    figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
+    for name, estimator, group in group_runs(runs):
+        curve = join_seeds(group) if name == scene else None
+        if curve is None:
+            continue
+        colour, style = STYLES.get(estimator, OTHER)
+        marker = "o" if len(curve.seconds) == 1 else None
+        axes.plot(curve.seconds, curve.mrse, style, color=colour, marker=marker, label=estimator)
+        if len(group) > 1:
+            axes.fill_between(curve.seconds, curve.low, curve.high, color=colour, alpha=0.2, lw=0)
+    if noise is not None and np.isfinite(noise) and noise > 0:
+        axes.axhline(noise, color="#999999", lw=0.8, ls=":", label="noise of the reference")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("seconds of rendering")
+    axes.set_ylabel("MRSE")
+    axes.set_title(scene)
+    axes.grid(which="major", alpha=0.5)
+    axes.grid(which="minor", alpha=0.15)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
+    figure.savefig(f"{path_stem}.png", dpi=144)
+    figure.savefig(f"{path_stem}.svg", metadata={"Date": None})
+    plt.close(figure)

@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+"""Error against run time of vdbeam's estimators on the sample scenes.
+
+Renders each scene with each estimator for the same time, with several seeds, against a reference,
+and writes to the output folder:
+  curves.csv             every pass of every run
+  SCENE.png, SCENE.svg   MRSE against seconds, a line per estimator, a band over the seeds
+  table.md               MRSE x seconds at MRSE 0.01, at 0.001 and at the end
+  runs/                  images and reports; references/: references rendered by `path`
+
+Examples:
+  tools/error_vs_time.py
+  tools/error_vs_time.py --scenes data/smoke.toml --time 20 --seeds 1-5 --estimators beam,path
+  tools/error_vs_time.py --reference cloud=cloud_4096spp.exr --option=--threads=2
+  tools/error_vs_time.py --plot-only            # draws again from the reports of the last run
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from error_curves import report as reports
+from error_curves import runner
+
+ROOT = Path(__file__).resolve().parent.parent
+ESTIMATORS = ("beam", "march", "path")
+
+
+def parse_seeds(text):
+    """"1-3,7" -> [1, 2, 3, 7]."""
+    seeds = []
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        seeds += range(int(first), int(last or first) + 1)
+    if not seeds or min(seeds) < 0 or runner.REFERENCE_SEED in seeds:
+        raise ValueError("no usable seeds")
+    return seeds
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", nargs="+", type=Path, metavar="SCENE",
+                        default=[ROOT / "data/cloud.toml", ROOT / "data/smoke.toml"])
+    parser.add_argument("--estimators", default=",".join(ESTIMATORS),
+                        type=lambda text: text.split(","), help="default: %(default)s")
+    parser.add_argument("--time", type=float, default=10, metavar="SECONDS",
+                        help="of rendering per run (default: %(default)s)")
+    parser.add_argument("--seeds", type=parse_seeds, default="1-3",
+                        help="such as 1-3,7 (default: %(default)s)")
+    parser.add_argument("--reference", action="append", default=[], metavar="SCENE=FILE.exr",
+                        help="true image of a scene, by its file's stem; may be repeated")
+    parser.add_argument("--reference-time", type=float, default=300, metavar="SECONDS",
+                        help="for a reference that is not given (default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=ROOT / "out/error_vs_time", metavar="FOLDER")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/release/vdbeam")
+    parser.add_argument("--option", action="append", default=[], metavar="=--OPTION",
+                        help="passed on to `vdbeam render`, such as --option=--threads=2")
+    parser.add_argument("--plot-only", action="store_true",
+                        help="render nothing; use the reports that are there")
+    parser.add_argument("--no-plots", action="store_true", help="write the tables alone")
+    options = parser.parse_args(arguments)
+    stems = [scene.stem for scene in options.scenes]
+    if len(set(stems)) < len(stems):
+        parser.error("two scenes have the same file name; the results are named by it")
+    options.references = dict(pair.partition("=")[::2] for pair in options.reference)
+    unknown = set(options.references) - set(stems)
+    if unknown:
+        parser.error(f"--reference {sorted(unknown)[0]}: no such scene; there are {', '.join(stems)}")
+    if options.time <= 0 or options.reference_time <= 0:
+        parser.error("times must be positive")
+    return options
+
+
+def find_references(options):
+    """The reference of every scene, and the noise of those rendered here."""
+    images, noise = {}, {}
+    for scene in options.scenes:
+        if scene.stem in options.references:
+            images[scene] = Path(options.references[scene.stem])
+        else:
+            images[scene], report = runner.cached_reference(
+                options.binary, scene, options.output / "references", options.reference_time,
+                options.option)
+            noise[scene.stem] = runner.reference_noise(report)
+    return images, noise
+
+
+def existing_runs(options):
+    runs = []
+    for scene in options.scenes:
+        for estimator in options.estimators:
+            for seed in options.seeds:
+                path = options.output / "runs" / f"{scene.stem}.{estimator}.{seed}.json"
+                if path.exists():
+                    runs.append(reports.read_report(path, scene.stem, estimator, seed))
+    if not runs:
+        raise reports.ReportError(f"{options.output / 'runs'}: no reports of these scenes, "
+                                  "estimators and seeds; run without --plot-only first")
+    return runs
+
+
+def draw(runs, folder, noise):
+    # Imported here: it takes a second, and a wrong option should not.
+    from error_curves import plots
+
+    for scene in dict.fromkeys(run.scene for run in runs):
+        plots.plot_scene(runs, scene, folder / scene, noise.get(scene))
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    try:
+        if options.plot_only:
+            runs, noise = existing_runs(options), {}
+        else:
+            images, noise = find_references(options)
+            runs = runner.run_all(options.binary, options.scenes, images, options.estimators,
+                                  options.seeds, options.time, options.output / "runs",
+                                  options.option)
+    except (runner.RenderFailed, reports.ReportError, OSError) as error:
+        print(f"error_vs_time.py: {error}", file=sys.stderr)
+        return 1
+    reports.write_csv(runs, options.output / "curves.csv")
+    if not options.no_plots:
+        draw(runs, options.output, noise)
+    text = reports.table(runs)
+    (options.output / "table.md").write_text(text, encoding="utf-8")
+    print(text, end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
