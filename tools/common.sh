@@ -17,7 +17,8 @@ build() {
   shift
   # A compiler process that reads OpenVDB's headers needs up to 2 GB.
   jobs=$(nproc)
-  memory_gb=$(awk '/^MemAvailable:/ {print int($2 / 1048576)}' /proc/meminfo)
+  memory_gb=$(awk '/^MemAvailable:/ {print int($2 / 1048576)}' /proc/meminfo 2>/dev/null || true)
+  memory_gb=${memory_gb:-64}
   if ((jobs > memory_gb / 2)); then
     jobs=$((memory_gb / 2 > 1 ? memory_gb / 2 : 1))
   fi
