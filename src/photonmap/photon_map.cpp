@@ -2,6 +2,7 @@
 
 #include "math/kernels.h"
 #include "photonmap/kernel_radii.h"
+#include "photonmap/map_queries.h"
 #include "photonmap/photon_blocks.h"
 #include "photonmap/photon_order.h"
 
@@ -67,6 +68,8 @@ struct PhotonMap::Data {
   MapTimes times;
   std::size_t dropped = 0;
   float mean_radius = 0;
+
+  MapView view() const { return {blocks, tree, shape, mean_radius}; }
 };
 
 PhotonMap::PhotonMap() : data_(std::make_unique<Data>()) {}
@@ -124,44 +127,7 @@ float PhotonMap::mean_radius() const {
 }
 
 QueryCounts PhotonMap::query(BeamTile& tile) const {
-  QueryCounts counts;
-  const std::size_t channels =
-      static_cast<std::size_t>(std::max(this->channels(), tile.weight_channels));
-  if (tile.radiance.size() < channels * BeamTile::ray_count)
-    tile.radiance.resize(channels * BeamTile::ray_count, 0.0f);
-  const Vec3d origin =
-      Vec3d(tile.reference) - Vec3d(tile.axis_w) * static_cast<double>(tile.camera_distance);
-  std::vector<float> weights;
-  for (int r = 0; r < BeamTile::ray_count; ++r) {
-    const BeamTile::Profile& profile = tile.profiles[r / BeamTile::rays_per_subtile];
-    if (profile.knots < 2)
-      continue;
-    RayProfile ray;
-    ray.ray.direction =
-        tile.axis_u * tile.du[r] + tile.axis_v * tile.dv[r] + tile.axis_w * tile.dw[r];
-    // From the point abreast of the reference, so that a far camera costs no precision.
-    const float shift = tile.camera_distance * tile.dw[r];
-    ray.ray.origin = Vec3f(origin + Vec3d(ray.ray.direction) * static_cast<double>(shift));
-    ray.t_begin = profile.t_begin - shift;
-    ray.step = profile.step;
-    ray.knots = profile.knots;
-    ray.weight_channels = tile.weight_channels;
-    ray.phases = tile.phases;
-    const std::size_t rows = tile.phases->size() * tile.weight_channels * profile.knots;
-    weights.resize(rows);
-    for (std::size_t k = 0; k < rows; ++k)
-      weights[k] = tile.weights[profile.offset + k * BeamTile::rays_per_subtile +
-                                r % BeamTile::rays_per_subtile];
-    ray.weights = weights.data();
-    Rgb radiance(0);
-    const QueryCounts c = query_ray(ray, radiance);
-    counts.contributions += c.contributions;
-    counts.candidates += c.candidates;
-    counts.blocks += c.blocks;
-    for (std::size_t ch = 0; ch < channels; ++ch)
-      tile.radiance[ch * BeamTile::ray_count + r] += radiance[static_cast<int>(ch)];
-  }
-  return counts;
+  return query_tile(data_->view(), tile);
 }
 
 QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const {
@@ -226,10 +192,6 @@ QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
                               blocks.at(i, PhotonBlocks::power + c % blocks.channels());
   }
   return counts;
-}
-
-const char* simd_target() {
-  return "SCALAR";
 }
 
 } // namespace vdbeam

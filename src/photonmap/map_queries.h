@@ -1,0 +1,29 @@
+#pragma once
+
+#include "photonmap/photon_blocks.h"
+#include "photonmap/photon_map.h"
+
+#include <cstdint>
+
+namespace vdbeam {
+
+/// What the SIMD queries need of a map.
+struct MapView {
+  const PhotonBlocks& blocks;
+  const BlockTree& tree;
+  KernelShape shape;
+  float mean_radius;
+};
+
+/// PhotonMap::query, query_ray and query_point on the best SIMD target of this machine.
+QueryCounts query_tile(const MapView& map, BeamTile& tile);
+QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance);
+QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
+                        const std::vector<PhaseFunction>& phases, Rgb* in_scattered);
+
+/// SIMD targets that this binary has and this machine can run, best first, as Highway's bits; and a
+/// way to confine the queries to some of them (0: all), for tests.
+std::vector<std::int64_t> simd_targets();
+void confine_simd_targets(std::int64_t targets);
+
+} // namespace vdbeam

@@ -1,0 +1,237 @@
+#include "photonmap/tile_frame.h"
+
+#include "math/sampling.h"
+
+namespace vdbeam {
+namespace {
+
+constexpr int rays = BeamTile::rays_per_subtile;
+
+struct TangentBox {
+  double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
+  double cos0 = 1, cos1 = 0; ///< least and greatest dw
+  bool wide = false;         ///< some ray is nearly square to the axis: no bound in tangents
+};
+
+Vec3d ray_direction(const BeamTile& tile, int ray) {
+  return {tile.du[ray], tile.dv[ray], tile.dw[ray]};
+}
+
+/// Rays of a tile's unused part may be left without a direction.
+bool is_live(const Vec3d& d) {
+  const double square = dot(d, d);
+  return square > 0.25 && square < 4;
+}
+
+TangentBox bound_tangents(const BeamTile& tile, int subtile) {
+  TangentBox box;
+  for (int r = 0; r < rays; ++r) {
+    Vec3d d = ray_direction(tile, subtile * rays + r);
+    if (!is_live(d))
+      continue;
+    d = normalize(d);
+    if (d.z < 0.05) {
+      box.wide = true;
+      box.cos0 = -1;
+      box.cos1 = 1;
+      return box;
+    }
+    box.a0 = std::min(box.a0, d.x / d.z);
+    box.a1 = std::max(box.a1, d.x / d.z);
+    box.b0 = std::min(box.b0, d.y / d.z);
+    box.b1 = std::max(box.b1, d.y / d.z);
+    box.cos0 = std::min(box.cos0, d.z);
+    box.cos1 = std::max(box.cos1, d.z);
+  }
+  const double margin_a = 1e-4 * (box.a1 - box.a0) + 1e-6;
+  const double margin_b = 1e-4 * (box.b1 - box.b0) + 1e-6;
+  box.a0 -= margin_a;
+  box.a1 += margin_a;
+  box.b0 -= margin_b;
+  box.b1 += margin_b;
+  return box;
+}
+
+bool row_is_zero(const float* weights, std::size_t rows, int knots, int knot) {
+  for (std::size_t row = 0; row < rows; ++row)
+    for (int r = 0; r < rays; ++r)
+      if (weights[(row * knots + knot) * rays + r] != 0)
+        return false;
+  return true;
+}
+
+/// Narrows [first_knot, last_knot] to where some weight is not 0; false if none is.
+bool trim_knots(std::size_t rows, SubtileFrame& s) {
+  int first = 0, last = s.knots - 1;
+  while (first <= last && row_is_zero(s.weights, rows, s.knots, first))
+    ++first;
+  while (last > first && row_is_zero(s.weights, rows, s.knots, last))
+    --last;
+  s.first_knot = static_cast<float>(std::max(0, first - 1));
+  s.last_knot = static_cast<float>(std::min(s.knots - 1, last + 1));
+  return first < s.knots;
+}
+
+/// Fills axes and the rays' coordinates; returns the cone's tangent, negative without any ray.
+double fill_rays(const BeamTile& tile, int subtile, SubtileFrame& s) {
+  Vec3d mean;
+  for (int r = 0; r < rays; ++r) {
+    const Vec3d d = ray_direction(tile, subtile * rays + r);
+    if (is_live(d))
+      mean += normalize(d);
+  }
+  if (!(dot(mean, mean) > 1e-6))
+    return -1;
+  const Vec3d w = normalize(mean);
+  Vec3d u, v;
+  orthonormal_frame(w, u, v);
+  double spread = 0;
+  for (int r = 0; r < rays; ++r) {
+    Vec3d d = ray_direction(tile, subtile * rays + r);
+    const bool live = is_live(d);
+    d = live ? normalize(d) : w;
+    const double dw = std::max(dot(d, w), 1e-3);
+    const double a = dot(d, u) / dw, b = dot(d, v) / dw;
+    s.a[r] = static_cast<float>(a);
+    s.b[r] = static_cast<float>(b);
+    s.dw[r] = static_cast<float>(dw);
+    s.stretch[r] = static_cast<float>(1 / dw - 1);
+    s.scale[r] = live ? 1.0f : 0.0f;
+    spread = std::max(spread, std::sqrt(a * a + b * b));
+  }
+  const Vec3d axes[3] = {u, v, w};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d axis = Vec3d(tile.axis_u) * axes[i].x + Vec3d(tile.axis_v) * axes[i].y +
+                       Vec3d(tile.axis_w) * axes[i].z;
+    for (int j = 0; j < 3; ++j)
+      s.axes[i][j] = static_cast<float>(axis[j]);
+    s.offset[i] = static_cast<float>(axes[i].z * tile.camera_distance);
+  }
+  s.knot_offset = static_cast<float>(w.z * tile.camera_distance - tile.profiles[subtile].t_begin);
+  return spread;
+}
+
+/// Whether the phase functions are as good as linear over a cone of this tangent: the second-order
+/// term of (1 + g^2 - 2 g cos)^(-3/2), relative, is at most 15/8 g (spread / (1 - |g|))^2.
+PhaseMode phase_mode(const std::vector<PhaseFunction>& phases, double spread, bool has_directions) {
+  double error = 0;
+  bool isotropic = true;
+  for (const PhaseFunction& phase : phases)
+    for (int i = 0; i < phase.lobe_count(); ++i) {
+      const DraineLobe& lobe = phase.lobe(i);
+      const double g = std::abs(lobe.g), width = spread / std::max(1 - g, 1e-6);
+      isotropic = isotropic && lobe.g == 0 && lobe.alpha == 0;
+      error = std::max(error, 2 * g * width * width + std::abs(lobe.alpha) * spread * spread);
+    }
+  if (isotropic || !has_directions)
+    return PhaseMode::isotropic;
+  return error < 1e-3 && phases.size() == 1 ? PhaseMode::linear : PhaseMode::exact;
+}
+
+void make_subtile(const BeamTile& tile, int index, float mean_radius, float reach,
+                  bool has_directions, SubtileFrame& s) {
+  const BeamTile::Profile& profile = tile.profiles[index];
+  s.active = false;
+  if (profile.knots < 2 || !(profile.step > 0) || !tile.phases || tile.phases->empty())
+    return;
+  s.weights = tile.weights.data() + profile.offset;
+  s.knots = profile.knots;
+  if (!trim_knots(tile.phases->size() * static_cast<std::size_t>(tile.weight_channels), s))
+    return;
+  const double spread = fill_rays(tile, index, s);
+  if (spread < 0)
+    return;
+  s.active = true;
+  s.inverse_step = 1 / profile.step;
+  const double cosine = 1 / std::sqrt(1 + spread * spread);
+  s.cos_spread = static_cast<float>(cosine);
+  s.sin_spread = static_cast<float>(std::min(1.0, spread * cosine * (1 + 1e-5) + 1e-7));
+  // How far f differs between the rays: from the kernel's width, and from depth against distance.
+  const double farthest = tile.camera_distance + reach;
+  const double by_kernel = 2 * mean_radius * spread / profile.step;
+  const double by_depth = farthest * spread * spread / (2 * profile.step);
+  s.per_ray = by_kernel > 0.25 || by_depth > 0.0625 || spread > 0.02;
+  s.knot_margin = static_cast<float>((1 / cosine - 1) * farthest / profile.step + 1);
+  s.phase = phase_mode(*tile.phases, spread, has_directions);
+  if (s.per_ray && s.phase == PhaseMode::linear)
+    s.phase = PhaseMode::exact;
+  for (int r = 0; r < rays; ++r) {
+    // Distances in the plane across the cone's axis: the kernel's area shrinks by dw.
+    if (!s.per_ray)
+      s.scale[r] /= s.dw[r];
+    if (s.phase == PhaseMode::isotropic)
+      s.scale[r] /= 4 * pi;
+  }
+}
+
+void set_plane(float* plane, const TileFrame& frame, double cu, double cv, double cw,
+               double offset) {
+  for (int j = 0; j < 3; ++j)
+    plane[j] =
+        static_cast<float>(cu * frame.axes[0][j] + cv * frame.axes[1][j] + cw * frame.axes[2][j]);
+  plane[3] = static_cast<float>(offset + 2 * frame.margin);
+}
+
+void make_planes(const TangentBox& box, double w0, double w1, TileFrame& frame) {
+  const double distance = frame.camera_distance;
+  for (int i = 0; i < 4; ++i)
+    set_plane(frame.planes[i], frame, 0, 0, 0, 1);
+  if (!box.wide) {
+    set_plane(frame.planes[0], frame, 1, 0, -box.a0, -box.a0 * distance);
+    set_plane(frame.planes[1], frame, -1, 0, box.a1, box.a1 * distance);
+    set_plane(frame.planes[2], frame, 0, 1, -box.b0, -box.b0 * distance);
+    set_plane(frame.planes[3], frame, 0, -1, box.b1, box.b1 * distance);
+  }
+  set_plane(frame.planes[4], frame, 0, 0, 1, distance - w0);
+  set_plane(frame.planes[5], frame, 0, 0, -1, w1 - distance);
+}
+
+} // namespace
+
+void make_tile_frame(const BeamTile& tile, float mean_radius, float reach, bool has_directions,
+                     TileFrame& frame) {
+  const Vec3f axes[3] = {tile.axis_u, tile.axis_v, tile.axis_w};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      frame.axes[i][j] = axes[i][j];
+  for (int j = 0; j < 3; ++j)
+    frame.reference[j] = tile.reference[j];
+  frame.camera_distance = tile.camera_distance;
+  frame.margin = 1e-6f * reach;
+  TangentBox all;
+  double nearest = 1e30, farthest = -1e30;
+  for (int i = 0; i < BeamTile::subtile_count; ++i) {
+    SubtileFrame& s = frame.subtiles[i];
+    make_subtile(tile, i, mean_radius, reach, has_directions, s);
+    frame.a0[i] = frame.b0[i] = frame.w0[i] = 1e30f;
+    frame.a1[i] = frame.b1[i] = frame.w1[i] = -1e30f;
+    if (!s.active)
+      continue;
+    frame.active |= 1u << i;
+    const TangentBox box = bound_tangents(tile, i);
+    const BeamTile::Profile& profile = tile.profiles[i];
+    const double t0 = profile.t_begin + static_cast<double>(s.first_knot) * profile.step;
+    const double t1 = profile.t_begin + static_cast<double>(s.last_knot) * profile.step;
+    // A ray at t has depth t dw; rounded outwards.
+    const double w0 = std::min(t0 * box.cos0, t0 * box.cos1),
+                 w1 = std::max(t1 * box.cos0, t1 * box.cos1);
+    frame.w0[i] = static_cast<float>(w0 - 1e-6 * std::abs(w0) - frame.margin);
+    frame.w1[i] = static_cast<float>(w1 + 1e-6 * std::abs(w1) + frame.margin);
+    if (box.wide)
+      frame.wide |= 1u << i;
+    frame.a0[i] = static_cast<float>(box.a0);
+    frame.a1[i] = static_cast<float>(box.a1);
+    frame.b0[i] = static_cast<float>(box.b0);
+    frame.b1[i] = static_cast<float>(box.b1);
+    all.wide = all.wide || box.wide;
+    all.a0 = std::min(all.a0, box.a0);
+    all.a1 = std::max(all.a1, box.a1);
+    all.b0 = std::min(all.b0, box.b0);
+    all.b1 = std::max(all.b1, box.b1);
+    nearest = std::min(nearest, static_cast<double>(frame.w0[i]));
+    farthest = std::max(farthest, static_cast<double>(frame.w1[i]));
+  }
+  make_planes(all, nearest, farthest, frame);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,223 @@
+// The two inner loops of the tile query: 16 photons against a sub-tile's cone, and one photon
+// against the sub-tile's 16 rays. Included once per SIMD target.
+#if defined(VDBEAM_TILE_KERNELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VDBEAM_TILE_KERNELS_INL_H_
+#undef VDBEAM_TILE_KERNELS_INL_H_
+#else
+#define VDBEAM_TILE_KERNELS_INL_H_
+#endif
+
+#include "math/kernels.h"
+#include "photonmap/tile_frame.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vdbeam {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D16 = hn::CappedTag<float, 16>;
+using V16 = hn::Vec<D16>;
+using I16 = hn::RebindToSigned<D16>;
+
+/// The disc kernels as k(1 - s) = step * [s < 1] + (1 - s) (linear + square (1 - s)).
+struct KernelPolynomial {
+  float step = 0, linear = 0, square = 0;
+};
+
+inline KernelPolynomial disc_polynomial(KernelShape shape) {
+  switch (shape) {
+  case KernelShape::constant:
+    return {1 / pi, 0, 0};
+  case KernelShape::epanechnikov:
+    return {0, 2 / pi, 0};
+  case KernelShape::biweight:
+    return {0, 0, 3 / pi};
+  case KernelShape::fourth_order:
+    return {0, -6 / pi, 12 / pi};
+  }
+  return {};
+}
+
+/// Photons near a sub-tile's cone, in its frame; lengths u, v, w in units of the photon's radius.
+struct Candidates {
+  static constexpr std::size_t capacity = 256;
+  static constexpr std::size_t slots = capacity + 32;
+  std::size_t count = 0;
+  alignas(64) float u[slots], v[slots], w[slots];
+  alignas(64) float kernel[3][slots];   ///< step, linear, square; times power where grey
+  alignas(64) float fraction[slots];    ///< shared knots: of the interval; per ray: knot coordinate
+  alignas(64) std::int32_t knot[slots]; ///< shared knots: offset of the knot's row of weights
+  alignas(64) float depth[slots];       ///< per ray: w / step in length units
+  alignas(64) float reach[slots];       ///< per ray: radius / step
+  alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
+  alignas(64) float power[3][slots];
+};
+
+/// What is the same for all of a query.
+struct TileQuery {
+  const PhotonBlocks& blocks;
+  KernelPolynomial kernel;
+  const std::vector<PhaseFunction>& phases;
+  int weight_channels;
+  int power_channels;
+};
+
+template <class D>
+HWY_INLINE hn::Vec<D> rotate(D d, const float* axis, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z,
+                             hn::Vec<D> offset) {
+  return hn::MulAdd(hn::Set(d, axis[0]), x,
+                    hn::MulAdd(hn::Set(d, axis[1]), y, hn::MulAdd(hn::Set(d, axis[2]), z, offset)));
+}
+
+/// 1 + g^2 - 2 g cos, kept from rounding below its least value.
+template <class D>
+HWY_INLINE hn::Vec<D> lobe_distance(D d, float g, hn::Vec<D> cosine) {
+  const float least = 1 - std::abs(g);
+  return hn::Max(hn::NegMulAdd(hn::Set(d, 2 * g), cosine, hn::Set(d, 1 + g * g)),
+                 hn::Set(d, least * least));
+}
+
+/// Value of a lobe blend and its derivative by the cosine.
+template <class D>
+HWY_INLINE void phase_line(D d, const PhaseFunction& phase, hn::Vec<D> cosine, hn::Vec<D>& value,
+                           hn::Vec<D>& slope) {
+  value = slope = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0f);
+  for (int i = 0; i < phase.lobe_count(); ++i) {
+    const DraineLobe& lobe = phase.lobe(i);
+    const float g = lobe.g, alpha = lobe.alpha;
+    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
+    const auto x = lobe_distance(d, g, cosine);
+    const auto hg = hn::Div(hn::Set(d, norm), hn::Mul(x, hn::Sqrt(x)));
+    const auto draine = hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one);
+    value = hn::MulAdd(hg, draine, value);
+    const auto steepness = hn::Div(hn::Set(d, 3 * g), x);
+    slope = hn::MulAdd(hg, hn::MulAdd(draine, steepness, hn::Mul(hn::Set(d, 2 * alpha), cosine)),
+                       slope);
+  }
+}
+
+/// x^(-3/2), x > 0, to a few units in the last place.
+template <class D>
+HWY_INLINE hn::Vec<D> inverse_three_halves(D d, hn::Vec<D> x) {
+  const auto y = hn::ApproximateReciprocalSqrt(x);
+  // One Newton step: y (3 - x y^2) / 2.
+  const auto correction =
+      hn::NegMulAdd(hn::Mul(hn::Mul(x, y), hn::Set(d, 0.5f)), y, hn::Set(d, 1.5f));
+  const auto root = hn::Mul(y, correction);
+  return hn::Mul(hn::Mul(root, root), root);
+}
+
+template <class D>
+HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, hn::Vec<D> cosine) {
+  const auto one = hn::Set(d, 1.0f);
+  auto value = hn::Zero(d);
+  for (int i = 0; i < phase.lobe_count(); ++i) {
+    const DraineLobe& lobe = phase.lobe(i);
+    const float g = lobe.g, alpha = lobe.alpha;
+    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
+    const auto x = lobe_distance(d, g, cosine);
+    auto term = hn::Mul(hn::Set(d, norm), inverse_three_halves(d, x));
+    if (alpha != 0)
+      term = hn::Mul(term, hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one));
+    value = hn::Add(value, term);
+  }
+  return value;
+}
+
+/// Writes the chosen lanes side by side; the slots after them are scratch.
+template <class D>
+HWY_INLINE void append(D d, hn::Vec<D> value, hn::Mask<D> mask, bool all, hn::TFromD<D>* to) {
+  hn::StoreU(all ? value : hn::Compress(value, mask), d, to);
+}
+
+/// Takes the photons of a block whose spheres reach the sub-tile's cone.
+HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference,
+                                  const SubtileFrame& s, std::size_t block, Candidates& out) {
+  const D16 d;
+  const I16 di;
+  const PhotonBlocks& blocks = query.blocks;
+  for (std::size_t lane = 0; lane < PhotonBlocks::width; lane += hn::Lanes(d)) {
+    const auto field = [&](int f) { return hn::Load(d, blocks.row(block, f) + lane); };
+    const auto x = hn::Sub(field(PhotonBlocks::x), hn::Set(d, reference[0]));
+    const auto y = hn::Sub(field(PhotonBlocks::y), hn::Set(d, reference[1]));
+    const auto z = hn::Sub(field(PhotonBlocks::z), hn::Set(d, reference[2]));
+    const auto radius = field(PhotonBlocks::radius);
+    const auto u = rotate(d, s.axes[0], x, y, z, hn::Set(d, s.offset[0]));
+    const auto v = rotate(d, s.axes[1], x, y, z, hn::Set(d, s.offset[1]));
+    const auto along = rotate(d, s.axes[2], x, y, z, hn::Zero(d));
+    const auto w = hn::Add(along, hn::Set(d, s.offset[2]));
+    const auto f = hn::Mul(hn::Add(along, hn::Set(d, s.knot_offset)), hn::Set(d, s.inverse_step));
+    // Within the radius of the cone: h cos - w sin < r, squared.
+    const auto across =
+        hn::Mul(hn::MulAdd(u, u, hn::Mul(v, v)), hn::Set(d, s.cos_spread * s.cos_spread));
+    const auto reach = hn::MulAdd(w, hn::Set(d, s.sin_spread), radius);
+    const auto margin = hn::Set(d, s.per_ray ? s.knot_margin : 0.0f);
+    const auto kernel_margin =
+        s.per_ray ? hn::MulAdd(radius, hn::Set(d, s.inverse_step), margin) : margin;
+    auto hit = hn::And(hn::Lt(across, hn::Mul(reach, reach)), hn::Gt(reach, hn::Zero(d)));
+    hit = hn::And(hit, hn::Gt(radius, hn::Zero(d)));
+    hit = hn::And(hit, hn::Ge(f, hn::Sub(hn::Set(d, s.first_knot), kernel_margin)));
+    hit = hn::And(hit, hn::Le(f, hn::Add(hn::Set(d, s.last_knot), kernel_margin)));
+    if (hn::AllFalse(d, hit))
+      continue;
+    const bool all = hn::AllTrue(d, hit);
+    const std::size_t n = out.count;
+    const auto put = [&](hn::Vec<D16> value, float* array) {
+      append(d, value, hit, all, array + n);
+    };
+
+    const auto inverse_radius = hn::Div(hn::Set(d, 1.0f), radius);
+    const auto inverse_square = hn::Mul(inverse_radius, inverse_radius);
+    put(hn::Mul(u, inverse_radius), out.u);
+    put(hn::Mul(v, inverse_radius), out.v);
+    put(hn::Mul(w, inverse_radius), out.w);
+    auto strength = inverse_square;
+    if (query.power_channels == 1 && query.weight_channels == 1)
+      strength = hn::Mul(strength, field(PhotonBlocks::power));
+    else
+      for (int c = 0; c < 3; ++c)
+        put(field(PhotonBlocks::power + c % query.power_channels), out.power[c]);
+    put(hn::Mul(strength, hn::Set(d, query.kernel.step)), out.kernel[0]);
+    put(hn::Mul(strength, hn::Set(d, query.kernel.linear)), out.kernel[1]);
+    put(hn::Mul(strength, hn::Set(d, query.kernel.square)), out.kernel[2]);
+    if (s.per_ray) {
+      put(f, out.fraction);
+      put(hn::Mul(w, hn::Set(d, s.inverse_step)), out.depth);
+      put(hn::Mul(radius, hn::Set(d, s.inverse_step)), out.reach);
+    } else {
+      const auto knot =
+          hn::Min(hn::ConvertTo(di, f), hn::Set(di, static_cast<std::int32_t>(s.knots - 2)));
+      put(hn::Sub(f, hn::ConvertTo(d, knot)), out.fraction);
+      append(di, hn::ShiftLeft<4>(knot), hn::RebindMask(di, hit), all, out.knot + n);
+    }
+    if (s.phase != PhaseMode::isotropic) {
+      const int df = blocks.direction_field();
+      const auto zero = hn::Zero(d);
+      const auto dx = field(df), dy = field(df + 1), dz = field(df + 2);
+      const auto du = hn::Neg(rotate(d, s.axes[0], dx, dy, dz, zero));
+      const auto dv = hn::Neg(rotate(d, s.axes[1], dx, dy, dz, zero));
+      const auto dw = hn::Neg(rotate(d, s.axes[2], dx, dy, dz, zero));
+      if (s.phase == PhaseMode::linear) {
+        auto value = zero, slope = zero;
+        phase_line(d, query.phases[0], dw, value, slope);
+        put(value, out.phase[0]);
+        put(hn::Mul(slope, du), out.phase[1]);
+        put(hn::Mul(slope, dv), out.phase[2]);
+      } else {
+        put(du, out.phase[0]);
+        put(dv, out.phase[1]);
+        put(dw, out.phase[2]);
+      }
+    }
+    out.count = n + hn::CountTrue(d, hit);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace vdbeam
+HWY_AFTER_NAMESPACE();
+
+#endif

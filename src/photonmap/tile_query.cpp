@@ -1,0 +1,203 @@
+#include "photonmap/map_queries.h"
+#include "photonmap/tile_frame.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "photonmap/tile_query.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "photonmap/tile_shade-inl.h"
+#include "photonmap/tree_walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vdbeam {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+using D8 = hn::CappedTag<float, 8>;
+
+/// A block that the tile reaches, with a bit for each sub-tile that may see it.
+struct BlockHit {
+  std::uint32_t block;
+  std::uint32_t subtiles;
+};
+
+/// Which of eight boxes touch the tile's frustum.
+HWY_INLINE std::uint32_t boxes_in_frustum(const TileFrame& frame, const BoxGroup& group) {
+  const D8 d;
+  std::uint32_t mask = 0;
+  for (std::size_t lane = 0; lane < 8; lane += hn::Lanes(d)) {
+    hn::Vec<D8> lower[3], upper[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] =
+          hn::Sub(hn::Load(d, group.lower[axis] + lane), hn::Set(d, frame.reference[axis]));
+      upper[axis] =
+          hn::Sub(hn::Load(d, group.upper[axis] + lane), hn::Set(d, frame.reference[axis]));
+    }
+    auto hit = hn::Le(lower[0], upper[0]);
+    for (const float* plane : frame.planes) {
+      auto sum = hn::Set(d, plane[3]);
+      for (int axis = 0; axis < 3; ++axis)
+        sum =
+            hn::MulAdd(hn::Set(d, plane[axis]), plane[axis] >= 0 ? upper[axis] : lower[axis], sum);
+      hit = hn::And(hit, hn::Ge(sum, hn::Zero(d)));
+    }
+    mask |= mask_bits(d, hit) << lane;
+  }
+  return mask;
+}
+
+/// Which sub-tiles' pyramids touch a box.
+HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup& group,
+                                         std::uint32_t slot) {
+  float center[3], half[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    center[axis] =
+        (group.lower[axis][slot] + group.upper[axis][slot]) * 0.5f - frame.reference[axis];
+    half[axis] = (group.upper[axis][slot] - group.lower[axis][slot]) * 0.5f;
+  }
+  float middle[3], extent[3];
+  for (int i = 0; i < 3; ++i) {
+    const float* axis = frame.axes[i];
+    middle[i] = axis[0] * center[0] + axis[1] * center[1] + axis[2] * center[2];
+    extent[i] = std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1] +
+                std::abs(axis[2]) * half[2] + frame.margin;
+  }
+  const D16 d;
+  const float w = middle[2] + frame.camera_distance;
+  const auto low = hn::Set(d, w - extent[2]), high = hn::Set(d, w + extent[2]);
+  const auto u_low = hn::Set(d, middle[0] - extent[0]), u_high = hn::Set(d, middle[0] + extent[0]);
+  const auto v_low = hn::Set(d, middle[1] - extent[1]), v_high = hn::Set(d, middle[1] + extent[1]);
+  std::uint32_t mask = 0;
+  for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
+    // The depths that the box and the rays share; over them the rays stay within tangents times w.
+    const auto w0 = hn::Max(low, hn::Load(d, frame.w0 + lane));
+    const auto w1 = hn::Min(high, hn::Load(d, frame.w1 + lane));
+    auto hit = hn::Le(w0, w1);
+    const auto overlap = [&](const float* tangent0, const float* tangent1, hn::Vec<D16> from,
+                             hn::Vec<D16> to) {
+      const auto t0 = hn::Load(d, tangent0 + lane), t1 = hn::Load(d, tangent1 + lane);
+      const auto least = hn::Min(hn::Mul(t0, w0), hn::Mul(t0, w1));
+      const auto most = hn::Max(hn::Mul(t1, w0), hn::Mul(t1, w1));
+      hit = hn::And(hit, hn::And(hn::Ge(to, least), hn::Le(from, most)));
+    };
+    overlap(frame.a0, frame.a1, u_low, u_high);
+    overlap(frame.b0, frame.b1, v_low, v_high);
+    mask |= mask_bits(d, hit) << lane;
+  }
+  return (mask | frame.wide) & frame.active;
+}
+
+class TileWalk {
+public:
+  TileWalk(const MapView& map, const BeamTile& tile, const TileFrame& frame)
+      : frame_(frame), query_{map.blocks, disc_polynomial(map.shape), *tile.phases,
+                              tile.weight_channels, map.blocks.channels()} {
+    for (int s = 0; s < BeamTile::subtile_count; ++s)
+      if (frame.active >> s & 1)
+        shaders_[s] = choose_shader(query_, frame.subtiles[s]);
+  }
+
+  void run(const BlockTree& tree) {
+    walk_tree(
+        tree, [&](const BoxGroup& group) { return boxes_in_frustum(frame_, group); },
+        [&](std::uint32_t group_index, const BoxGroup& group, std::uint32_t mask) {
+          for (; mask != 0; mask &= mask - 1) {
+            const auto slot = static_cast<std::uint32_t>(std::countr_zero(mask));
+            const std::uint32_t subtiles = subtiles_of_box(frame_, group, slot);
+            if (subtiles == 0)
+              continue;
+            ++counts.blocks;
+            hits_[hit_count_++] = {8 * group_index + slot, subtiles};
+            if (hit_count_ == hit_capacity)
+              shade_hits();
+          }
+        });
+    shade_hits();
+  }
+
+  void add_to(BeamTile& tile, int channels) const {
+    for (int c = 0; c < channels; ++c)
+      for (int r = 0; r < BeamTile::ray_count; ++r)
+        if (frame_.active >> (r / BeamTile::rays_per_subtile) & 1)
+          tile.radiance[static_cast<std::size_t>(c * BeamTile::ray_count + r)] +=
+              sums_[c][r] * frame_.subtiles[r / 16].scale[r % 16];
+  }
+
+  QueryCounts counts;
+
+private:
+  static constexpr std::size_t hit_capacity = 64;
+
+  /// Sub-tile by sub-tile, so that its weights and sums stay near.
+  void shade_hits() {
+    for (std::size_t s = 0; s < BeamTile::subtile_count; ++s) {
+      const SubtileFrame& subtile = frame_.subtiles[s];
+      for (std::size_t h = 0; h < hit_count_; ++h) {
+        if (!(hits_[h].subtiles >> s & 1))
+          continue;
+        gather_candidates(query_, frame_.reference, subtile, hits_[h].block, candidates_);
+        if (candidates_.count + PhotonBlocks::width > Candidates::capacity)
+          shade_candidates(s);
+      }
+      shade_candidates(s);
+    }
+    hit_count_ = 0;
+  }
+
+  void shade_candidates(std::size_t s) {
+    if (candidates_.count == 0)
+      return;
+    counts.candidates += candidates_.count * BeamTile::rays_per_subtile;
+    counts.contributions += shaders_[s](query_, frame_.subtiles[s], candidates_, s * 16, sums_);
+    candidates_.count = 0;
+  }
+
+  const TileFrame& frame_;
+  TileQuery query_;
+  Shader shaders_[BeamTile::subtile_count] = {};
+  std::size_t hit_count_ = 0;
+  BlockHit hits_[hit_capacity];
+  Candidates candidates_;
+  alignas(64) TileSums sums_ = {};
+};
+
+QueryCounts query_tile_on_target(const MapView& map, const TileFrame& frame, BeamTile& tile,
+                                 int channels) {
+  TileWalk walk(map, tile, frame);
+  walk.run(map.tree);
+  walk.add_to(tile, channels);
+  return walk.counts;
+}
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace vdbeam
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vdbeam {
+
+HWY_EXPORT(query_tile_on_target);
+
+QueryCounts query_tile(const MapView& map, BeamTile& tile) {
+  const int channels = std::max(map.blocks.channels(), tile.weight_channels);
+  const std::size_t size = static_cast<std::size_t>(channels) * BeamTile::ray_count;
+  if (tile.radiance.size() < size)
+    tile.radiance.resize(size, 0.0f);
+  if (map.tree.levels.empty())
+    return {};
+  const Vec3f far_side =
+      max(map.tree.bounds.upper - tile.reference, tile.reference - map.tree.bounds.lower);
+  TileFrame frame;
+  make_tile_frame(tile, map.mean_radius, length(max(far_side, Vec3f(0))),
+                  map.blocks.has_directions(), frame);
+  if (frame.active == 0)
+    return {};
+  return HWY_DYNAMIC_DISPATCH(query_tile_on_target)(map, frame, tile, channels);
+}
+
+} // namespace vdbeam
+#endif

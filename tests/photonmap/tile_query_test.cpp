@@ -1,0 +1,162 @@
+#include "photonmap/query_oracle.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using oracle::MapOptions;
+using oracle::TestMap;
+using oracle::TileOptions;
+
+PhaseFunction henyey_greenstein(double g) {
+  PhaseSettings settings;
+  settings.type = PhaseType::henyey_greenstein;
+  settings.g = g;
+  return PhaseFunction(settings);
+}
+
+PhaseFunction two_lobes() {
+  PhaseSettings settings;
+  settings.type = PhaseType::two_lobe;
+  settings.g = 0.7;
+  settings.g2 = -0.4;
+  settings.blend = 0.3;
+  return PhaseFunction(settings);
+}
+
+PhaseFunction rayleigh() {
+  PhaseSettings settings;
+  settings.type = PhaseType::rayleigh;
+  return PhaseFunction(settings);
+}
+
+/// Runs `check` on every SIMD target that this machine has.
+void on_every_target(const std::function<void()>& check) {
+  for (const std::int64_t target : simd_targets()) {
+    confine_simd_targets(target);
+    SCOPED_TRACE(simd_target());
+    check();
+  }
+  confine_simd_targets(0);
+}
+
+/// The tile against the oracle, errors relative to the terms' magnitude.
+void expect_tile(const TestMap& map, BeamTile& tile, const std::vector<oracle::Sum>& sums,
+                 double tolerance) {
+  std::fill(tile.radiance.begin(), tile.radiance.end(), 0.0f);
+  const QueryCounts counts = query_tile(map.view(), tile);
+  const int channels = std::max(map.blocks.channels(), tile.weight_channels);
+  double worst = 0, total = 0;
+  std::uint64_t certain = 0, possible = 0;
+  for (int r = 0; r < BeamTile::ray_count; ++r) {
+    const oracle::Sum& sum = sums[static_cast<std::size_t>(r)];
+    certain += sum.contributions;
+    possible += sum.contributions + sum.doubtful;
+    for (int c = 0; c < channels; ++c) {
+      const double value = tile.radiance[static_cast<std::size_t>(c * BeamTile::ray_count + r)];
+      ASSERT_TRUE(std::isfinite(value));
+      total += sum.magnitude[c];
+      const double error = std::max(0.0, std::abs(value - sum.value[c]) - sum.doubt[c]);
+      worst = std::max(worst, sum.magnitude[c] > 0 ? error / sum.magnitude[c] : error);
+    }
+  }
+  EXPECT_GT(total, 0);
+  EXPECT_LT(worst, tolerance);
+  EXPECT_GE(counts.contributions, certain);
+  EXPECT_LE(counts.contributions, possible);
+}
+
+/// A single-precision cosine is off by 2e-7, so x^(-3/2) with x >= (1 - |g|)^2 by that over x.
+double phase_rounding(const std::vector<PhaseFunction>& phases) {
+  double worst = 0;
+  for (const PhaseFunction& phase : phases)
+    for (int i = 0; i < phase.lobe_count(); ++i)
+      worst = std::max(worst, 6e-7 / std::pow(1 - std::abs(phase.lobe(i).g), 2));
+  return worst;
+}
+
+struct TileCase {
+  const char* name;
+  TileOptions tile;
+  MapOptions map;
+  double tolerance;
+  oracle::Edges edges;
+};
+
+class TileQuery : public testing::TestWithParam<TileCase> {};
+
+/// Shapes x phases x channels of photons and weights, on every SIMD target.
+TEST_P(TileQuery, MatchesOracle) {
+  const TileCase& param = GetParam();
+  const std::vector<std::vector<PhaseFunction>> phase_sets{
+      {PhaseFunction()},
+      {henyey_greenstein(0.6)},
+      {two_lobes()},
+      {rayleigh()},
+      {henyey_greenstein(-0.95)},
+      {henyey_greenstein(0.5), PhaseFunction(), two_lobes()}};
+  std::uint64_t seed = 1;
+  for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,
+                                  KernelShape::biweight, KernelShape::fourth_order})
+    for (std::size_t p = 0; p < phase_sets.size(); ++p)
+      for (const auto& [power, weight] : {std::pair(1, 1), {3, 1}, {3, 3}}) {
+        // Every pair of choices occurs, not every triple.
+        if ((static_cast<int>(shape) + static_cast<int>(p) + power + weight) % 2)
+          continue;
+        MapOptions map_options = param.map;
+        map_options.shape = shape;
+        map_options.channels = power;
+        map_options.seed = seed++;
+        TileOptions tile_options = param.tile;
+        tile_options.weight_channels = weight;
+        const TestMap map = oracle::random_map(map_options);
+        BeamTile tile = oracle::make_tile(tile_options, phase_sets[p]);
+        SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(shape) << " phases " << p
+                                        << " power " << power << " weight " << weight);
+        const std::vector<oracle::Sum> sums = oracle::tile_sums(map, tile, param.edges);
+        const double tolerance = param.tolerance + phase_rounding(phase_sets[p]);
+        on_every_target([&] { expect_tile(map, tile, sums, tolerance); });
+      }
+}
+
+/// Rays that share knots: a quarter of a knot and 4e-4 of the squared distance are granted.
+constexpr double shared_tolerance = 2e-3;
+constexpr oracle::Edges shared_edges{1e-3, 0.3};
+/// Rays on their own: rounding alone.
+constexpr double exact_tolerance = 2e-5;
+constexpr oracle::Edges exact_edges{};
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, TileQuery,
+    testing::Values(
+        TileCase{"near_narrow", {}, {}, shared_tolerance, shared_edges},
+        TileCase{"far", {.distance = 1e4, .pixel = 5e-6}, {}, shared_tolerance, shared_edges},
+        TileCase{"axis_aligned", {.direction = {0, 0, 1}}, {}, shared_tolerance, shared_edges},
+        TileCase{"inside", {.distance = 0.3, .pixel = 0.004}, {}, shared_tolerance, shared_edges},
+        TileCase{"wide",
+                 {.distance = 2, .pixel = 0.08, .smooth = false},
+                 {},
+                 exact_tolerance,
+                 exact_edges},
+        TileCase{"wide_inside",
+                 {.distance = 0, .pixel = 0.08, .smooth = false},
+                 {},
+                 exact_tolerance,
+                 exact_edges},
+        TileCase{"fisheye",
+                 {.distance = 0.5, .pixel = 0.4, .smooth = false},
+                 {},
+                 exact_tolerance,
+                 exact_edges},
+        // Positions are rounded by 3e-7, which is 6e-5 of these knots.
+        TileCase{"fine_knots", {.knots = 700, .smooth = false}, {}, 1e-4, exact_edges},
+        TileCase{"few_photons",
+                 {.pixel = 0.02},
+                 {.count = 3, .greatest_radius = 1},
+                 shared_tolerance,
+                 shared_edges}),
+    [](const auto& test) { return test.param.name; });
+
+} // namespace
+} // namespace vdbeam
