@@ -100,6 +100,7 @@ struct Scene {
   std::vector<VolumeSettings> volumes;
   std::vector<LightSettings> lights;
   RenderSettings render;
+  std::vector<std::string> notes;      ///< for the user: what load_scene chose or found odd
 };
 
 } // namespace vdbeam

@@ -13,13 +13,16 @@ namespace vdbeam {
 Scene load_scene(const std::string& path, int frame = 1,
                  const std::vector<std::string>& overrides = {});
 
-/// The text of a commented scene file for this volume (`vdbeam init`).
-std::string scene_template(const std::string& vdb_path);
+/// The text of a commented scene file for this volume (`vdbeam init`), to be saved in `folder`
+/// (the current one where empty). Throws InputError and FrameError for a VDB that cannot be read.
+std::string scene_template(const std::string& vdb_path, const std::string& folder = "");
 
 /// Checks ranges and consistency of a scene filled by hand. Throws InputError.
 void validate_scene(const Scene& scene);
 
-/// 64-bit hash of everything that changes the picture, as 16 hex digits.
+/// 64-bit hash of everything that changes the picture, as 16 hex digits: all keys but
+/// render.threads, and the contents, not the names, of the files. Throws InputError for a file that
+/// cannot be read.
 std::string scene_hash(const Scene& scene);
 
 } // namespace vdbeam

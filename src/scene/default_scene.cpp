@@ -1,0 +1,211 @@
+#include "scene/default_scene.h"
+
+#include "scene/frame_range.h"
+#include "scene/text.h"
+#include "vdbeam/error.h"
+#include "volume/vdb_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace vdbeam {
+namespace {
+
+/// Deep enough that the form shows by its shading, thin enough that light comes through the edges.
+constexpr double target_optical_depth = 25;
+
+bool is_density(const GridSummary& grid) {
+  return (grid.value_type == "float" || grid.value_type == "half") &&
+         grid.grid_class != "level set" && grid.map_type != "NonlinearFrustumMap";
+}
+
+const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const FramingWishes& wishes,
+                               const std::string& file, std::vector<std::string>& notes) {
+  const auto find = [&](const auto& condition) -> const GridSummary* {
+    const auto found = std::find_if(grids.begin(), grids.end(), condition);
+    return found == grids.end() ? nullptr : &*found;
+  };
+  if (wishes.grid)
+    if (const auto* grid = find([&](const GridSummary& g) { return g.name == *wishes.grid; }))
+      return *grid;
+  if (const auto* grid = find([](const GridSummary& g) { return g.name == "density"; }))
+    return *grid;
+  const auto* grid = find([](const GridSummary& g) {
+    return is_density(g) && g.name.starts_with("density") && g.active_voxels > 0;
+  });
+  if (!grid)
+    grid = find([](const GridSummary& g) { return is_density(g) && g.active_voxels > 0; });
+  if (!grid)
+    grid = find(is_density);
+  if (!grid) {
+    std::vector<std::string> names;
+    for (const GridSummary& g : grids)
+      names.push_back(fmt::format("{} ({})", g.name, g.value_type));
+    throw InputError(fmt::format("{}: there is no float grid to render; it holds {}", file,
+                                 names.empty() ? "no grid at all" : join_words(names, "and")));
+  }
+  notes.push_back(
+      fmt::format("{}: there is no grid \"density\"; \"{}\" is rendered", file, grid->name));
+  return *grid;
+}
+
+/// What a grid's shape says about camera and extinction.
+struct VolumeShape {
+  std::string grid;
+  Boxd bounds;
+  double optical_depth = 0; ///< of a mean line along the longest axis, at extinction 1
+
+  void extend(const GridSummary& summary) {
+    if (summary.active_voxels == 0)
+      return;
+    bounds.extend(summary.world_bounds);
+    double cells = 1, longest = 0;
+    for (int i = 0; i < 3; ++i) {
+      const auto count = static_cast<double>(summary.index_upper[i] - summary.index_lower[i] + 1);
+      cells *= count;
+      longest = std::max(longest, count * summary.voxel_size[i]);
+    }
+    const double fill = static_cast<double>(summary.active_voxels) / cells;
+    optical_depth = std::max(optical_depth, summary.mean * fill * longest);
+  }
+};
+
+VolumeShape read_shape(const std::string& path, const FramingWishes& wishes,
+                       std::vector<std::string>& notes) {
+  std::vector<std::string> files{path};
+  if (const std::vector<int> frames = frames_on_disk(path); !frames.empty()) {
+    files.clear();
+    for (const std::size_t i : {std::size_t(0), frames.size() / 2, frames.size() - 1}) {
+      std::string file = substitute_frame(path, frames[i]);
+      if (files.empty() || files.back() != file)
+        files.push_back(std::move(file));
+    }
+  }
+  VolumeShape shape;
+  for (const std::string& file : files) {
+    const std::vector<GridSummary> grids = summarize_vdb(file);
+    std::vector<std::string> grid_notes;
+    const GridSummary& grid = choose_grid(grids, wishes, file, grid_notes);
+    if (shape.grid.empty()) {
+      shape.grid = grid.name;
+      notes.insert(notes.end(), grid_notes.begin(), grid_notes.end());
+    }
+    shape.extend(grid);
+  }
+  if (shape.bounds.empty()) {
+    notes.push_back(fmt::format("{}: grid \"{}\" is empty", path, shape.grid));
+    shape.bounds.extend(Vec3d(-1));
+    shape.bounds.extend(Vec3d(1));
+  }
+  return shape;
+}
+
+double round_to_digits(double x, int digits) {
+  if (!(x > 0) || !std::isfinite(x))
+    return 1;
+  const double unit = std::pow(10, std::floor(std::log10(x)) - (digits - 1));
+  return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
+}
+
+/// Coordinates that people can read: a thousandth of the object's size is precise enough.
+Vec3d round_point(const Vec3d& p, double size) {
+  const double steps = std::pow(10, 3 - std::floor(std::log10(size)));
+  const auto round = [steps](double x) {
+    return (steps >= 1 ? std::round(x * steps) / steps
+                       : std::round(x * steps) * std::round(1 / steps)) +
+           0.0; // no -0
+  };
+  return {round(p.x), round(p.y), round(p.z)};
+}
+
+/// Axes of a viewer that stands upright in front of the object.
+struct Viewer {
+  Vec3d right, up, back;
+
+  explicit Viewer(const Vec3d& up_axis) : up(up_axis) {
+    // Y up looks along -Z, Z up along +Y, as modelling programs do.
+    const Vec3d front = std::abs(up.z) < 0.7 ? Vec3d(0, 0, 1) : Vec3d(0, -1, 0);
+    right = normalize(cross(up, front));
+    back = cross(right, up);
+  }
+  Vec3d direction(double x, double y, double z) const {
+    return normalize(right * x + up * y + back * z);
+  }
+};
+
+void frame_camera(Scene& scene, const Boxd& bounds, const FramingWishes& wishes) {
+  const Viewer viewer(wishes.up);
+  CameraSettings& camera = scene.camera;
+  camera.up = wishes.up;
+  const Vec3d target = bounds.center();
+  const Vec3d towards = viewer.direction(0.35, 0.2, 1);
+  const Vec3d right = normalize(cross(camera.up, towards)), up = cross(towards, right);
+
+  std::vector<Vec3d> corners; // in the camera's axes, relative to the target
+  Vec3d reach;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d offset =
+        Vec3d(i & 1 ? bounds.upper.x : bounds.lower.x, i & 2 ? bounds.upper.y : bounds.lower.y,
+              i & 4 ? bounds.upper.z : bounds.lower.z) -
+        target;
+    corners.emplace_back(dot(offset, right), dot(offset, up), dot(offset, towards));
+    reach = max(reach, Vec3d(std::abs(corners.back().x), std::abs(corners.back().y), 0));
+  }
+  const double shape = reach.x / reach.y;
+  const auto [width, height] = shape > 1.3    ? std::pair(640, 360)
+                               : shape < 0.77 ? std::pair(360, 480)
+                                              : std::pair(480, 480);
+  scene.image.width = wishes.width.value_or(width);
+  scene.image.height = wishes.height.value_or(height);
+
+  constexpr double margin = 0.9; // share of the picture that the box may fill
+  const double half_height = std::tan(camera.fov / 2 * 3.14159265358979323846 / 180) * margin;
+  const double half_width = half_height * scene.image.width / scene.image.height;
+  double distance = 0;
+  for (const Vec3d& corner : corners)
+    distance = std::max(distance, corner.z + std::max(std::abs(corner.x) / half_width,
+                                                      std::abs(corner.y) / half_height));
+  const double size = length(bounds.size());
+  camera.look_at = round_point(target, size);
+  camera.position = round_point(target + towards * distance, size);
+}
+
+void light_scene(Scene& scene, const Vec3d& up_axis) {
+  LightSettings sun;
+  sun.type = LightType::distant;
+  sun.direction = round_point(Viewer(up_axis).direction(-0.55, -0.66, -0.44), 1);
+  sun.irradiance = Rgb(5);
+  LightSettings sky;
+  sky.type = LightType::environment;
+  sky.radiance = Rgb(0.25f);
+  scene.lights = {sun, sky};
+}
+
+} // namespace
+
+Scene make_default_scene(const std::string& path, const FramingWishes& wishes) {
+  Scene scene;
+  scene.path = path;
+  const VolumeShape shape = read_shape(path, wishes, scene.notes);
+  frame_camera(scene, shape.bounds, wishes);
+  light_scene(scene, wishes.up);
+
+  VolumeSettings volume;
+  volume.file = path;
+  volume.density = shape.grid;
+  volume.albedo = Rgb(0.98f);
+  volume.phase.type = PhaseType::henyey_greenstein;
+  volume.phase.g = 0.5;
+  if (shape.optical_depth > 0) {
+    volume.extinction = round_to_digits(target_optical_depth / shape.optical_depth, 2);
+    scene.notes.push_back(fmt::format(
+        "{}: extinction {} chosen: optical depth about {:.2g} through the longest side; change it "
+        "with --set volume.0.extinction=X",
+        path, volume.extinction, volume.extinction * shape.optical_depth));
+  }
+  scene.volumes.push_back(volume);
+  return scene;
+}
+
+} // namespace vdbeam

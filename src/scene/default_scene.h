@@ -1,0 +1,27 @@
+#pragma once
+
+#include "vdbeam/scene.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// What the user said about the picture of a bare VDB.
+struct FramingWishes {
+  Vec3d up{0, 1, 0}; ///< unit
+  std::optional<int> width, height;
+  std::optional<std::string> grid;
+};
+
+/// A scene that shows a bare VDB: a camera that frames it, a sun and a sky, and an extinction that
+/// shows its form. With a frame pattern in the name, the first, middle and last frame on disk
+/// decide, so that the camera stands still. `notes` of the scene tell what was chosen. Throws
+/// InputError and FrameError as summarize_vdb.
+Scene make_default_scene(const std::string& path, const FramingWishes& wishes);
+
+/// A commented scene file; `file` is the volume's path as it is to be written there.
+std::string scene_text(const Scene& scene, const std::string& file);
+
+} // namespace vdbeam

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "scene/scene_enums.h"
+#include "scene/scene_keys.h"
+
+#include <type_traits>
+
+namespace vdbeam {
+
+/// The settings struct `S` of a scene.
+template <class S, class SceneRef>
+auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
+  if constexpr (std::is_same_v<S, ImageSettings>)
+    return scene.image;
+  else if constexpr (std::is_same_v<S, CameraSettings>)
+    return scene.camera;
+  else if constexpr (std::is_same_v<S, VolumeSettings>)
+    return scene.volumes[index];
+  else if constexpr (std::is_same_v<S, PhaseSettings>)
+    return scene.volumes[index].phase;
+  else if constexpr (std::is_same_v<S, LightSettings>)
+    return scene.lights[index];
+  else
+    return scene.render;
+}
+
+template <class T>
+KeyValue to_key_value(const T& x) {
+  if constexpr (std::is_enum_v<T>)
+    return enum_name(x);
+  else if constexpr (std::is_integral_v<T>)
+    return static_cast<std::int64_t>(x);
+  else
+    return x;
+}
+template <class T>
+KeyValue to_key_value(const Vec3<T>& x) {
+  return std::vector<double>{x.x, x.y, x.z};
+}
+inline KeyValue to_key_value(const std::array<double, 12>& x) {
+  return std::vector<double>(x.begin(), x.end());
+}
+template <class T>
+KeyValue to_key_value(const std::optional<T>& x) {
+  return x ? to_key_value(*x) : KeyValue{};
+}
+
+template <class T>
+void assign(T& target, const KeyValue& value) {
+  if constexpr (std::is_enum_v<T>)
+    target = enum_value<T>(std::get<std::string>(value));
+  else if constexpr (std::is_integral_v<T>)
+    target = static_cast<T>(std::get<std::int64_t>(value));
+  else
+    target = std::get<T>(value);
+}
+template <class T>
+void assign(Vec3<T>& target, const KeyValue& value) {
+  const auto& list = std::get<std::vector<double>>(value);
+  target = {static_cast<T>(list[0]), static_cast<T>(list[1]), static_cast<T>(list[2])};
+}
+inline void assign(std::array<double, 12>& target, const KeyValue& value) {
+  const auto& list = std::get<std::vector<double>>(value);
+  std::copy(list.begin(), list.end(), target.begin());
+}
+template <class T>
+void assign(std::optional<T>& target, const KeyValue& value) {
+  if (std::holds_alternative<std::monostate>(value))
+    target.reset();
+  else
+    assign(target.emplace(), value);
+}
+
+/// Reads and writes one member of a settings struct.
+template <class S, class T>
+void bind_member(SceneKey& key, T S::*member) {
+  key.get = [member](const Scene& scene, std::size_t index) {
+    return to_key_value(settings_of<S>(scene, index).*member);
+  };
+  key.set = [member](Scene& scene, std::size_t index, const KeyValue& value) {
+    assign(settings_of<S>(scene, index).*member, value);
+  };
+}
+
+/// The same for a number whose 0 means "automatic".
+template <class S, class T>
+void bind_member_zero_is_absent(SceneKey& key, T S::*member) {
+  key.get = [member](const Scene& scene, std::size_t index) {
+    const T x = settings_of<S>(scene, index).*member;
+    return x == T{0} ? KeyValue{} : to_key_value(x);
+  };
+  key.set = [member](Scene& scene, std::size_t index, const KeyValue& value) {
+    T& target = settings_of<S>(scene, index).*member;
+    if (std::holds_alternative<std::monostate>(value))
+      target = T{0};
+    else
+      assign(target, value);
+  };
+}
+
+} // namespace vdbeam

@@ -1,0 +1,66 @@
+#include "scene/scene_keys.h"
+#include "scene/text.h"
+
+#include <array>
+#include <fmt/format.h>
+
+namespace vdbeam {
+namespace {
+
+/// What values a key takes: its choices or its kind, range and unit.
+std::string values_text(const SceneKey& key, const char* quote) {
+  if (key.kind == KeyKind::choice) {
+    std::string text;
+    for (const std::string& choice : key.choices)
+      text += fmt::format("{}{}\"{}\"{}", text.empty() ? "" : ", ", quote, choice, quote);
+    return text;
+  }
+  std::string text = key.kind == KeyKind::integer    ? "whole number"
+                     : key.kind == KeyKind::number   ? "number"
+                     : key.kind == KeyKind::text     ? "text"
+                     : key.kind == KeyKind::file     ? "path"
+                     : key.kind == KeyKind::vector   ? "3 numbers"
+                     : key.kind == KeyKind::color    ? "RGB"
+                     : key.kind == KeyKind::duration ? "duration"
+                                                     : "12 numbers";
+  const std::string range = key.range.text();
+  if (range != "any")
+    text += (range.front() == '>' ? " " : " in ") + range;
+  return text;
+}
+
+} // namespace
+
+std::string key_table_markdown(SceneSection section) {
+  std::string text = "| key | values | unit | default | meaning |\n|---|---|---|---|---|\n";
+  for (const SceneKey& key : scene_keys()) {
+    if (key.section != section)
+      continue;
+    const std::string types = key.types.empty() ? "" : join_words(key.types, "and") + ": ";
+    const std::string standard =
+        key.required ? "required" : fmt::format("`{}`", key.default_text());
+    text += fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name, values_text(key, "`"),
+                        key.unit, standard, types, key.doc);
+  }
+  return text;
+}
+
+std::string key_table_text() {
+  constexpr std::array sections{SceneSection::image, SceneSection::camera, SceneSection::volume,
+                                SceneSection::phase, SceneSection::light,  SceneSection::render};
+  std::string text;
+  for (const SceneSection section : sections) {
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section_name(section));
+    for (const SceneKey& key : scene_keys()) {
+      if (key.section != section)
+        continue;
+      const std::string types = key.types.empty() ? "" : join_words(key.types, "and") + ": ";
+      const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
+      text += fmt::format("  {:<17} {}{}\n{:20}{}{}, default {}\n", key.name, types, key.doc, "",
+                          values_text(key, ""), unit, key.default_text());
+    }
+  }
+  return text;
+}
+
+} // namespace vdbeam

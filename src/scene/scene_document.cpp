@@ -1,0 +1,154 @@
+#include "scene/scene_document.h"
+
+#include "scene/default_scene.h"
+#include "scene/frame_range.h"
+#include "scene/scene_reader.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+#include "vdbeam/scene_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+namespace vdbeam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_scene_file = 16u << 20;
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    throw InputError(one_line(fmt::format("{}: is a folder, not a scene file or VDB", path)));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    throw InputError(one_line(fmt::format("{}: cannot be opened: {}", path,
+                                          fs::exists(path, error) ? "no permission to read it"
+                                                                  : "there is no such file")));
+  std::string text(longest_scene_file + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > longest_scene_file)
+    throw InputError(one_line(fmt::format("{}: is too large for a scene file", path)));
+  return text;
+}
+
+toml::table parse_toml(const std::string& text, const std::string& path) {
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    std::string text(error.description());
+    // "Error while parsing key-value pair: cannot redefine ..." needs only its second half.
+    if (const auto colon = text.find(": "); text.starts_with("Error while") && colon < text.size())
+      text.erase(0, colon + 2);
+    throw InputError(
+        one_line(fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, text)));
+  }
+}
+
+/// The value of a key of a tree that is not checked yet, where it is a plain number or list of
+/// three.
+template <class T>
+std::optional<T> peek(const toml::table& root, const char* path) {
+  return root.at_path(path).value<T>();
+}
+
+/// What the command line asks of the default scene before that scene is there.
+FramingWishes wishes_of(const std::vector<Override>& overrides) {
+  toml::table root;
+  root.insert("volume", toml::array{toml::table{}});
+  for (const Override& entry : overrides)
+    if (entry.key.starts_with("camera.up") || entry.key.starts_with("image.") ||
+        entry.key == "volume.0.density" || entry.key == "volume.density")
+      apply_override(root, entry);
+  FramingWishes wishes;
+  wishes.width = peek<int>(root, "image.width");
+  wishes.height = peek<int>(root, "image.height");
+  wishes.grid = peek<std::string>(root, "volume[0].density");
+  const auto up = root.at_path("camera.up");
+  if (up.is_array() && up.as_array()->size() == 3) {
+    const Vec3d axis(up[0].value_or(0.), up[1].value_or(0.), up[2].value_or(0.));
+    if (length(axis) > 0)
+      wishes.up = normalize(axis);
+  }
+  return wishes;
+}
+
+template <class Visitor>
+void visit_files(const toml::table& root, const Visitor& visitor) {
+  for (const auto& [list_name, key] : {std::pair("volume", "file"), std::pair("light", "image")})
+    if (const auto* list = root.get_as<toml::array>(list_name))
+      for (const toml::node& item : *list)
+        if (const auto* table = item.as_table())
+          if (const auto* file = table->get_as<std::string>(key))
+            visitor(*file);
+}
+
+} // namespace
+
+bool is_vdb_file(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".vdb")
+    return true;
+  char magic[4] = {};
+  std::ifstream(path, std::ios::binary).read(magic, 4);
+  return std::string_view(magic, 4) == " BDV";
+}
+
+SceneDocument::SceneDocument(const std::string& path, const std::vector<Override>& overrides)
+    : path_(path), folder_(fs::path(path).parent_path()) {
+  if (is_vdb_file(path)) {
+    const Scene scene = make_default_scene(path, wishes_of(overrides));
+    notes_ = scene.notes;
+    root_ = parse_toml(scene_text(scene, fs::path(path).filename().string()),
+                       path + " (default scene)");
+  } else {
+    root_ = parse_toml(read_text(path), path);
+  }
+  for (const Override& entry : overrides)
+    apply_override(root_, entry);
+}
+
+Scene SceneDocument::scene_at(int frame) const {
+  Scene scene = SceneReader(path_, folder_, frame).read(root_);
+  scene.notes = notes_;
+  constexpr int usual_passes = 64;
+  if (!scene.render.passes && !scene.render.time && !scene.render.target_error)
+    scene.render.passes = usual_passes;
+  if (scene.volumes.empty())
+    scene.notes.push_back(path_ + ": there is no [[volume]]: only lights are rendered");
+  if (scene.lights.empty())
+    scene.notes.push_back(path_ + ": there is no [[light]]: the picture will be black");
+  return scene;
+}
+
+std::string SceneDocument::first_pattern() const {
+  std::string pattern;
+  visit_files(root_, [&](const toml::value<std::string>& file) {
+    if (pattern.empty() && vdbeam::has_frame_pattern(file.get()))
+      pattern = is_override(file) ? file.get() : (folder_ / file.get()).string();
+  });
+  return pattern;
+}
+
+bool SceneDocument::has_frame_pattern() const {
+  return !first_pattern().empty();
+}
+
+std::vector<int> SceneDocument::frames_on_disk() const {
+  return vdbeam::frames_on_disk(first_pattern());
+}
+
+Scene load_scene(const std::string& path, int frame, const std::vector<std::string>& overrides) {
+  std::vector<Override> entries;
+  for (const std::string& text : overrides)
+    entries.push_back(parse_override(text));
+  return SceneDocument(path, entries).scene_at(frame);
+}
+
+} // namespace vdbeam

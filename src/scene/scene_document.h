@@ -1,0 +1,40 @@
+#pragma once
+
+#include "scene/overrides.h"
+#include "vdbeam/scene.h"
+
+#include <filesystem>
+#include <string>
+#include <toml++/toml.h>
+#include <vector>
+
+namespace vdbeam {
+
+/// A scene file, or what stands for it for a bare VDB, from which the scene of each frame is made.
+class SceneDocument {
+public:
+  /// Throws InputError for a file that cannot be read or is not TOML, and for overrides that lead
+  /// nowhere. A VDB's header and values are read to choose camera and extinction.
+  SceneDocument(const std::string& path, const std::vector<Override>& overrides);
+
+  /// Throws InputError as load_scene.
+  Scene scene_at(int frame) const;
+
+  /// Where a path holds a frame number's place.
+  bool has_frame_pattern() const;
+  /// Frames of which the first file with a frame pattern exists.
+  std::vector<int> frames_on_disk() const;
+
+private:
+  std::string first_pattern() const;
+
+  std::string path_;
+  std::filesystem::path folder_;
+  toml::table root_;
+  std::vector<std::string> notes_;
+};
+
+/// True for a file whose name or first bytes say that it is a VDB.
+bool is_vdb_file(const std::string& path);
+
+} // namespace vdbeam

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "vdbeam/scene.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace vdbeam {
+
+/// Names of a choice's values in scene files, one table per type.
+template <class E>
+struct EnumNames;
+
+template <>
+struct EnumNames<PhaseType> {
+  static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
+      {{PhaseType::isotropic, "isotropic"},
+       {PhaseType::henyey_greenstein, "henyey_greenstein"},
+       {PhaseType::rayleigh, "rayleigh"},
+       {PhaseType::two_lobe, "two_lobe"},
+       {PhaseType::mie, "mie"}}};
+};
+template <>
+struct EnumNames<LightType> {
+  static constexpr std::array<std::pair<LightType, std::string_view>, 4> table{
+      {{LightType::distant, "distant"},
+       {LightType::point, "point"},
+       {LightType::spot, "spot"},
+       {LightType::environment, "environment"}}};
+};
+template <>
+struct EnumNames<DirectLight> {
+  static constexpr std::array<std::pair<DirectLight, std::string_view>, 3> table{
+      {{DirectLight::automatic, "auto"},
+       {DirectLight::sampled, "sampled"},
+       {DirectLight::photons, "photons"}}};
+};
+template <>
+struct EnumNames<EstimatorType> {
+  static constexpr std::array<std::pair<EstimatorType, std::string_view>, 3> table{
+      {{EstimatorType::beam, "beam"},
+       {EstimatorType::march, "march"},
+       {EstimatorType::path, "path"}}};
+};
+template <>
+struct EnumNames<PhotonStore> {
+  static constexpr std::array<std::pair<PhotonStore, std::string_view>, 2> table{
+      {{PhotonStore::fluence, "fluence"}, {PhotonStore::scatter, "scatter"}}};
+};
+template <>
+struct EnumNames<KernelRadius> {
+  static constexpr std::array<std::pair<KernelRadius, std::string_view>, 2> table{
+      {{KernelRadius::adaptive, "adaptive"}, {KernelRadius::fixed, "fixed"}}};
+};
+template <>
+struct EnumNames<KernelShape> {
+  static constexpr std::array<std::pair<KernelShape, std::string_view>, 4> table{
+      {{KernelShape::constant, "constant"},
+       {KernelShape::epanechnikov, "epanechnikov"},
+       {KernelShape::biweight, "biweight"},
+       {KernelShape::fourth_order, "fourth_order"}}};
+};
+
+/// The value's name; empty for a value outside the table.
+template <class E>
+std::string enum_name(E value) {
+  for (const auto& [entry, name] : EnumNames<E>::table)
+    if (entry == value)
+      return std::string(name);
+  return {};
+}
+
+/// The value of a name that is in the table.
+template <class E>
+E enum_value(std::string_view text) {
+  for (const auto& [entry, name] : EnumNames<E>::table)
+    if (name == text)
+      return entry;
+  return EnumNames<E>::table.front().first;
+}
+
+template <class E>
+std::vector<std::string> enum_names() {
+  std::vector<std::string> names;
+  for (const auto& [entry, name] : EnumNames<E>::table)
+    names.emplace_back(name);
+  return names;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,49 @@
+#include "scene/content_hash.h"
+#include "scene/scene_keys.h"
+#include "vdbeam/scene_file.h"
+
+#include <bit>
+#include <fmt/format.h>
+
+namespace vdbeam {
+namespace {
+
+void add(ContentHash& hash, const std::string& text) {
+  hash.add_number(text.size());
+  hash.add(text.data(), text.size());
+}
+
+/// Numbers enter by their bits: text would round colours and depend on the library's formatting.
+void add(ContentHash& hash, const KeyValue& value) {
+  hash.add_number(value.index());
+  if (const auto* whole = std::get_if<std::int64_t>(&value))
+    hash.add_number(static_cast<std::uint64_t>(*whole));
+  else if (const auto* number = std::get_if<double>(&value))
+    hash.add_number(std::bit_cast<std::uint64_t>(*number + 0.0));
+  else if (const auto* text = std::get_if<std::string>(&value))
+    add(hash, *text);
+  else if (const auto* list = std::get_if<std::vector<double>>(&value))
+    for (const double x : *list)
+      hash.add_number(std::bit_cast<std::uint64_t>(x + 0.0)); // -0 is 0
+}
+
+} // namespace
+
+std::string scene_hash(const Scene& scene) {
+  ContentHash hash;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.get || !key.changes_picture)
+      continue;
+    for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
+      add(hash, key_path(key, i));
+      const KeyValue value = key.get(scene, i);
+      if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
+        hash.add_number(hash_file(std::get<std::string>(value)));
+      else
+        add(hash, value);
+    }
+  }
+  return fmt::format("{:016x}", hash.value());
+}
+
+} // namespace vdbeam

@@ -1,0 +1,267 @@
+#include "scene/key_access.h"
+
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+template <class T>
+struct Unwrapped {
+  using type = T;
+};
+template <class T>
+struct Unwrapped<std::optional<T>> {
+  using type = T;
+};
+
+template <class T>
+constexpr KeyKind kind_of() {
+  if constexpr (std::is_enum_v<T>)
+    return KeyKind::choice;
+  else if constexpr (std::is_integral_v<T>)
+    return KeyKind::integer;
+  else if constexpr (std::is_same_v<T, double>)
+    return KeyKind::number;
+  else if constexpr (std::is_same_v<T, Vec3d>)
+    return KeyKind::vector;
+  else if constexpr (std::is_same_v<T, Rgb>)
+    return KeyKind::color;
+  else if constexpr (std::is_same_v<T, std::string>)
+    return KeyKind::text;
+  else
+    return KeyKind::matrix;
+}
+
+/// A key under construction; each call below adds one property.
+struct Entry {
+  SceneKey key;
+
+  Entry& unit(std::string text) { return set(key.unit, std::move(text)); }
+  Entry& kind(KeyKind k) { return set(key.kind, k); }
+  Entry& types(std::vector<std::string> t) { return set(key.types, std::move(t)); }
+  Entry& absent(std::string word) { return set(key.absent_word, std::move(word)); }
+  Entry& required() { return set(key.required, true); }
+  Entry& one_for_all() { return set(key.one_for_all, true); }
+  Entry& keeps_picture() { return set(key.changes_picture, false); }
+  Entry& at_least(double low) { return set(key.range.lower, low); }
+  Entry& above(double low) { return at_least(low).set(key.range.lower_open, true); }
+  Entry& within(double low, double high) { return set(key.range, {.lower = low, .upper = high}); }
+  Entry& inside(double low, double high) {
+    return set(key.range, {.lower = low, .upper = high, .lower_open = true, .upper_open = true});
+  }
+  Entry& above_up_to(double low, double high) {
+    return set(key.range, {.lower = low, .upper = high, .lower_open = true});
+  }
+
+private:
+  template <class T>
+  Entry& set(T& field, T value) {
+    field = std::move(value);
+    return *this;
+  }
+};
+
+class Table {
+public:
+  explicit Table(std::vector<Entry>& entries) : entries_(entries) { entries_.reserve(64); }
+
+  void section(SceneSection s) { section_ = s; }
+
+  template <class S, class T>
+  Entry& add(const char* name, T S::*member, const char* doc) {
+    Entry& entry = add_unbound<typename Unwrapped<T>::type>(name, doc);
+    bind_member(entry.key, member);
+    return entry;
+  }
+  /// A number whose 0 is written "auto".
+  template <class S, class T>
+  Entry& add_auto(const char* name, T S::*member, const char* doc) {
+    Entry& entry = add_unbound<T>(name, doc);
+    bind_member_zero_is_absent(entry.key, member);
+    return entry.absent("auto");
+  }
+  template <class T>
+  Entry& add_unbound(const char* name, const char* doc) {
+    Entry& entry = entries_.emplace_back();
+    entry.key.section = section_;
+    entry.key.name = name;
+    entry.key.doc = doc;
+    entry.key.kind = kind_of<T>();
+    if constexpr (std::is_enum_v<T>)
+      entry.key.choices = enum_names<T>();
+    entry.key.one_for_all = entry.key.kind == KeyKind::color;
+    if constexpr (std::is_integral_v<T>)
+      entry.key.range.upper = static_cast<double>(std::numeric_limits<T>::max());
+    return entry;
+  }
+
+private:
+  std::vector<Entry>& entries_;
+  SceneSection section_ = SceneSection::image;
+};
+
+void add_image_and_camera(Table& table) {
+  table.section(SceneSection::image);
+  table.add("width", &ImageSettings::width, "width of the picture").unit("pixels").within(1, 65536);
+  table.add("height", &ImageSettings::height, "height of the picture")
+      .unit("pixels")
+      .within(1, 65536);
+
+  table.section(SceneSection::camera);
+  table.add("position", &CameraSettings::position, "where the camera stands").unit("world");
+  table.add("look_at", &CameraSettings::look_at, "the point in the middle of the picture")
+      .unit("world");
+  table.add("up", &CameraSettings::up, "the direction that is up in the picture");
+  table.add("fov", &CameraSettings::fov, "vertical field of view").unit("degrees").inside(0, 180);
+}
+
+void add_volume(Table& table) {
+  using V = VolumeSettings;
+  table.section(SceneSection::volume);
+  table.add("file", &V::file, "the VDB; ####, %04d or $F4 stands for the frame number")
+      .kind(KeyKind::file)
+      .required();
+  table.add("density", &V::density, "name of the density grid");
+  table.add("extinction", &V::extinction, "extinction coefficient where the density is 1")
+      .unit("1 / world")
+      .at_least(0);
+  table.add("extinction_scale", &V::extinction_scale, "factor of the extinction per channel")
+      .at_least(0);
+  table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
+      .within(0, 1);
+  table.add("transform", &V::transform,
+            "row-major 3x4 matrix applied after the grid's own transform; excludes the next three");
+  table.add_unbound<Vec3d>("translate", "moves the volume, after rotating it").unit("world");
+  table.add_unbound<Vec3d>("rotate", "turns the volume about the world's X, then Y, then Z axis")
+      .unit("degrees");
+  table.add_unbound<Vec3d>("scale", "scales the volume about the origin, before rotating it")
+      .one_for_all();
+
+  using P = PhaseSettings;
+  table.section(SceneSection::phase);
+  table.add("type", &P::type, "phase function; phase = \"NAME\" is short for it");
+  table.add("g", &P::g, "mean cosine, of the first lobe where there are two")
+      .inside(-1, 1)
+      .types({"henyey_greenstein", "two_lobe"});
+  table.add("g2", &P::g2, "mean cosine of the second lobe").inside(-1, 1).types({"two_lobe"});
+  table.add("blend", &P::blend, "share of the second lobe").within(0, 1).types({"two_lobe"});
+  table.add("droplet_diameter", &P::droplet_diameter, "diameter of the water droplets")
+      .unit("micrometres")
+      .within(5, 50)
+      .types({"mie"});
+}
+
+void add_light(Table& table) {
+  using L = LightSettings;
+  table.section(SceneSection::light);
+  table.add("type", &L::type, "kind of light").required();
+  table.add("direction", &L::direction, "the way the light travels").types({"distant", "spot"});
+  table.add("irradiance", &L::irradiance, "irradiance of a plane that faces the light")
+      .unit("W / m^2")
+      .at_least(0)
+      .types({"distant"});
+  table.add("angular_radius", &L::angular_radius, "half angle of the light's disc (the sun: 0.27)")
+      .unit("degrees")
+      .within(0, 90)
+      .types({"distant"});
+  table.add("position", &L::position, "where the light is").unit("world").types({"point", "spot"});
+  table.add("intensity", &L::intensity, "radiant intensity")
+      .unit("W / sr")
+      .at_least(0)
+      .types({"point", "spot"});
+  table.add("cone_angle", &L::cone_angle, "half angle where the light ends")
+      .unit("degrees")
+      .above_up_to(0, 90)
+      .types({"spot"});
+  table.add("cone_falloff", &L::cone_falloff, "width of the soft edge inside the cone")
+      .unit("degrees")
+      .within(0, 90)
+      .types({"spot"});
+  table.add("radiance", &L::radiance, "radiance of the sky, or the factor of its image")
+      .unit("W / m^2 / sr")
+      .at_least(0)
+      .types({"environment"});
+  table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
+      .kind(KeyKind::file)
+      .types({"environment"});
+  table.add("rotation", &L::rotation, "turns the sky about the camera's up axis")
+      .unit("degrees")
+      .types({"environment"});
+  table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
+}
+
+void add_stop_rule(Table& table) {
+  using R = RenderSettings;
+  table.add("passes", &R::passes, "passes to render; 64 where no limit at all is given")
+      .at_least(1)
+      .absent("none");
+  table.add("time", &R::time, "rendering time, as a number or like \"90s\", \"5m\", \"1h30m\"")
+      .kind(KeyKind::duration)
+      .unit("seconds")
+      .above(0)
+      .absent("none");
+  table.add("target_error", &R::target_error, "estimated error (MRSE) to reach")
+      .above(0)
+      .absent("none");
+}
+
+void add_render(Table& table) {
+  using R = RenderSettings;
+  table.section(SceneSection::render);
+  table.add("estimator", &R::estimator, "how light is found");
+  add_stop_rule(table);
+  table.add("photons", &R::photons, "photons stored per pass").at_least(1).absent("auto");
+  table.add("store", &R::store, "what a photon stands for: fluence, or scattered light (classic)");
+  table.add("direct", &R::direct, "single scattering by shadow rays (sampled) or from photons");
+  table.add_auto("direct_samples", &R::direct_samples, "shadow rays per camera ray and light")
+      .at_least(1);
+  table.add("kernel", &R::kernel, "photon radii by local density, or one radius for all");
+  table.add("kernel_shape", &R::kernel_shape, "profile of the kernel");
+  table.add_auto("radius", &R::radius, "radius of the fixed kernel, needed for kernel = \"fixed\"")
+      .unit("world")
+      .above(0)
+      .absent("none");
+  table.add_auto("neighbours", &R::neighbours, "photons in an adaptive kernel").at_least(1);
+  table.add_auto("min_radius", &R::min_radius, "lower bound of adaptive radii")
+      .unit("world")
+      .above(0);
+  table.add_auto("max_radius", &R::max_radius, "upper bound of adaptive radii")
+      .unit("world")
+      .above(0);
+  table.add("alpha", &R::alpha, "radius shrinking over the passes; 1: none").above_up_to(0, 1);
+  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons")
+      .above_up_to(0, 1);
+  table.add("max_bounces", &R::max_bounces, "scattering events per path")
+      .at_least(1)
+      .absent("none");
+  table.add("cutoff", &R::cutoff, "transmittance at which a camera ray ends").inside(0, 1);
+  table.add("step", &R::step, "step of the march estimator").unit("voxels").above(0);
+  table.add("seed", &R::seed, "random numbers; the same seed gives the same picture").at_least(0);
+  table
+      .add("threads", &R::threads,
+           "threads; 0: all that the machine grants. Never changes the picture")
+      .within(0, 4096)
+      .keeps_picture();
+}
+
+std::vector<SceneKey> make_table() {
+  std::vector<Entry> entries;
+  Table table(entries);
+  add_image_and_camera(table);
+  add_volume(table);
+  add_light(table);
+  add_render(table);
+  std::vector<SceneKey> keys;
+  for (Entry& entry : entries)
+    keys.push_back(std::move(entry.key));
+  return keys;
+}
+
+} // namespace
+
+const std::vector<SceneKey>& scene_keys() {
+  static const std::vector<SceneKey> keys = make_table();
+  return keys;
+}
+
+} // namespace vdbeam

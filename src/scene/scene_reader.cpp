@@ -1,0 +1,266 @@
+#include "scene/scene_reader.h"
+
+#include "scene/frame_range.h"
+#include "scene/text.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <system_error>
+
+namespace vdbeam {
+namespace {
+
+struct Child {
+  std::string name;
+  const toml::node* node;
+};
+
+/// A table's entries in the order of the file, so that the first mistake is told first.
+std::vector<Child> children_of(const toml::table& table) {
+  std::vector<Child> children;
+  for (const auto& [name, node] : table)
+    children.push_back({std::string(name.str()), &node});
+  std::stable_sort(children.begin(), children.end(), [](const Child& a, const Child& b) {
+    return a.node->source().begin.line < b.node->source().begin.line;
+  });
+  return children;
+}
+
+const std::vector<std::pair<std::string, SceneSection>>& root_sections() {
+  static const std::vector<std::pair<std::string, SceneSection>> sections{
+      {"image", SceneSection::image},   {"camera", SceneSection::camera},
+      {"volume", SceneSection::volume}, {"light", SceneSection::light},
+      {"render", SceneSection::render},
+  };
+  return sections;
+}
+
+/// Where the table is, or its first entry where the command line made the table.
+std::string table_location(const toml::table& table) {
+  if (!table.source().path && !table.empty())
+    return location_of(table.begin()->second);
+  return location_of(table);
+}
+
+std::string item_name(SceneSection section, std::size_t index) {
+  if (section == SceneSection::volume)
+    return fmt::format("volume.{}", index);
+  if (section == SceneSection::phase)
+    return fmt::format("volume.{}.phase", index);
+  return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
+}
+
+/// What the user may have meant by an unknown key: a key of this table, or one of another table.
+std::string suggestion(SceneSection section, const std::string& name) {
+  if (const auto near = nearest_word(name, key_names(section)))
+    return "; did you mean " + *near + "?";
+  for (const SceneKey& key : scene_keys())
+    if (key.name == name)
+      return fmt::format("; {} is a key of {}", name, section_name(key.section));
+  return "; its keys are " + join_words(key_names(section), "and");
+}
+
+} // namespace
+
+Scene SceneReader::read(const toml::table& root) {
+  scene_.path = path_;
+  for (const Child& child : children_of(root)) {
+    const auto& sections = root_sections();
+    const auto found = std::find_if(sections.begin(), sections.end(),
+                                    [&](const auto& s) { return s.first == child.name; });
+    if (found != sections.end()) {
+      read_section(found->second, *child.node);
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, section] : sections)
+      names.push_back(name);
+    std::string hint = "; the tables are " + join_words(names, "and");
+    if (const auto near = nearest_word(child.name, names))
+      hint = "; did you mean " + *near + "?";
+    for (const SceneKey& key : scene_keys())
+      if (key.name == child.name && !key.is_list_item())
+        hint = "; did you mean " + key_path(key, 0) + "?";
+    throw InputError(
+        one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
+  }
+  validate_consistency(scene_, [this](const std::string& key) { return locate(key); });
+  return std::move(scene_);
+}
+
+void SceneReader::read_section(SceneSection section, const toml::node& node) {
+  if (section == SceneSection::volume || section == SceneSection::light)
+    return read_list(section, node);
+  if (const auto* table = node.as_table())
+    return read_table(section, 0, *table);
+  throw InputError(fmt::format("{0}: {1} must be a table: write [{1}], got {2}", location_of(node),
+                               section_name(section), node_text(node)));
+}
+
+void SceneReader::read_list(SceneSection section, const toml::node& node) {
+  const std::string name = section_name(section);
+  const auto* list = node.as_array();
+  if (!list)
+    throw InputError(fmt::format("{0}: {1} must be a list: write [[{1}]] for each {1}, got {2}",
+                                 location_of(node), name, node_text(node)));
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const auto* table = (*list)[i].as_table();
+    if (!table)
+      throw InputError(fmt::format("{}: {}.{} must be a table, got {}", location_of((*list)[i]),
+                                   name, i, node_text((*list)[i])));
+    if (section == SceneSection::volume)
+      scene_.volumes.emplace_back();
+    else
+      scene_.lights.emplace_back();
+    read_table(section, i, *table);
+  }
+}
+
+void SceneReader::read_table(SceneSection section, std::size_t index, const toml::table& table) {
+  placement_.clear();
+  for (const Child& child : children_of(table)) {
+    const SceneKey* key = find_key(section, child.name);
+    if (key)
+      read_key(*key, index, *child.node);
+    else if (section == SceneSection::volume && child.name == "phase")
+      read_phase(index, *child.node);
+    else
+      fail_unknown(section, index, child.name, *child.node);
+  }
+  check_required(section, index, table);
+  check_types(section, index, table);
+  if (section == SceneSection::volume)
+    place_volume(index);
+}
+
+void SceneReader::read_phase(std::size_t index, const toml::node& node) {
+  if (node.is_string())
+    return read_key(*find_key(SceneSection::phase, "type"), index, node);
+  const auto* table = node.as_table();
+  if (!table)
+    throw InputError(fmt::format(
+        "{}: volume.{}.phase must be a table, e.g. {{ type = \"henyey_greenstein\", g = 0.6 }}, "
+        "got {}",
+        location_of(node), index, node_text(node)));
+  // read_table would forget the placement of the volume that this phase is a part of.
+  const auto placement = placement_;
+  read_table(SceneSection::phase, index, *table);
+  placement_ = placement;
+}
+
+void SceneReader::read_key(const SceneKey& key, std::size_t index, const toml::node& node) {
+  const std::string path = key_path(key, index);
+  KeyValue value = read_key_value(key, path, node);
+  locations_[path] = location_of(node);
+  if (key.kind == KeyKind::file && std::get<std::string>(value) != "")
+    value = resolve_file(std::get<std::string>(value), path, node);
+  if (key.set)
+    key.set(scene_, index, value);
+  else
+    placement_[key.name] = std::get<std::vector<double>>(value);
+}
+
+std::string SceneReader::resolve_file(const std::string& text, const std::string& key,
+                                      const toml::node& node) {
+  namespace fs = std::filesystem;
+  // A path typed in a shell is relative to where it was typed.
+  const fs::path pattern = is_override(node) ? fs::path(text) : folder_ / text;
+  const std::string file = substitute_frame(pattern.string(), frame_);
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) && !fs::is_directory(status))
+    return file;
+  std::string hint;
+  if (fs::is_directory(status))
+    hint = ", which is a folder";
+  else if (const auto frames = frames_on_disk(pattern.string()); !frames.empty())
+    hint = "; there are frames " + format_frame_range(frames);
+  throw InputError(
+      one_line(fmt::format("{}: {}: there is no file {}{}", location_of(node), key, file, hint)));
+}
+
+void SceneReader::check_required(SceneSection section, std::size_t index,
+                                 const toml::table& table) const {
+  for (const SceneKey& key : scene_keys())
+    if (key.section == section && key.required && !table.contains(key.name))
+      throw InputError(fmt::format("{}: {} needs {}: {}", table_location(table),
+                                   item_name(section, index), key.name, key.doc));
+}
+
+void SceneReader::check_types(SceneSection section, std::size_t index,
+                              const toml::table& table) const {
+  const SceneKey* type_key = find_key(section, "type");
+  if (!type_key)
+    return;
+  const std::string type = std::get<std::string>(type_key->get(scene_, index));
+  const toml::node* type_node = table.get("type");
+  const bool type_replaced = type_node && is_override(*type_node);
+  for (const Child& child : children_of(table)) {
+    const SceneKey* key = find_key(section, child.name);
+    const bool fits = key->types.empty() ||
+                      std::find(key->types.begin(), key->types.end(), type) != key->types.end();
+    // The command line may change the type; what the file says for the old type is then moot.
+    if (fits || (type_replaced && !is_override(*child.node)))
+      continue;
+    throw InputError(fmt::format("{}: {} does not belong to type \"{}\", only to {}",
+                                 location_of(*child.node), key_path(*key, index), type,
+                                 join_words(key->types, "and")));
+  }
+}
+
+/// Folds translate, rotate and scale into the volume's transform.
+void SceneReader::place_volume(std::size_t index) {
+  if (placement_.empty())
+    return;
+  const std::string path = fmt::format("volume.{}.transform", index);
+  if (locations_.contains(path))
+    throw InputError(fmt::format("{}: {} excludes {}: write one or the other", locate(path), path,
+                                 placement_.begin()->first));
+  const auto get = [&](const char* name, double standard) {
+    const auto found = placement_.find(name);
+    return found == placement_.end() ? Vec3d(standard)
+                                     : Vec3d(found->second[0], found->second[1], found->second[2]);
+  };
+  const Vec3d translate = get("translate", 0), angles = get("rotate", 0), scale = get("scale", 1);
+  const auto rotate = [](double& a, double& b, double degrees) {
+    const double radians = degrees * 3.14159265358979323846 / 180;
+    const double c = std::cos(radians), s = std::sin(radians);
+    const double old_a = a;
+    a = c * old_a - s * b;
+    b = s * old_a + c * b;
+  };
+  std::array<double, 12>& m = scene_.volumes[index].transform;
+  for (int column = 0; column < 3; ++column) {
+    Vec3d axis;
+    axis[column] = scale[column];
+    rotate(axis.y, axis.z, angles.x);
+    rotate(axis.z, axis.x, angles.y);
+    rotate(axis.x, axis.y, angles.z);
+    for (int row = 0; row < 3; ++row)
+      m[4 * row + column] = axis[row];
+  }
+  for (int row = 0; row < 3; ++row)
+    m[4 * row + 3] = translate[row];
+  for (const char* name : {"scale", "rotate", "translate"})
+    if (const auto key = locations_.find(fmt::format("volume.{}.{}", index, name));
+        key != locations_.end()) {
+      locations_[path] = key->second;
+      break;
+    }
+}
+
+std::string SceneReader::locate(const std::string& key) const {
+  const auto found = locations_.find(key);
+  return found == locations_.end() ? path_ : found->second;
+}
+
+void SceneReader::fail_unknown(SceneSection section, std::size_t index, const std::string& name,
+                               const toml::node& node) const {
+  throw InputError(
+      one_line(fmt::format("{}: unknown key {}.{}{}", location_of(node), item_name(section, index),
+                           name, suggestion(section, name))));
+}
+
+} // namespace vdbeam

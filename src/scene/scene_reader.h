@@ -1,0 +1,45 @@
+#pragma once
+
+#include "scene/scene_keys.h"
+#include "scene/validate.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <toml++/toml.h>
+
+namespace vdbeam {
+
+/// Turns the tree of a scene file into a scene, for one frame.
+class SceneReader {
+public:
+  /// `folder` is what relative paths of the file are relative to.
+  SceneReader(std::string path, std::filesystem::path folder, int frame)
+      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame) {}
+
+  /// Throws InputError with file and line.
+  Scene read(const toml::table& root);
+
+private:
+  void read_section(SceneSection section, const toml::node& node);
+  void read_list(SceneSection section, const toml::node& node);
+  void read_table(SceneSection section, std::size_t index, const toml::table& table);
+  void read_phase(std::size_t index, const toml::node& node);
+  void read_key(const SceneKey& key, std::size_t index, const toml::node& node);
+  void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
+  void check_types(SceneSection section, std::size_t index, const toml::table& table) const;
+  void place_volume(std::size_t index);
+  std::string resolve_file(const std::string& text, const std::string& key, const toml::node& node);
+  std::string locate(const std::string& key) const;
+  [[noreturn]] void fail_unknown(SceneSection section, std::size_t index, const std::string& name,
+                                 const toml::node& node) const;
+
+  std::string path_;
+  std::filesystem::path folder_;
+  int frame_;
+  Scene scene_;
+  std::map<std::string, std::string> locations_;         ///< of the keys that were read
+  std::map<std::string, std::vector<double>> placement_; ///< translate, rotate, scale
+};
+
+} // namespace vdbeam

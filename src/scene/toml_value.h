@@ -1,0 +1,28 @@
+#pragma once
+
+#include "scene/scene_keys.h"
+
+#include <string>
+#include <toml++/toml.h>
+
+namespace vdbeam {
+
+/// "cloud.toml:14" for a node of a file, "--set volume.0.extinction=80" for one of the command
+/// line.
+std::string location_of(const toml::node& node);
+/// True for a value that came from the command line.
+bool is_override(const toml::node& node);
+/// How the source of an option on the command line is told from a file's name.
+std::string override_source(const std::string& origin);
+
+/// A node as text for messages: `"beam"`, `1.2`, `[1, 2]`, `a table`; one line, not too long.
+std::string node_text(const toml::node& node);
+
+/// The node as a value of this key. Throws InputError where its type or range is not right.
+/// `path` names the key in messages.
+KeyValue read_key_value(const SceneKey& key, const std::string& path, const toml::node& node);
+
+/// Text on one line: control characters replaced, cut at some length.
+std::string one_line(const std::string& text);
+
+} // namespace vdbeam

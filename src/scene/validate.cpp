@@ -1,0 +1,90 @@
+#include "scene/validate.h"
+
+#include "scene/scene_keys.h"
+#include "vdbeam/error.h"
+#include "vdbeam/scene_file.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace vdbeam {
+namespace {
+
+class Checker {
+public:
+  Checker(const Scene& scene, const KeyLocator& locate) : scene_(scene), locate_(locate) {}
+
+  void check_camera() const {
+    const CameraSettings& camera = scene_.camera;
+    const Vec3d view = camera.look_at - camera.position;
+    if (length(view) == 0)
+      fail("camera.look_at", "must differ from camera.position");
+    if (length(camera.up) == 0)
+      fail("camera.up", "must not be [0, 0, 0]");
+    // A sine under 1e-6 leaves no digits for the camera's sideways axis.
+    if (length(cross(normalize(view), normalize(camera.up))) < 1e-6)
+      fail("camera.up", "must not be parallel to the direction from position to look_at");
+  }
+
+  void check_volume(std::size_t index) const {
+    const auto& m = scene_.volumes[index].transform;
+    const Vec3d a{m[0], m[1], m[2]}, b{m[4], m[5], m[6]}, c{m[8], m[9], m[10]};
+    const double size = length(a) * length(b) * length(c);
+    if (!(std::abs(dot(a, cross(b, c))) > 1e-12 * size))
+      fail(fmt::format("volume.{}.transform", index), "must be invertible (no scale may be 0)");
+  }
+
+  void check_light(std::size_t index) const {
+    const LightSettings& light = scene_.lights[index];
+    const bool aimed = light.type == LightType::distant || light.type == LightType::spot;
+    if (aimed && length(light.direction) == 0)
+      fail(fmt::format("light.{}.direction", index), "must not be [0, 0, 0]");
+    if (light.type == LightType::spot && light.cone_falloff > light.cone_angle)
+      fail(fmt::format("light.{}.cone_falloff", index),
+           fmt::format("must be at most cone_angle ({}), got {}", light.cone_angle,
+                       light.cone_falloff));
+  }
+
+  void check_render() const {
+    const RenderSettings& render = scene_.render;
+    if (render.kernel == KernelRadius::fixed && render.radius == 0)
+      fail("render.kernel", "is \"fixed\": render.radius is needed too");
+    if (render.min_radius > 0 && render.max_radius > 0 && render.min_radius > render.max_radius)
+      fail("render.min_radius", fmt::format("must be at most render.max_radius ({}), got {}",
+                                            render.max_radius, render.min_radius));
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& path, const std::string& text) const {
+    throw InputError(fmt::format("{}: {} {}", locate_(path), path, text));
+  }
+
+  const Scene& scene_;
+  const KeyLocator& locate_;
+};
+
+} // namespace
+
+void validate_consistency(const Scene& scene, const KeyLocator& locate) {
+  const Checker checker(scene, locate);
+  checker.check_camera();
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    checker.check_volume(i);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    checker.check_light(i);
+  checker.check_render();
+}
+
+void validate_scene(const Scene& scene) {
+  const std::string name = scene.path.empty() ? "scene" : scene.path;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.get)
+      continue;
+    for (std::size_t i = 0; i < section_count(scene, key.section); ++i)
+      if (const auto complaint = key.complaint(key.get(scene, i)))
+        throw InputError(fmt::format("{}: {} {}", name, key_path(key, i), *complaint));
+  }
+  validate_consistency(scene, [&](const std::string&) { return name; });
+}
+
+} // namespace vdbeam

@@ -1,0 +1,213 @@
+#include "scene_fixture.h"
+
+namespace vdbeam {
+namespace {
+
+struct BadScene {
+  const char* text;
+  const char* message;
+};
+void PrintTo(const BadScene& scene, std::ostream* stream) {
+  *stream << scene.text;
+}
+
+class BadSceneFile : public test::SceneTest, public ::testing::WithParamInterface<BadScene> {};
+
+TEST_P(BadSceneFile, GivesTheExactLine) {
+  EXPECT_EQ(error_of(GetParam().text), GetParam().message);
+}
+
+#define VOLUME "[[volume]]\nfile = 'cloud.vdb'\n"
+
+INSTANTIATE_TEST_SUITE_P(
+    Syntax, BadSceneFile,
+    ::testing::Values(
+        BadScene{"[image]\nwidth = 1\nwidth = 2\n",
+                 "s.toml:3: not valid TOML: cannot redefine existing integer 'width'"},
+        BadScene{"\n\n[image\n", "s.toml:3: not valid TOML: expected ']', saw '\\n'"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    UnknownKeys, BadSceneFile,
+    ::testing::Values(
+        BadScene{"[image]\nwidht = 1\n", "s.toml:2: unknown key image.widht; did you mean width?"},
+        BadScene{VOLUME "extintion = 2\n",
+                 "s.toml:3: unknown key volume.0.extintion; did you mean extinction?"},
+        BadScene{VOLUME "phase = { tpye = 'mie' }\n",
+                 "s.toml:3: unknown key volume.0.phase.tpye; did you mean type?"},
+        BadScene{"[image]\nheight = 1\n\n[rendr]\n",
+                 "s.toml:4: unknown key rendr; did you mean render?"},
+        BadScene{"width = 1\n", "s.toml:1: unknown key width; did you mean image.width?"},
+        BadScene{"[camera]\nseed = 1\n",
+                 "s.toml:2: unknown key camera.seed; seed is a key of render"},
+        BadScene{"[image]\nzzz = 1\n",
+                 "s.toml:2: unknown key image.zzz; its keys are width and height"},
+        BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
+                              "light and render"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Types, BadSceneFile,
+    ::testing::Values(
+        BadScene{"[image]\nwidth = 'wide'\n",
+                 "s.toml:2: image.width must be a whole number, got \"wide\""},
+        BadScene{"[image]\nwidth = 1.5\n", "s.toml:2: image.width must be a whole number, got 1.5"},
+        BadScene{"[camera]\nfov = true\n", "s.toml:2: camera.fov must be a number, got true"},
+        BadScene{"[camera]\nup = [0, 1]\n", "s.toml:2: camera.up must be 3 numbers, got [0, 1]"},
+        BadScene{"[camera]\nup = [0, 1, 'x']\n",
+                 "s.toml:2: camera.up must be 3 numbers, got [0, 1, \"x\"]"},
+        BadScene{"[camera]\nup = 1\n", "s.toml:2: camera.up must be 3 numbers, got 1"},
+        BadScene{VOLUME "albedo = 'white'\n",
+                 "s.toml:3: volume.0.albedo must be 3 numbers (red, green, blue) or one for all, "
+                 "got \"white\""},
+        BadScene{VOLUME "transform = [1, 2]\n",
+                 "s.toml:3: volume.0.transform must be 12 numbers, got [1, 2]"},
+        BadScene{"[[volume]]\nfile = 3\n", "s.toml:2: volume.0.file must be a path, got 3"},
+        BadScene{"[render]\ntime = '5x'\n",
+                 "s.toml:2: render.time must be seconds or a text like \"90s\", \"5m\" or "
+                 "\"1h30m\" or \"none\", got \"5x\""},
+        BadScene{"[render]\nphotons = 'many'\n",
+                 "s.toml:2: render.photons must be a whole number or \"auto\", got \"many\""},
+        BadScene{"image = 3\n", "s.toml:1: image must be a table: write [image], got 3"},
+        BadScene{"[volume]\nfile = 'cloud.vdb'\n",
+                 "s.toml:1: volume must be a list: write [[volume]] for each volume, got a table"},
+        BadScene{"light = [1]\n", "s.toml:1: light.0 must be a table, got 1"},
+        BadScene{VOLUME "phase = 3\n",
+                 "s.toml:3: volume.0.phase must be a table, e.g. { type = \"henyey_greenstein\", "
+                 "g = 0.6 }, got 3"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Ranges, BadSceneFile,
+    ::testing::Values(
+        BadScene{"[image]\nwidth = 0\n", "s.toml:2: image.width must lie in [1, 65536], got 0"},
+        BadScene{"[camera]\nfov = 180\n", "s.toml:2: camera.fov must lie in (0, 180), got 180"},
+        BadScene{"[camera]\nfov = nan\n", "s.toml:2: camera.fov must be finite, got nan"},
+        BadScene{"[camera]\nposition = [0, inf, 0]\n",
+                 "s.toml:2: camera.position must be finite, got [0, inf, 0]"},
+        BadScene{VOLUME "extinction = -1\n",
+                 "s.toml:3: volume.0.extinction must be at least 0, got -1"},
+        BadScene{VOLUME "albedo = [0.5, 1.2, 1]\n",
+                 "s.toml:3: volume.0.albedo must lie in [0, 1], got [0.5, 1.2, 1]"},
+        BadScene{VOLUME "phase = { type = 'henyey_greenstein', g = 1.2 }\n",
+                 "s.toml:3: volume.0.phase.g must lie in (-1, 1), got 1.2"},
+        BadScene{VOLUME "phase = { type = 'mie', droplet_diameter = 3 }\n",
+                 "s.toml:3: volume.0.phase.droplet_diameter must lie in [5, 50], got 3"},
+        BadScene{"[render]\npasses = 0\n", "s.toml:2: render.passes must be at least 1, got 0"},
+        BadScene{"[render]\npasses = 3000000000\n",
+                 "s.toml:2: render.passes must be at most 2147483647, got 3000000000"},
+        BadScene{"[render]\ntime = 0\n", "s.toml:2: render.time must be greater than 0, got 0"},
+        BadScene{"[render]\nalpha = 0\n", "s.toml:2: render.alpha must lie in (0, 1], got 0"},
+        BadScene{"[render]\nseed = -1\n", "s.toml:2: render.seed must be at least 0, got -1"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Choices, BadSceneFile,
+    ::testing::Values(
+        BadScene{"[render]\nestimator = 'beams'\n",
+                 "s.toml:2: render.estimator must be beam, march or path, got \"beams\"; did you "
+                 "mean beam?"},
+        BadScene{"[[light]]\ntype = 'sun'\n",
+                 "s.toml:2: light.0.type must be distant, point, spot or environment, got \"sun\""},
+        BadScene{VOLUME "phase = 'hg'\n",
+                 "s.toml:3: volume.0.phase.type must be isotropic, henyey_greenstein, rayleigh, "
+                 "two_lobe or mie, got \"hg\""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Consistency, BadSceneFile,
+    ::testing::Values(
+        BadScene{"\n[[volume]]\nextinction = 3\n",
+                 "s.toml:2: volume.0 needs file: the VDB; ####, %04d or $F4 stands for the frame "
+                 "number"},
+        BadScene{"[[light]]\n", "s.toml:1: light.0 needs type: kind of light"},
+        BadScene{"[[volume]]\nfile = 'fog.vdb'\n",
+                 "s.toml:2: volume.0.file: there is no file fog.vdb"},
+        BadScene{"[[volume]]\nfile = '.'\n",
+                 "s.toml:2: volume.0.file: there is no file ., which is a folder"},
+        BadScene{"[[light]]\ntype = 'environment'\nimage = 'sky.exr'\n",
+                 "s.toml:3: light.0.image: there is no file sky.exr"},
+        BadScene{"[[light]]\ntype = 'distant'\nintensity = 3\n",
+                 "s.toml:3: light.0.intensity does not belong to type \"distant\", only to point "
+                 "and spot"},
+        BadScene{VOLUME "phase = { g = 0.5 }\n",
+                 "s.toml:3: volume.0.phase.g does not belong to type \"isotropic\", only to "
+                 "henyey_greenstein and two_lobe"},
+        BadScene{"[[light]]\ntype = 'distant'\ndirection = [0, 0, 0]\n",
+                 "s.toml:3: light.0.direction must not be [0, 0, 0]"},
+        BadScene{"[[light]]\ntype = 'spot'\ncone_angle = 3\ncone_falloff = 4\n",
+                 "s.toml:4: light.0.cone_falloff must be at most cone_angle (3), got 4"},
+        BadScene{VOLUME "scale = [1, 0, 1]\n",
+                 "s.toml:3: volume.0.transform must be invertible (no scale may be 0)"},
+        BadScene{VOLUME "translate = [1, 0, 1]\ntransform = [1,0,0,0, 0,1,0,0, 0,0,1,0]\n",
+                 "s.toml:4: volume.0.transform excludes translate: write one or the other"},
+        BadScene{"[camera]\nposition = [1, 2, 3]\nlook_at = [1, 2, 3]\n",
+                 "s.toml:3: camera.look_at must differ from camera.position"},
+        BadScene{"[camera]\nup = [0, 0, 0]\n", "s.toml:2: camera.up must not be [0, 0, 0]"},
+        BadScene{"[camera]\nup = [0, 0, 2]\n",
+                 "s.toml:2: camera.up must not be parallel to the direction from position to "
+                 "look_at"},
+        BadScene{"[render]\nkernel = 'fixed'\n",
+                 "s.toml:2: render.kernel is \"fixed\": render.radius is needed too"},
+        BadScene{"[render]\nmin_radius = 2\nmax_radius = 1\n",
+                 "s.toml:2: render.min_radius must be at most render.max_radius (1), got 2"}));
+
+#undef VOLUME
+
+using SceneErrors = test::SceneTest;
+
+TEST_F(SceneErrors, MissingFrameNamesTheFramesThereAre) {
+  write("s.0001.vdb", "");
+  write("s.0002.vdb", "");
+  write("s.0005.vdb", "");
+  const std::string path = write("q.toml", "[[volume]]\nfile = 's.####.vdb'\n");
+  try {
+    load_scene(path, 3);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(without_folder(error.what()),
+              "q.toml:2: volume.0.file: there is no file s.0003.vdb; there are frames 1,2,5");
+  }
+}
+
+TEST_F(SceneErrors, FirstMistakeOfTheFileIsTold) {
+  EXPECT_EQ(error_of("[render]\nseed = -1\n[camera]\nfov = 0\n"),
+            "s.toml:2: render.seed must be at least 0, got -1");
+}
+
+TEST_F(SceneErrors, UnreadableFiles) {
+  EXPECT_THROW(load_scene(file("none.toml")), InputError);
+  EXPECT_THROW(load_scene(folder_.string()), InputError);
+  std::string noise;
+  for (int i = 0; i < 5000; ++i)
+    noise += static_cast<char>(i * 37 % 251);
+  EXPECT_THROW(load_scene(write("noise.toml", noise)), InputError);
+  EXPECT_THROW(load_scene(write("deep.toml", "a = " + std::string(100000, '['))), InputError);
+}
+
+TEST_F(SceneErrors, MessagesAreOneLine) {
+  const std::string message = error_of("\"a\\nb\" = 1\n");
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_NE(message.find("s.toml:1"), std::string::npos);
+}
+
+TEST(ValidateScene, ChecksScenesFilledByHand) {
+  Scene scene;
+  scene.volumes.emplace_back().file = "x.vdb";
+  scene.lights.emplace_back();
+  EXPECT_NO_THROW(validate_scene(scene));
+  scene.volumes[0].phase.g = -1;
+  try {
+    validate_scene(scene);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "scene: volume.0.phase.g must lie in (-1, 1), got -1");
+  }
+  scene.volumes[0].phase.g = 0;
+  scene.render.radius = -1;
+  EXPECT_THROW(validate_scene(scene), InputError);
+  scene.render.radius = 0;
+  scene.lights[0].type = static_cast<LightType>(99);
+  EXPECT_THROW(validate_scene(scene), InputError);
+  scene.lights[0].type = LightType::distant;
+  scene.volumes[0].file = "";
+  EXPECT_THROW(validate_scene(scene), InputError);
+}
+
+} // namespace
+} // namespace vdbeam
