@@ -88,6 +88,9 @@ toml::node& find_parent(toml::table& root, const std::vector<std::string>& parts
       const bool is_list = i == 0 && (parts[0] == "volume" || parts[0] == "light");
       expand_shorthand(*table, parts[i]);
       if (!table->contains(parts[i])) {
+        const std::string child = path + (path.empty() ? "" : ".") + parts[i];
+        if (!is_list && parse_index(parts[i + 1]))
+          fail(entry, fmt::format("the scene has no {0}; set all of it: {0}=[...]", child));
         if (is_list)
           table->insert(parts[i], toml::array{});
         else
@@ -141,7 +144,9 @@ void apply_override(toml::table& root, const Override& entry) {
     }
     auto* list = parent.as_array();
     const auto index = parse_index(name);
-    if (!list || !index || *index >= list->size())
+    if (list && index && *index == list->size())
+      return list->push_back(std::move(value));
+    if (!list || !index || *index > list->size())
       fail(entry, fmt::format("there is no {}", entry.key));
     list->insert(list->erase(list->begin() + static_cast<std::ptrdiff_t>(*index)),
                  std::move(value));

@@ -40,12 +40,13 @@ toml::table parse_toml(const std::string& text, const std::string& path) {
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
-    std::string text(error.description());
+    std::string reason(error.description());
     // "Error while parsing key-value pair: cannot redefine ..." needs only its second half.
-    if (const auto colon = text.find(": "); text.starts_with("Error while") && colon < text.size())
-      text.erase(0, colon + 2);
-    throw InputError(
-        one_line(fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, text)));
+    if (const auto colon = reason.find(": ");
+        reason.starts_with("Error while") && colon < reason.size())
+      reason.erase(0, colon + 2);
+    throw InputError(one_line(
+        fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, reason)));
   }
 }
 

@@ -37,13 +37,6 @@ const std::vector<std::pair<std::string, SceneSection>>& root_sections() {
   return sections;
 }
 
-/// Where the table is, or its first entry where the command line made the table.
-std::string table_location(const toml::table& table) {
-  if (!table.source().path && !table.empty())
-    return location_of(table.begin()->second);
-  return location_of(table);
-}
-
 std::string item_name(SceneSection section, std::size_t index) {
   if (section == SceneSection::volume)
     return fmt::format("volume.{}", index);
@@ -185,7 +178,7 @@ void SceneReader::check_required(SceneSection section, std::size_t index,
                                  const toml::table& table) const {
   for (const SceneKey& key : scene_keys())
     if (key.section == section && key.required && !table.contains(key.name))
-      throw InputError(fmt::format("{}: {} needs {}: {}", table_location(table),
+      throw InputError(fmt::format("{}: {} needs {}: {}", location_of(table),
                                    item_name(section, index), key.name, key.doc));
 }
 

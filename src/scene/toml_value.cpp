@@ -87,8 +87,13 @@ bool is_override(const toml::node& node) {
 
 std::string location_of(const toml::node& node) {
   const auto& path = node.source().path;
-  if (!path)
+  if (!path) { // made on the way to a value of the command line
+    if (const auto* table = node.as_table(); table && !table->empty())
+      return location_of(table->begin()->second);
+    if (const auto* list = node.as_array(); list && !list->empty())
+      return location_of(*list->begin());
     return "scene";
+  }
   if (is_override(node))
     return one_line(path->substr(1));
   return fmt::format("{}:{}", *path, node.source().begin.line);

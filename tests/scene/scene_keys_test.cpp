@@ -1,0 +1,68 @@
+#include "scene/scene_keys.h"
+
+#include "scene/text.h"
+#include "scene_fixture.h"
+
+#include <set>
+#include <sstream>
+
+namespace vdbeam {
+namespace {
+
+TEST(SceneKeys, NamesAreUniqueAndDocumented) {
+  std::set<std::string> paths;
+  for (const SceneKey& key : scene_keys()) {
+    EXPECT_TRUE(paths.insert(key_path(key, 0)).second) << key.name;
+    EXPECT_FALSE(key.doc.empty()) << key.name;
+    EXPECT_EQ(key.kind == KeyKind::choice, !key.choices.empty()) << key.name;
+  }
+}
+
+TEST(SceneKeys, DefaultsAreValid) {
+  Scene scene;
+  scene.volumes.emplace_back();
+  scene.lights.emplace_back();
+  for (const SceneKey& key : scene_keys())
+    if (key.get && !key.required) {
+      EXPECT_FALSE(key.complaint(key.get(scene, 0)).has_value()) << key.name;
+    }
+}
+
+TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
+  std::ifstream stream(VDBEAM_SOURCE_DIR "/docs/scene.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  for (const SceneSection section :
+       {SceneSection::image, SceneSection::camera, SceneSection::volume, SceneSection::phase,
+        SceneSection::light, SceneSection::render})
+    EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
+        << "docs/scene.md lacks this table of " << section_name(section) << ":\n"
+        << key_table_markdown(section);
+}
+
+TEST(SceneKeys, HelpListsEveryKey) {
+  const std::string text = key_table_text();
+  for (const SceneKey& key : scene_keys())
+    EXPECT_NE(text.find("  " + key.name + " "), std::string::npos) << key.name;
+}
+
+TEST(Text, NearestWord) {
+  const std::vector<std::string> words{"extinction", "albedo", "density", "g"};
+  EXPECT_EQ(nearest_word("extintion", words), "extinction");
+  EXPECT_EQ(nearest_word("dnesity", words), "density");
+  EXPECT_EQ(nearest_word("alb", words), "albedo");
+  EXPECT_EQ(nearest_word("temperature", words), std::nullopt);
+}
+
+TEST(Text, Durations) {
+  EXPECT_EQ(parse_duration("2m30s"), 150);
+  EXPECT_EQ(parse_duration("0.5s"), 0.5);
+  for (const char* bad : {"", "s", "5x", "5s5m", "5s5s", "-5s", "1e3", "inf", "5 s", "m5"})
+    EXPECT_EQ(parse_duration(bad), std::nullopt) << bad;
+  EXPECT_EQ(format_duration(12.34), "12.3s");
+  EXPECT_EQ(format_duration(200), "3m20s");
+  EXPECT_EQ(format_duration(3720), "1h02m");
+}
+
+} // namespace
+} // namespace vdbeam
