@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -37,19 +38,23 @@ const float* components(const std::vector<Rgb>& colours) {
   return reinterpret_cast<const float*>(colours.data());
 }
 
+// On the bits, since comparisons of floats may trap and so keep compilers from vectorising.
+inline std::uint32_t is_finite(float value) {
+  return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) != 0x7f800000u ? 1 : 0;
+}
 inline float finite_or_zero(float value) {
-  return std::isfinite(value) ? value : 0;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) & (0u - is_finite(value)));
 }
 
-/// Adds values [begin, end) and returns how many were not finite.
+/// Adds values [begin, end), of one block, and returns how many were not finite.
 std::uint64_t add_values(CompensatedSums& sums, const float* values, std::size_t begin,
                          std::size_t end) {
-  std::uint64_t invalid = 0;
+  std::uint32_t finite = 0;
   for (std::size_t i = begin; i < end; ++i) {
-    invalid += std::isfinite(values[i]) ? 0 : 1;
+    finite += is_finite(values[i]);
     sums.add(i, finite_or_zero(values[i]));
   }
-  return invalid;
+  return end - begin - finite;
 }
 
 void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size_t begin,
