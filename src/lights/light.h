@@ -32,7 +32,7 @@ public:
   /// Radiance seen by a ray that leaves the scene along `direction`; 0 for lights that a ray cannot
   /// meet (delta lights and local lights).
   virtual Rgb escaped_radiance(const Vec3f& direction) const = 0;
-  /// One photon aimed at the occupied region. `number` of `count` stratifies the emission.
+  /// One photon aimed at the occupied region. The first numbers drawn place it, the others turn it.
   virtual EmittedPhoton emit(Rng& rng) const = 0;
   /// Power into the occupied region (render units), to share photons between lights.
   virtual Rgb power() const = 0;
