@@ -46,7 +46,7 @@ public:
             const OccupiedRegion& region)
       : axis_(direction), cone_{direction, one_minus_cos_degrees(radius_degrees)},
         mask_(axis_, static_cast<float>(spread()), masked() ? region : OccupiedRegion{}),
-        boxes_(region.boxes) {
+        boxes_(region.boxes), irradiance_(irradiance) {
     const double solid_angle = cone_.solid_angle();
     // E / (pi sin^2) * solid angle, without the small numbers.
     total_ = Rgb(Vec3d(irradiance) * (2 / (2 - cone_.one_minus_cos)));
@@ -67,7 +67,7 @@ public:
     return masked() ? emit_through_mask(rng) : emit_to_boxes(rng);
   }
   Rgb power() const override {
-    return total_ * (masked() ? mask_.area() : boxes_.projected_area(axis_));
+    return irradiance_ * (masked() ? mask_.area() : boxes_.projected_area(axis_));
   }
   bool is_delta() const override { return false; }
   LightType type() const override { return LightType::distant; }
@@ -107,6 +107,7 @@ private:
   Cone cone_; ///< of the directions of travel
   SilhouetteMask mask_;
   EntrySampler boxes_;
+  Rgb irradiance_;
   Rgb total_; ///< radiance times solid angle
   Rgb radiance_;
   float pdf_ = 0;

@@ -92,6 +92,18 @@ TEST(DistantLight, PhotonsCarryIrradianceTimesSilhouette) {
     }
 }
 
+// Over all photons of a disc, hit or miss, the mask's plane receives the irradiance.
+TEST(DistantLight, DiscPhotonsCarryTheMasksPower) {
+  const MadeLight made(sun({0.4, -0.7, 0.3}, 5.5), region_of({skew_box()}));
+  Average flux;
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    Rng rng({}, RngStage::test, i);
+    flux.add(static_cast<double>(made.light->emit(rng).flux.x));
+  }
+  EXPECT_LT(flux.error(), 3e-5 * flux.mean());
+  expect_mean(flux, made.light->power().x);
+}
+
 TEST(DistantLight, WideDiscPhotonsGiveTheFluence) {
   const OrientedBox box = skew_box();
   for (const double radius : {5.0, 30.0, 90.0}) {

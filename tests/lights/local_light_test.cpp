@@ -1,4 +1,5 @@
 #include "lights/light_test_scene.h"
+#include "lights/local_aim.h"
 
 namespace vdbeam {
 namespace {
@@ -128,6 +129,27 @@ TEST(PointLight, ExtremesStayFinite) {
     }
     EXPECT_GT(made.light->power().x, intensity);
   }
+}
+
+TEST(PointLight, ConeHoldsEveryBoxAndLittleElse) {
+  const std::vector<OrientedBox> boxes{cube({0.4f, 0, 0}, 0.5f), skew_box()};
+  const OccupiedRegion region = region_of(boxes);
+  for (const Vec3d& position : {Vec3d{0, 2, 0}, Vec3d{0.9, -0.8, 1}, Vec3d{4e5, 1e5, -7e5}}) {
+    const Cone cone = cone_towards(position, region);
+    double widest = 0;
+    for (const OrientedBox& box : boxes)
+      for (int corner = 0; corner < 8; ++corner) {
+        Vec3d to = Vec3d(box.corner) - position;
+        for (int i = 0; i < 3; ++i)
+          if (corner >> i & 1)
+            to += Vec3d(box.edges[i]);
+        const Vec3d chord = normalize(to) - cone.axis;
+        widest = std::max(widest, dot(chord, chord) / 2);
+      }
+    EXPECT_GE(cone.one_minus_cos, widest);
+    EXPECT_LE(cone.one_minus_cos, widest * 1.001);
+  }
+  EXPECT_EQ(cone_towards({0.4, 0, 0}, region).one_minus_cos, 2); // inside: all around
 }
 
 TEST(SpotLight, FallsSmoothlyFromFullToNothing) {
