@@ -1,5 +1,5 @@
-# Installs the build to a temporary prefix, builds the project of this folder against it and runs it:
-# cmake -DBUILD_DIR=... -DWORK_DIR=... -P test_package.cmake
+# Installs the build to a temporary prefix, builds the project of this folder against it and renders
+# with it: cmake -DBUILD_DIR=... -DWORK_DIR=... -DSCENE=... -P test_package.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -14,5 +14,5 @@ run(${prefix}/bin/vdbeam --version)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja
     -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}")
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/downstream)
+run(${WORK_DIR}/build/downstream ${SCENE} ${WORK_DIR}/downstream.exr)
 file(REMOVE_RECURSE ${WORK_DIR})

@@ -59,6 +59,7 @@ class Checker(unittest.TestCase):
         self.refuses("include/vdbeam/a.h", "#pragma once\n" + "\n" * 150, "limit is 150")
         self.refuses("src/math/a.cpp", "// TO" "DO: later\n", "unfinished")
         self.refuses("src/math/a.h", "int a;\n", "pragma once")
+        self.accepts("src/math/a-inl.h", "int a;\n")
 
 
 if __name__ == "__main__":
