@@ -92,12 +92,13 @@ void run_work() {
   ::_exit(1);
 }
 
-void limit(int resource, std::uint64_t value) {
+/// `slack` goes to the hard limit: at the hard one of RLIMIT_CPU comes a SIGKILL that says nothing.
+void limit(int resource, std::uint64_t value, std::uint64_t slack = 0) {
   rlimit old;
   if (::getrlimit(static_cast<__rlimit_resource>(resource), &old) != 0)
     return;
-  const rlim_t wanted = std::min<rlim_t>(value, old.rlim_max);
-  const rlimit now{wanted, wanted};
+  const rlimit now{std::min<rlim_t>(value, old.rlim_max),
+                   std::min<rlim_t>(value + slack, old.rlim_max)};
   ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
 }
 
@@ -135,7 +136,7 @@ void volunteer_for_out_of_memory_killer() {
   volunteer_for_out_of_memory_killer();
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, limits.bytes);
-  limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.cpu_seconds, 1.0))));
+  limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.cpu_seconds, 1.0))), 1);
   limit(RLIMIT_AS, address_space_bytes() + limits.bytes);
   run_on_own_stack();
 }
@@ -201,6 +202,20 @@ std::optional<Message> Child::wait(double seconds) {
   return std::nullopt;
 }
 
+/// One line for a terminal, whatever a broken file put in it: no control characters, and for
+/// OpenVDB's own messages only ASCII, not too long.
+std::string printable(std::string text, bool is_foreign) {
+  constexpr std::size_t longest_foreign = 160;
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f || (is_foreign && code > 0x7f))
+      c = code == '\n' ? ' ' : '?';
+  }
+  if (is_foreign && text.size() > longest_foreign)
+    text = text.substr(0, longest_foreign) + "...";
+  return text;
+}
+
 [[noreturn]] void throw_failure(const std::string& label, const GuardLimits& limits,
                                 const std::optional<Message>& message, bool died, int status) {
   const double gib = static_cast<double>(limits.bytes) / (1 << 30);
@@ -217,8 +232,7 @@ std::optional<Message> Child::wait(double seconds) {
       throw FrameError(label + ": the reader was killed; is the machine out of memory?");
     throw FrameError(label + ": the file is corrupt, it crashed the reader");
   }
-  std::string text(message->text.data());
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  const std::string text = printable(message->text.data(), message->outcome == Outcome::exception);
   switch (message->outcome) {
   case Outcome::input_error:
     throw InputError(text);

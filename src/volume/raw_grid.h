@@ -44,6 +44,7 @@ struct RawGridHeader {
   std::uint64_t leaf_count = 0;
   std::uint64_t tile_count = 0;
   std::uint64_t active_voxels = 0;
+  std::int64_t declared_voxels = -1; ///< as the file's statistics say, below 0 where they do not
   std::array<double, 12> index_to_world{}; ///< row-major 3x4
   std::uint32_t level_set = 0;
 };

@@ -144,6 +144,9 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
   header.index_to_world = affine_rows(path, name, grid.transform());
   const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
   header.level_set = level_set;
+  if (const auto declared = grid.template getMetadata<openvdb::Int64Metadata>(
+          openvdb::GridBase::META_FILE_VOXEL_COUNT))
+    header.declared_voxels = declared->value();
   check_background(path, name, grid, level_set);
 
   std::vector<const Leaf*> leaves;

@@ -65,6 +65,22 @@ std::string repairs_note(const std::string& label, const GridRepairs& repairs) {
   return fmt::format("{}: values replaced by 0: {}", label, list);
 }
 
+std::vector<std::string> notes(const std::string& label, const RawGridHeader& header,
+                               const DensityGrid& grid) {
+  std::vector<std::string> notes;
+  const std::int64_t declared = header.declared_voxels;
+  if (declared >= 0 && static_cast<std::uint64_t>(declared) != header.active_voxels)
+    notes.push_back(fmt::format("{}: has {} active voxels, but its file says {}; it may be damaged",
+                                label, header.active_voxels, declared));
+  if (header.level_set)
+    notes.push_back(label + ": is a level set, made a fog volume");
+  if (grid.repairs.nan + grid.repairs.infinite + grid.repairs.negative > 0)
+    notes.push_back(repairs_note(label, grid.repairs));
+  if (grid.field.empty())
+    notes.push_back(label + ": is empty, nothing to render");
+  return notes;
+}
+
 Affine to_affine(const std::array<double, 12>& m) {
   Affine affine;
   affine.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
@@ -83,6 +99,10 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
       run_guarded(path, guard, [&](int output) { write_raw_grid(path, grid_name, output); });
   RawGridHeader header;
   RawGrid raw = view_raw_grid(label, file, header);
+  // OpenVDB takes a file that ends just before a tree for an empty tree.
+  if (header.declared_voxels > 0 && raw.leaf_count == 0 && header.active_voxels == 0)
+    throw FrameError(fmt::format("{}: the file is cut short, of {} active voxels it has none",
+                                 label, header.declared_voxels));
   raw.release = [&file](std::size_t leaves) {
     file.release_front(RawGridHeader::values_offset + leaves * leaf_size * sizeof(float));
   };
@@ -93,12 +113,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   grid.repairs = bricked.repairs;
   grid.active_voxels = header.active_voxels;
   grid.index_to_world = to_affine(header.index_to_world);
-  if (header.level_set)
-    grid.notes.push_back(label + ": is a level set, made a fog volume");
-  if (grid.repairs.nan + grid.repairs.infinite + grid.repairs.negative > 0)
-    grid.notes.push_back(repairs_note(label, grid.repairs));
-  if (grid.field.empty())
-    grid.notes.push_back(label + ": is empty, nothing to render");
+  grid.notes = notes(label, header, grid);
   return grid;
 }
 

@@ -1,0 +1,154 @@
+#include "volume/guarded_process.h"
+
+#include "vdbeam/error.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <new>
+#include <thread>
+#include <unistd.h>
+
+namespace vdbeam {
+namespace {
+
+constexpr std::uint64_t mib = std::uint64_t(1) << 20;
+const GuardLimits ample{30, 30, 64 * mib};
+
+/// The line of the FrameError that the work must end in.
+std::string failure(const GuardLimits& limits, const std::function<void(int)>& work) {
+  try {
+    run_guarded("label", limits, work);
+  } catch (const FrameError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no FrameError";
+  return "";
+}
+
+void spin() {
+  for (std::atomic<int> turns{0};; ++turns) {
+  }
+}
+
+TEST(GuardedProcess, returns_what_was_written) {
+  const std::string text(3 * mib, 'x');
+  MappedFile file = run_guarded("label", ample, [&](int output) {
+    write_all(output, text.data(), text.size());
+    write_all(output, "end", 3);
+  });
+  ASSERT_EQ(file.size(), text.size() + 3);
+  EXPECT_EQ(std::memcmp(file.data(), text.data(), text.size()), 0);
+  EXPECT_EQ(std::memcmp(file.data() + text.size(), "end", 3), 0);
+  EXPECT_EQ(run_guarded("label", ample, [](int) {}).size(), 0u);
+}
+
+TEST(GuardedProcess, errors_arrive_as_they_are) {
+  EXPECT_THROW(run_guarded("label", ample, [](int) { throw InputError("x.vdb: no"); }), InputError);
+  EXPECT_EQ(failure(ample, [](int) { throw FrameError("x.vdb: broken"); }), "x.vdb: broken");
+  EXPECT_EQ(failure(ample, [](int) { throw std::runtime_error("odd\n\x01thing\xff"); }),
+            "label: the file is corrupt or cut short (odd ?thing?)");
+  EXPECT_EQ(failure(ample, [](int) { throw 1; }),
+            "label: the file is corrupt or cut short (unknown)");
+  const std::string cut =
+      failure(ample, [](int) { throw std::runtime_error(std::string(9999, 'x')); });
+  EXPECT_LT(cut.size(), 300u);
+}
+
+TEST(GuardedProcess, an_exception_ends_it_before_any_destructor) {
+  struct Hangs {
+    ~Hangs() { spin(); }
+  };
+  EXPECT_EQ(failure(ample,
+                    [](int) {
+                      const Hangs hangs;
+                      throw std::runtime_error("first");
+                    }),
+            "label: the file is corrupt or cut short (first)");
+}
+
+TEST(GuardedProcess, crashes_are_errors) {
+  EXPECT_EQ(failure(ample, [](int) { ::raise(SIGSEGV); }),
+            "label: the file is corrupt, it crashed the reader");
+  EXPECT_EQ(failure(ample, [](int) { std::abort(); }),
+            "label: the file is corrupt, it crashed the reader");
+  EXPECT_EQ(failure(ample, [](int) { ::_exit(0); }),
+            "label: the file is corrupt, it crashed the reader");
+  EXPECT_EQ(failure(ample, [](int) { ::raise(SIGKILL); }),
+            "label: the reader was killed; is the machine out of memory?");
+}
+
+TEST(GuardedProcess, hangs_end_in_time) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(failure({0.3, 30, 64 * mib}, [](int) { ::pause(); }),
+            "label: reading took more than 0.3 s; the file is corrupt, or the disk too slow");
+  EXPECT_EQ(failure({30, 1, 64 * mib}, [](int) { spin(); }),
+            "label: reading took more than 1 s of processor time; the file is corrupt");
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(passed.count(), 15);
+}
+
+TEST(GuardedProcess, memory_is_limited) {
+  const auto grow = [](int) {
+    for (;;)
+      std::memset(::operator new(mib), 1, mib);
+  };
+  EXPECT_EQ(failure(ample, grow), "label: reading needs more than 0.06 GiB; the file is corrupt, "
+                                  "or larger than the limit");
+  const std::string block(mib, 'x');
+  const std::string line = failure(ample, [&](int output) {
+    for (;;)
+      write_all(output, block.data(), block.size());
+  });
+  EXPECT_NE(line.find("File too large"), line.npos) << line;
+}
+
+TEST(GuardedProcess, interrupts_are_the_parents_affair) {
+  run_guarded("label", ample, [](int) {
+    ::raise(SIGINT);
+    ::raise(SIGTERM);
+  });
+}
+
+/// Forks while TBB's workers are busy, and throws in the children.
+TEST(GuardedProcess, works_beside_busy_threads) {
+  std::atomic<bool> stop{false};
+  std::atomic<int> allocations{0};
+  std::thread busy([&] {
+    while (!stop)
+      tbb::parallel_for(0, 1000, [&](int i) {
+        const std::vector<int> some(static_cast<std::size_t>(1 + i % 100));
+        allocations += static_cast<int>(some.size());
+      });
+  });
+  for (int n = 0; n < 100; ++n) {
+    const MappedFile file = run_guarded("label", ample, [](int output) {
+      const std::vector<char> some(1000, 'x');
+      write_all(output, some.data(), some.size());
+    });
+    EXPECT_EQ(file.size(), 1000u);
+    failure(ample, [](int) { throw std::runtime_error("bad"); });
+  }
+  stop = true;
+  busy.join();
+}
+
+TEST(MappedFile, gives_its_front_back) {
+  const Descriptor memory = create_memory_file();
+  const std::string text(16 * mib, 'x');
+  write_all(memory.get(), text.data(), text.size());
+  MappedFile file(memory.get());
+  file.release_front(mib); // too little to be worth it
+  EXPECT_EQ(static_cast<char>(file.data()[0]), 'x');
+  file.release_front(10 * mib + 5);
+  EXPECT_EQ(static_cast<char>(file.data()[0]), '\0');
+  EXPECT_EQ(static_cast<char>(file.data()[10 * mib - 1]), '\0');
+  EXPECT_EQ(static_cast<char>(file.data()[10 * mib]), 'x');
+}
+
+} // namespace
+} // namespace vdbeam
