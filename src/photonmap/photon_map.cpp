@@ -1,6 +1,5 @@
 #include "photonmap/photon_map.h"
 
-#include "math/kernels.h"
 #include "photonmap/kernel_radii.h"
 #include "photonmap/map_queries.h"
 #include "photonmap/photon_blocks.h"
@@ -20,17 +19,6 @@ double seconds_since(Clock::time_point start) {
 
 bool finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-float phase_value(const PhaseFunction& phase, float cos_theta) {
-  float sum = 0;
-  for (int i = 0; i < phase.lobe_count(); ++i) {
-    const DraineLobe& lobe = phase.lobe(i);
-    const float g = lobe.g, x = 1 + g * g - 2 * g * cos_theta;
-    sum += lobe.weight * (1 - g * g) / (4 * pi * x * std::sqrt(x)) *
-           (1 + lobe.alpha * cos_theta * cos_theta) / (1 + lobe.alpha * (1 + 2 * g * g) / 3);
-  }
-  return sum;
 }
 
 std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
@@ -131,67 +119,13 @@ QueryCounts PhotonMap::query(BeamTile& tile) const {
 }
 
 QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const {
-  const PhotonBlocks& blocks = data_->blocks;
-  QueryCounts counts;
-  const float last = static_cast<float>(profile.knots - 1);
-  for (std::size_t i = 0; profile.knots >= 2 && i < blocks.count(); ++i) {
-    ++counts.candidates;
-    const Vec3f q = blocks.position(i) - profile.ray.origin;
-    const Vec3f e = cross(q, profile.ray.direction);
-    const float radius = blocks.at(i, PhotonBlocks::radius), r2 = radius * radius;
-    const float d2 = dot(e, e);
-    if (!(d2 < r2))
-      continue;
-    const float f = (dot(q, profile.ray.direction) - profile.t_begin) / profile.step;
-    if (!(f >= 0 && f <= last))
-      continue;
-    ++counts.contributions;
-    const int k = std::min(static_cast<int>(f), profile.knots - 2);
-    const float fraction = f - static_cast<float>(k);
-    const float kernel = disc_kernel(data_->shape, d2 / r2) / r2;
-    for (std::size_t g = 0; g < profile.phases->size(); ++g) {
-      float cos_theta = 0;
-      if (blocks.has_directions())
-        for (int axis = 0; axis < 3; ++axis)
-          cos_theta -= blocks.at(i, blocks.direction_field() + axis) * profile.ray.direction[axis];
-      const float common = kernel * phase_value((*profile.phases)[g], cos_theta);
-      for (int c = 0; c < 3; ++c) {
-        const std::size_t row = g * profile.weight_channels + c % profile.weight_channels;
-        const float* w = profile.weights + row * profile.knots + k;
-        radiance[c] += common * (w[0] + fraction * (w[1] - w[0])) *
-                       blocks.at(i, PhotonBlocks::power + c % blocks.channels());
-      }
-    }
-  }
-  return counts;
+  return vdbeam::query_ray(data_->view(), profile, radiance);
 }
 
 QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
                                    const std::vector<PhaseFunction>& phases,
                                    Rgb* in_scattered) const {
-  const PhotonBlocks& blocks = data_->blocks;
-  QueryCounts counts;
-  for (std::size_t g = 0; g < phases.size(); ++g)
-    in_scattered[g] = Rgb(0);
-  for (std::size_t i = 0; i < blocks.count(); ++i) {
-    ++counts.candidates;
-    const Vec3f q = blocks.position(i) - point;
-    const float radius = blocks.at(i, PhotonBlocks::radius), r2 = radius * radius;
-    const float d2 = dot(q, q);
-    if (!(d2 < r2))
-      continue;
-    ++counts.contributions;
-    float cos_theta = 0;
-    if (blocks.has_directions())
-      for (int axis = 0; axis < 3; ++axis)
-        cos_theta -= blocks.at(i, blocks.direction_field() + axis) * direction[axis];
-    const float kernel = ball_kernel(data_->shape, d2 / r2) / (r2 * radius);
-    for (std::size_t g = 0; g < phases.size(); ++g)
-      for (int c = 0; c < 3; ++c)
-        in_scattered[g][c] += kernel * phase_value(phases[g], cos_theta) *
-                              blocks.at(i, PhotonBlocks::power + c % blocks.channels());
-  }
-  return counts;
+  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered);
 }
 
 } // namespace vdbeam

@@ -68,7 +68,7 @@ public:
 
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
   /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
-  /// `direction` is the camera ray's, away from the camera.
+  /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size()).
   QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
                           const std::vector<PhaseFunction>& phases, Rgb* in_scattered) const;
 

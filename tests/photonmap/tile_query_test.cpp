@@ -1,6 +1,4 @@
-#include "photonmap/query_oracle.h"
-
-#include <gtest/gtest.h>
+#include "photonmap/query_cases.h"
 
 namespace vdbeam {
 namespace {
@@ -8,38 +6,6 @@ namespace {
 using oracle::MapOptions;
 using oracle::TestMap;
 using oracle::TileOptions;
-
-PhaseFunction henyey_greenstein(double g) {
-  PhaseSettings settings;
-  settings.type = PhaseType::henyey_greenstein;
-  settings.g = g;
-  return PhaseFunction(settings);
-}
-
-PhaseFunction two_lobes() {
-  PhaseSettings settings;
-  settings.type = PhaseType::two_lobe;
-  settings.g = 0.7;
-  settings.g2 = -0.4;
-  settings.blend = 0.3;
-  return PhaseFunction(settings);
-}
-
-PhaseFunction rayleigh() {
-  PhaseSettings settings;
-  settings.type = PhaseType::rayleigh;
-  return PhaseFunction(settings);
-}
-
-/// Runs `check` on every SIMD target that this machine has.
-void on_every_target(const std::function<void()>& check) {
-  for (const std::int64_t target : simd_targets()) {
-    confine_simd_targets(target);
-    SCOPED_TRACE(simd_target());
-    check();
-  }
-  confine_simd_targets(0);
-}
 
 /// The tile against the oracle, errors relative to the terms' magnitude.
 void expect_tile(const TestMap& map, BeamTile& tile, const std::vector<oracle::Sum>& sums,
@@ -67,15 +33,6 @@ void expect_tile(const TestMap& map, BeamTile& tile, const std::vector<oracle::S
   EXPECT_LE(counts.contributions, possible);
 }
 
-/// A single-precision cosine is off by 2e-7, so x^(-3/2) with x >= (1 - |g|)^2 by that over x.
-double phase_rounding(const std::vector<PhaseFunction>& phases) {
-  double worst = 0;
-  for (const PhaseFunction& phase : phases)
-    for (int i = 0; i < phase.lobe_count(); ++i)
-      worst = std::max(worst, 6e-7 / std::pow(1 - std::abs(phase.lobe(i).g), 2));
-  return worst;
-}
-
 struct TileCase {
   const char* name;
   TileOptions tile;
@@ -89,13 +46,7 @@ class TileQuery : public testing::TestWithParam<TileCase> {};
 /// Shapes x phases x channels of photons and weights, on every SIMD target.
 TEST_P(TileQuery, MatchesOracle) {
   const TileCase& param = GetParam();
-  const std::vector<std::vector<PhaseFunction>> phase_sets{
-      {PhaseFunction()},
-      {henyey_greenstein(0.6)},
-      {two_lobes()},
-      {rayleigh()},
-      {henyey_greenstein(-0.95)},
-      {henyey_greenstein(0.5), PhaseFunction(), two_lobes()}};
+  const auto phase_sets = oracle::phase_sets();
   std::uint64_t seed = 1;
   for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,
                                   KernelShape::biweight, KernelShape::fourth_order})
@@ -115,8 +66,8 @@ TEST_P(TileQuery, MatchesOracle) {
         SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(shape) << " phases " << p
                                         << " power " << power << " weight " << weight);
         const std::vector<oracle::Sum> sums = oracle::tile_sums(map, tile, param.edges);
-        const double tolerance = param.tolerance + phase_rounding(phase_sets[p]);
-        on_every_target([&] { expect_tile(map, tile, sums, tolerance); });
+        const double tolerance = param.tolerance + oracle::phase_rounding(phase_sets[p]);
+        oracle::on_every_target([&] { expect_tile(map, tile, sums, tolerance); });
       }
 }
 

@@ -1,0 +1,128 @@
+// Kernels and phase functions in SIMD. Included once per target.
+#if defined(VDBEAM_PHOTON_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VDBEAM_PHOTON_MATH_INL_H_
+#undef VDBEAM_PHOTON_MATH_INL_H_
+#else
+#define VDBEAM_PHOTON_MATH_INL_H_
+#endif
+
+#include "math/kernels.h"
+#include "phase/phase_function.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vdbeam {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D16 = hn::CappedTag<float, 16>;
+using V16 = hn::Vec<D16>;
+using I16 = hn::RebindToSigned<D16>;
+
+/// A kernel as step * [s < 1] + (1 - s) (linear + square (1 - s)).
+struct KernelPolynomial {
+  float step = 0, linear = 0, square = 0;
+};
+
+/// disc_kernel in this form.
+inline KernelPolynomial disc_polynomial(KernelShape shape) {
+  switch (shape) {
+  case KernelShape::constant:
+    return {1 / pi, 0, 0};
+  case KernelShape::epanechnikov:
+    return {0, 2 / pi, 0};
+  case KernelShape::biweight:
+    return {0, 0, 3 / pi};
+  case KernelShape::fourth_order:
+    return {0, -6 / pi, 12 / pi};
+  }
+  return {};
+}
+
+/// ball_kernel in this form.
+inline KernelPolynomial ball_polynomial(KernelShape shape) {
+  switch (shape) {
+  case KernelShape::constant:
+    return {3 / (4 * pi), 0, 0};
+  case KernelShape::epanechnikov:
+    return {0, 15 / (8 * pi), 0};
+  case KernelShape::biweight:
+    return {0, 0, 105 / (32 * pi)};
+  case KernelShape::fourth_order: // (1 - s)(1 - 9/5 s)
+    return {0, -0.8f * 525 / (64 * pi), 1.8f * 525 / (64 * pi)};
+  }
+  return {};
+}
+
+/// The kernel at 1 - s = `k`, 0 where k <= 0.
+HWY_INLINE V16 kernel_value(const KernelPolynomial& kernel, V16 k) {
+  const D16 d;
+  const auto inside = hn::Gt(k, hn::Zero(d));
+  const auto value =
+      hn::MulAdd(k, hn::MulAdd(hn::Set(d, kernel.square), k, hn::Set(d, kernel.linear)),
+                 hn::Set(d, kernel.step));
+  return hn::IfThenElseZero(inside, value);
+}
+
+/// 1 + g^2 - 2 g cos, kept from rounding below its least value.
+template <class D>
+HWY_INLINE hn::Vec<D> lobe_distance(D d, float g, hn::Vec<D> cosine) {
+  const float least = 1 - std::abs(g);
+  return hn::Max(hn::NegMulAdd(hn::Set(d, 2 * g), cosine, hn::Set(d, 1 + g * g)),
+                 hn::Set(d, least * least));
+}
+
+/// Value of a lobe blend and its derivative by the cosine.
+template <class D>
+HWY_INLINE void phase_line(D d, const PhaseFunction& phase, hn::Vec<D> cosine, hn::Vec<D>& value,
+                           hn::Vec<D>& slope) {
+  value = slope = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0f);
+  for (int i = 0; i < phase.lobe_count(); ++i) {
+    const DraineLobe& lobe = phase.lobe(i);
+    const float g = lobe.g, alpha = lobe.alpha;
+    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
+    const auto x = lobe_distance(d, g, cosine);
+    const auto hg = hn::Div(hn::Set(d, norm), hn::Mul(x, hn::Sqrt(x)));
+    const auto draine = hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one);
+    value = hn::MulAdd(hg, draine, value);
+    const auto steepness = hn::Div(hn::Set(d, 3 * g), x);
+    slope = hn::MulAdd(hg, hn::MulAdd(draine, steepness, hn::Mul(hn::Set(d, 2 * alpha), cosine)),
+                       slope);
+  }
+}
+
+/// x^(-3/2), x > 0, to a few units in the last place.
+template <class D>
+HWY_INLINE hn::Vec<D> inverse_three_halves(D d, hn::Vec<D> x) {
+  const auto y = hn::ApproximateReciprocalSqrt(x);
+  // One Newton step: y (3 - x y^2) / 2.
+  const auto correction =
+      hn::NegMulAdd(hn::Mul(hn::Mul(x, y), hn::Set(d, 0.5f)), y, hn::Set(d, 1.5f));
+  const auto root = hn::Mul(y, correction);
+  return hn::Mul(hn::Mul(root, root), root);
+}
+
+template <class D>
+HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, hn::Vec<D> cosine) {
+  const auto one = hn::Set(d, 1.0f);
+  auto value = hn::Zero(d);
+  for (int i = 0; i < phase.lobe_count(); ++i) {
+    const DraineLobe& lobe = phase.lobe(i);
+    const float g = lobe.g, alpha = lobe.alpha;
+    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
+    const auto x = lobe_distance(d, g, cosine);
+    auto term = hn::Mul(hn::Set(d, norm), inverse_three_halves(d, x));
+    if (alpha != 0)
+      term = hn::Mul(term, hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one));
+    value = hn::Add(value, term);
+  }
+  return value;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace vdbeam
+HWY_AFTER_NAMESPACE();
+
+#endif

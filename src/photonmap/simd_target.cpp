@@ -1,0 +1,31 @@
+#include "photonmap/map_queries.h"
+
+#include <hwy/targets.h>
+
+namespace vdbeam {
+namespace {
+
+/// What the queries are compiled for; the others would add nothing (see the queries' sources).
+constexpr std::int64_t compiled = HWY_AVX3 | HWY_AVX2 | HWY_SSE4 | HWY_STATIC_TARGET;
+
+} // namespace
+
+std::vector<std::int64_t> simd_targets() {
+  confine_simd_targets(0);
+  std::vector<std::int64_t> targets;
+  for (std::int64_t bits = hwy::SupportedTargets() & compiled; bits != 0; bits &= bits - 1)
+    targets.push_back(bits & -bits);
+  return targets;
+}
+
+void confine_simd_targets(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+const char* simd_target() {
+  const std::int64_t targets = hwy::SupportedTargets() & compiled;
+  return hwy::TargetName(targets & -targets);
+}
+
+} // namespace vdbeam
