@@ -6,13 +6,14 @@ and writes to the output folder:
   curves.csv             every pass of every run
   SCENE.png, SCENE.svg   MRSE against seconds, a line per estimator, a band over the seeds
   table.md               MRSE x seconds at MRSE 0.01, at 0.001 and at the end
+  index.html             all of it on one page, with images at equal time and error images
   runs/                  images and reports; references/: references rendered by `path`
 
 Examples:
   tools/error_vs_time.py
   tools/error_vs_time.py --scenes data/smoke.toml --time 20 --seeds 1-5 --estimators beam,path
   tools/error_vs_time.py --reference cloud=cloud_4096spp.exr --option=--threads=2
-  tools/error_vs_time.py --plot-only            # draws again from the reports of the last run
+  tools/error_vs_time.py --plot-only            # draws again what the last run left
 """
 
 import argparse
@@ -57,7 +58,7 @@ def parse_arguments(arguments):
     parser.add_argument("--option", action="append", default=[], metavar="=--OPTION",
                         help="passed on to `vdbeam render`, such as --option=--threads=2")
     parser.add_argument("--plot-only", action="store_true",
-                        help="render nothing; use the reports that are there")
+                        help="render no curves; use the reports that are there")
     parser.add_argument("--no-plots", action="store_true", help="write the tables alone")
     options = parser.parse_args(arguments)
     stems = [scene.stem for scene in options.scenes]
@@ -73,13 +74,13 @@ def parse_arguments(arguments):
 
 
 def find_references(options):
-    """The reference of every scene, and the noise of those rendered here."""
+    """The reference of every scene by its stem, and the noise of those rendered here."""
     images, noise = {}, {}
     for scene in options.scenes:
         if scene.stem in options.references:
-            images[scene] = Path(options.references[scene.stem])
+            images[scene.stem] = Path(options.references[scene.stem])
         else:
-            images[scene], report = runner.cached_reference(
+            images[scene.stem], report = runner.cached_reference(
                 options.binary, scene, options.output / "references", options.reference_time,
                 options.option)
             noise[scene.stem] = runner.reference_noise(report)
@@ -100,30 +101,31 @@ def existing_runs(options):
     return runs
 
 
-def draw(runs, folder, noise):
+def draw(runs, folder, references, noise):
     # Imported here: it takes a second, and a wrong option should not.
-    from error_curves import plots
+    from error_curves import page, plots
 
     for scene in dict.fromkeys(run.scene for run in runs):
         plots.plot_scene(runs, scene, folder / scene, noise.get(scene))
+    page.write_page(runs, folder, references)
 
 
 def main(arguments=None):
     options = parse_arguments(arguments)
     try:
         if options.plot_only:
-            runs, noise = existing_runs(options), {}
-        else:
-            images, noise = find_references(options)
-            runs = runner.run_all(options.binary, options.scenes, images, options.estimators,
+            runs = existing_runs(options)
+        references, noise = find_references(options)
+        if not options.plot_only:
+            runs = runner.run_all(options.binary, options.scenes, references, options.estimators,
                                   options.seeds, options.time, options.output / "runs",
                                   options.option)
+        reports.write_csv(runs, options.output / "curves.csv")
+        if not options.no_plots:
+            draw(runs, options.output, references, noise)
     except (runner.RenderFailed, reports.ReportError, OSError) as error:
         print(f"error_vs_time.py: {error}", file=sys.stderr)
         return 1
-    reports.write_csv(runs, options.output / "curves.csv")
-    if not options.no_plots:
-        draw(runs, options.output, noise)
     text = reports.table(runs)
     (options.output / "table.md").write_text(text, encoding="utf-8")
     print(text, end="")

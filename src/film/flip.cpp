@@ -17,8 +17,7 @@ namespace {
 using std::numbers::pi;
 using Plane = std::vector<float>;
 
-// ---- Colour spaces
-// -------------------------------------------------------------------------------
+// ---- Colour spaces ----
 
 /// Linear Rec. 709 RGB to XYZ, and back.
 constexpr std::array<Vec3d, 3> rgb_to_xyz = {
@@ -67,8 +66,7 @@ double colour_distance(const Vec3d& a, const Vec3d& b) {
   return std::pow(std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z), 0.7);
 }
 
-// ---- Separable filters
-// ---------------------------------------------------------------------------
+// ---- Separable filters ----
 
 /// Weights at -radius .. radius; outside the image the border pixel repeats.
 using Kernel = std::vector<float>;
@@ -100,26 +98,25 @@ Plane filter(const Plane& plane, Size size, const Kernel& kx, const Kernel& ky) 
   tbb::parallel_for(0, size.height, [&](int y) {
     for (int x = 0; x < size.width; ++x) {
       double sum = 0;
-      for (int k = -rx; k <= rx; ++k)
-        sum += kx[static_cast<std::size_t>(k + rx)] *
-               plane[at(std::clamp(x + k, 0, size.width - 1), y)];
+      for (int k = 0; k <= 2 * rx; ++k)
+        sum += kx[static_cast<std::size_t>(k)] *
+               plane[at(std::clamp(x + k - rx, 0, size.width - 1), y)];
       rows[at(x, y)] = static_cast<float>(sum);
     }
   });
   tbb::parallel_for(0, size.height, [&](int y) {
     for (int x = 0; x < size.width; ++x) {
       double sum = 0;
-      for (int k = -ry; k <= ry; ++k)
-        sum += ky[static_cast<std::size_t>(k + ry)] *
-               rows[at(x, std::clamp(y + k, 0, size.height - 1))];
+      for (int k = 0; k <= 2 * ry; ++k)
+        sum += ky[static_cast<std::size_t>(k)] *
+               rows[at(x, std::clamp(y + k - ry, 0, size.height - 1))];
       result[at(x, y)] = static_cast<float>(sum);
     }
   });
   return result;
 }
 
-// ---- The colour pipeline (section 4.1)
-// -----------------------------------------------------------
+// ---- The colour pipeline (section 4.1) ----
 
 /// One term a sqrt(pi / b) exp(-pi^2 x^2 / b) of a contrast sensitivity function, x in degrees.
 struct SensitivityTerm {
@@ -192,8 +189,7 @@ double redistribute(double distance) {
                          : pt + (distance - knee) / (largest - knee) * (1 - pt);
 }
 
-// ---- The feature pipeline (section 4.2)
-// ----------------------------------------------------------
+// ---- The feature pipeline (section 4.2) ----
 
 /// Scales positive weights to a sum of 1 and negative ones to -1, when multiplied by a smoothing
 /// kernel of sum 1 across.

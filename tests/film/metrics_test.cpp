@@ -89,8 +89,7 @@ TEST(ImageError, OtherSizesAndMissingChannelsAreInputErrors) {
   EXPECT_THROW(image_error(Image{}, Image{}), InputError);
 }
 
-// ---- FLIP
-// ----------------------------------------------------------------------------------------
+// ---- FLIP ----
 
 Colour pattern(int x, int y) {
   return {static_cast<float>((x * 7 + y * 3) % 32) / 31,

@@ -2,6 +2,7 @@
 """tools/error_vs_time.py with a stand-in for the renderer whose error is known: C / seconds."""
 
 import csv
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -10,9 +11,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools/error_vs_time.py"
 
-# Accepts the options that DESIGN's `render` has, and refuses others.
+# Takes the options that the tool may give, refuses others, and writes the same image each time.
 FAKE_RENDERER = """#!/usr/bin/python3
-import argparse, json, sys
+import argparse, json, shutil, sys
 parser = argparse.ArgumentParser()
 parser.add_argument("command", choices=["render"])
 parser.add_argument("scene")
@@ -37,9 +38,28 @@ for i in range(1, 41):
     if options.reference:
         entry.update(rmse=0.1, mrse=product / seconds, relmse=0.1, bias=-0.001)
     passes.append(entry)
-open(options.o, "w").close()
+shutil.copy(__file__ + ".exr", options.o)
 json.dump({"passes": passes}, open(options.report, "w"))
 """
+
+
+def tiny_exr():
+    """An uncompressed EXR of 2 x 1 pixels: R, G, B as floats."""
+    def attribute(name, kind, data):
+        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
+
+    channels = b"".join(name + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in (b"B", b"G", b"R"))
+    window = struct.pack("<4i", 0, 0, 1, 0)
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute(b"channels", b"chlist", channels + b"\0")
+              + attribute(b"compression", b"compression", b"\0")
+              + attribute(b"dataWindow", b"box2i", window)
+              + attribute(b"displayWindow", b"box2i", window)
+              + attribute(b"lineOrder", b"lineOrder", b"\0")
+              + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
+              + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
+              + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0")
+    pixels = struct.pack("<6f", 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    return (header + struct.pack("<Q", len(header) + 8) + struct.pack("<ii", 0, len(pixels)) + pixels)
 
 
 class ErrorVsTime(unittest.TestCase):
@@ -51,6 +71,7 @@ class ErrorVsTime(unittest.TestCase):
         self.binary = self.folder / "vdbeam"
         self.binary.write_text(FAKE_RENDERER, encoding="utf-8")
         self.binary.chmod(0o755)
+        Path(f"{self.binary}.exr").write_bytes(tiny_exr())
         for name in ("cloud", "smoke", "broken"):
             (self.folder / f"{name}.toml").write_text(f"# {name}\n", encoding="utf-8")
 
@@ -82,6 +103,11 @@ class ErrorVsTime(unittest.TestCase):
         for scene in ("cloud", "smoke"):
             self.assertEqual((self.output / f"{scene}.png").read_bytes()[:4], b"\x89PNG")
             self.assertIn("<svg", (self.output / f"{scene}.svg").read_text(encoding="utf-8"))
+        page = (self.output / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("data:image/svg+xml"), 2)
+        # 3 images, 3 error images and a reference for each of 2 scenes, and the scale of the errors.
+        self.assertEqual(page.count("data:image/png"), 2 * 7 + 1)
+        self.assertNotIn("http", page)
         beam = self.table_row("cloud", "beam")
         self.assertEqual(beam[2:4], ["3", "40"])
         self.assertEqual(beam[6], "-0.10 %")

@@ -67,7 +67,7 @@ def run_all(binary, scenes, references, estimators, seeds, seconds, folder, extr
                 print(f"{scene}: {estimator}, seed {seed}, {seconds:g} s", flush=True)
                 report = folder / f"{stem}.json"
                 render(binary, scene, folder / f"{stem}.exr", report, estimator, seed, seconds,
-                       references[scene], extra)
+                       references[Path(scene).stem], extra)
                 runs.append(read_report(report, Path(scene).stem, estimator, seed))
     return runs
 

@@ -1,0 +1,106 @@
+"""One self-contained HTML page: curves, images at equal time side by side, error images, settings."""
+
+import base64
+import html
+import io
+import json
+from pathlib import Path
+from string import Template
+
+import matplotlib
+import numpy as np
+from matplotlib import image as matplotlib_image
+
+from . import exr
+from .report import ReportError, group_runs, table
+
+TEMPLATE = Path(__file__).with_name("page.html")
+# Errors are shown as |v - r| / (r + 0.01), the root of a pixel's MRSE, from 0 to this.
+LARGEST_ERROR = 0.5
+ERROR_COLOURS = "magma"  # perceptually uniform
+
+
+def _data_url(data, kind):
+    return f"data:{kind};base64," + base64.b64encode(data).decode("ascii")
+
+
+def _png_url(pixels):
+    buffer = io.BytesIO()
+    matplotlib_image.imsave(buffer, pixels, format="png")
+    return _data_url(buffer.getvalue(), "image/png")
+
+
+def display_image(rgb, exposure=0.0):
+    """8-bit sRGB of linear RGB."""
+    linear = np.clip(np.nan_to_num(rgb * 2.0**exposure), 0, 1)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear,
+                       1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+    return np.round(255 * encoded).astype(np.uint8)
+
+
+def error_image(rgb, reference):
+    """The relative error of each pixel in false colours."""
+    error = np.sqrt(np.mean(((rgb - reference) / (reference + 0.01)) ** 2, axis=2))
+    scaled = np.clip(np.nan_to_num(error, nan=np.inf) / LARGEST_ERROR, 0, 1)
+    return (255 * matplotlib.colormaps[ERROR_COLOURS](scaled)[..., :3]).astype(np.uint8)
+
+
+def _scale_bar():
+    bar = matplotlib.colormaps[ERROR_COLOURS](np.linspace(0, 1, 256))[None, :, :3]
+    return _png_url((255 * np.repeat(bar, 8, axis=0)).astype(np.uint8))
+
+
+def _caption(run):
+    last = run.passes[-1]
+    return (f"{run.estimator}: {last['pass']:.0f} passes in {last['seconds']:.1f} s, "
+            f"MRSE {last['mrse']:.2g}, bias {100 * last['bias']:+.2f} %")
+
+
+def _settings(report_path):
+    report = json.loads(Path(report_path).read_text(encoding="utf-8"))
+    report.pop("passes", None)
+    return json.dumps(report, indent=2, sort_keys=True)
+
+
+def _scene_data(scene, runs, folder, reference_path):
+    """What the page shows of one scene: the run with the first seed of each estimator."""
+    firsts = [group[0] for name, _, group in group_runs(runs) if name == scene]
+    reference = exr.read_rgb(reference_path)
+    images, errors, settings = [], [], []
+    for run in firsts:
+        stem = folder / "runs" / f"{scene}.{run.estimator}.{run.seed}"
+        rgb = exr.read_rgb(f"{stem}.exr")
+        if rgb.shape != reference.shape:
+            raise ReportError(f"{stem}.exr: its size is not that of {reference_path}")
+        images.append({"name": run.estimator, "caption": _caption(run),
+                       "url": _png_url(display_image(rgb))})
+        errors.append({"caption": _caption(run), "url": _png_url(error_image(rgb, reference))})
+        settings.append({"name": f"{run.estimator}, seed {run.seed}",
+                         "text": _settings(f"{stem}.json")})
+    images.append({"name": "reference", "caption": f"reference: {Path(reference_path).name}",
+                   "url": _png_url(display_image(reference))})
+    curves = (folder / f"{scene}.svg").read_bytes()
+    return {"name": scene, "curves": _data_url(curves, "image/svg+xml"), "images": images,
+            "errors": errors, "settings": settings}
+
+
+def _html_table(markdown):
+    """The table of report.table, whose second line only separates the head."""
+    rows = [[html.escape(cell.strip()) for cell in line.strip("|").split("|")]
+            for line in markdown.splitlines()]
+    head = "".join(f"<th>{cell}</th>" for cell in rows[0])
+    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>"
+                   for row in rows[2:])
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def write_page(runs, folder, references):
+    """Writes FOLDER/index.html from the runs' images and reports. `references`: scene -> EXR."""
+    scenes = [_scene_data(scene, runs, folder, references[scene])
+              for scene in dict.fromkeys(run.scene for run in runs)]
+    # "</" would end the script element.
+    data = json.dumps(scenes).replace("</", "<\\/")
+    page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
+        data=data, table=_html_table(table(runs)), scale=_scale_bar(),
+        largest=f"{LARGEST_ERROR:g}")
+    (folder / "index.html").write_text(page, encoding="utf-8")
