@@ -13,13 +13,13 @@ struct OrientedBox {
   std::array<Vec3f, 3> edges;
 };
 
-/// Where medium is, as photons are aimed at it: boxes in render space, which may overlap. `boxes` are
-/// few and coarse (one per volume, tight around its density); `cells` are fine (one per non-empty
-/// 8^3 cell or small group of them) and serve the lights of fixed direction.
+/// Where medium is, as photons are aimed at it: boxes in render space, which may overlap. `boxes`
+/// are few and coarse (one per volume, tight around its density); `cells` are fine (one per
+/// non-empty 8^3 cell or small group of them) and serve the lights of fixed direction.
 struct OccupiedRegion {
   std::vector<OrientedBox> boxes;
   std::vector<OrientedBox> cells;
-  Vec3f center;       ///< of a sphere around all boxes
+  Vec3f center; ///< of a sphere around all boxes
   float radius = 0;
 };
 

@@ -7,8 +7,8 @@
 namespace vdbeam {
 
 /// Draine's phase function (Draine 2003, eq. 4; as in Jendersie and d'Eon 2023, eq. 3):
-///   p(cos) = 1/(4 pi) * (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2) * (1 + alpha cos^2) / (1 + alpha (1
-///   + 2 g^2) / 3)
+///   p(cos) = 1 / (4 pi) * (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2)
+///            * (1 + alpha cos^2) / (1 + alpha (1 + 2 g^2) / 3)
 /// alpha = 0 is Henyey-Greenstein, g = 0 and alpha = 1 Rayleigh, both 0 isotropic.
 struct DraineLobe {
   float g = 0;
