@@ -1,8 +1,90 @@
-#include "vdbeam/version.h"
+#include "cli/commands.h"
+#include "scene/scene_keys.h"
+#include "scene/versions.h"
+#include "vdbeam/error.h"
 
 #include <cstdio>
+#include <exception>
+#include <fmt/format.h>
+#include <new>
 
-int main() {
-  std::printf("vdbeam %s\n", vdbeam::version());
-  return 0;
+namespace {
+
+using namespace vdbeam;
+
+const char* const footer =
+    R"(Examples:
+  vdbeam render cloud.vdb                       a bare VDB is a scene
+  vdbeam init cloud.vdb -o cloud.toml           a scene file to edit
+  vdbeam render cloud.toml -o cloud.exr --time 60s --preview cloud.png
+  vdbeam render smoke.toml -f 1-24 -o smoke.####.exr
+  vdbeam COMMAND --help                         options and examples of a command
+  vdbeam --help-scene                           every key of a scene file
+
+Exit codes:
+  0    done
+  1    a defect in vdbeam
+  2    bad input: an option, a scene file or an image; one line says what and where
+  3    a frame failed: unreadable volume, full disk, not enough memory
+  130  interrupted (SIGINT), 143 terminated (SIGTERM): the pass was ended and the image written;
+       a second signal ends the program at once)";
+
+std::string version_text() {
+  std::string text;
+  for (const auto& [name, version] : component_versions())
+    text += fmt::format("{}{} {}", text.empty() ? "" : "\n", name, version);
+  return text;
+}
+
+int fail(const std::string& line, ExitCode code) {
+  std::fflush(stdout);
+  fmt::print(stderr, "{}\n", line);
+  return static_cast<int>(code);
+}
+
+/// Options and commands; exits by exception, as CLI11 does.
+int run(int argc, char** argv) {
+  CLI::App app("vdbeam: clouds and smoke from OpenVDB files, by the beam radiance estimate",
+               "vdbeam");
+  app.footer(footer);
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_text);
+  app.add_flag_callback(
+      "--help-scene", [] { throw CLI::CallForVersion(key_table_text(), 0); },
+      "Print every key of a scene file with its unit, range and default");
+  std::vector<cli::CommandRun> runs;
+  std::vector<CLI::App*> subcommands;
+  for (const cli::Command& command : cli::commands()) {
+    subcommands.push_back(app.add_subcommand(command.name, command.description));
+    runs.push_back(command.add(*subcommands.back()));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) { // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    const auto used = app.get_subcommands();
+    const std::string name = used.empty() ? "vdbeam" : "vdbeam " + used.front()->get_name();
+    return fail(fmt::format("{}: {}; {} --help shows the options", name, error.what(), name),
+                ExitCode::bad_input);
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (subcommands[i]->parsed())
+      return runs[i]();
+  return static_cast<int>(ExitCode::internal_error);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    return fail(error.what(), error.code());
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory; a lower --resolution or fewer photons need less",
+                ExitCode::frame_failed);
+  } catch (const std::exception& error) {
+    return fail(fmt::format("internal error: {}", error.what()), ExitCode::internal_error);
+  }
 }

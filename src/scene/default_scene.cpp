@@ -3,21 +3,26 @@
 #include "scene/frame_range.h"
 #include "scene/text.h"
 #include "vdbeam/error.h"
-#include "volume/vdb_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
 namespace vdbeam {
 namespace {
 
-/// Deep enough that the form shows by its shading, thin enough that light comes through the edges.
+/// Of a mean line: deep enough that the form shows by its shading, thin enough that light comes
+/// through the edges.
 constexpr double target_optical_depth = 25;
+/// Of the densest value over the shortest side: keeps a thin, dense plume in a large box from
+/// becoming solid.
+constexpr double largest_optical_depth = 100;
 
 bool is_density(const GridSummary& grid) {
-  return (grid.value_type == "float" || grid.value_type == "half") &&
-         grid.grid_class != "level set" && grid.map_type != "NonlinearFrustumMap";
+  return (grid.value_type == "float" || grid.value_type == "half") && !is_level_set(grid) &&
+         grid.map_type != "NonlinearFrustumMap";
 }
 
 const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const FramingWishes& wishes,
@@ -37,6 +42,8 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
   if (!grid)
     grid = find([](const GridSummary& g) { return is_density(g) && g.active_voxels > 0; });
   if (!grid)
+    grid = find(is_level_set);
+  if (!grid)
     grid = find(is_density);
   if (!grid) {
     std::vector<std::string> names;
@@ -54,25 +61,33 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
 struct VolumeShape {
   std::string grid;
   Boxd bounds;
-  double optical_depth = 0; ///< of a mean line along the longest axis, at extinction 1
+  double mean_depth = 0;    ///< of a mean line along the longest side, at extinction 1
+  double largest_depth = 0; ///< of the densest value along the shortest side, at extinction 1
 
   void extend(const GridSummary& summary) {
     if (summary.active_voxels == 0)
       return;
     bounds.extend(summary.world_bounds);
-    double cells = 1, longest = 0;
+    std::array<double, 3> sides{};
+    double cells = 1;
     for (int i = 0; i < 3; ++i) {
       const auto count = static_cast<double>(summary.index_upper[i] - summary.index_lower[i] + 1);
       cells *= count;
-      longest = std::max(longest, count * summary.voxel_size[i]);
+      sides[static_cast<std::size_t>(i)] = count * summary.voxel_size[i];
     }
-    const double fill = static_cast<double>(summary.active_voxels) / cells;
-    optical_depth = std::max(optical_depth, summary.mean * fill * longest);
+    const auto [shortest, longest] = std::minmax_element(sides.begin(), sides.end());
+    // The inside of a level set is rendered as density 1; like a ball it fills half of its box.
+    const bool level_set = is_level_set(summary);
+    const double fill = level_set ? 0.5 : static_cast<double>(summary.active_voxels) / cells;
+    mean_depth = std::max(mean_depth, (level_set ? 1 : summary.mean) * fill * *longest);
+    largest_depth = std::max(largest_depth, (level_set ? 1 : summary.maximum) * *shortest);
+  }
+  double extinction() const {
+    return std::min(target_optical_depth / mean_depth, largest_optical_depth / largest_depth);
   }
 };
 
-VolumeShape read_shape(const std::string& path, const FramingWishes& wishes,
-                       std::vector<std::string>& notes) {
+std::vector<std::vector<GridSummary>> read_summaries(const std::string& path) {
   std::vector<std::string> files{path};
   if (const std::vector<int> frames = frames_on_disk(path); !frames.empty()) {
     files.clear();
@@ -82,11 +97,19 @@ VolumeShape read_shape(const std::string& path, const FramingWishes& wishes,
         files.push_back(std::move(file));
     }
   }
+  std::vector<std::vector<GridSummary>> summaries;
+  for (const std::string& file : files)
+    summaries.push_back(summarize_vdb(file));
+  return summaries;
+}
+
+VolumeShape find_shape(const std::string& path,
+                       const std::vector<std::vector<GridSummary>>& summaries,
+                       const FramingWishes& wishes, std::vector<std::string>& notes) {
   VolumeShape shape;
-  for (const std::string& file : files) {
-    const std::vector<GridSummary> grids = summarize_vdb(file);
+  for (const std::vector<GridSummary>& grids : summaries) {
     std::vector<std::string> grid_notes;
-    const GridSummary& grid = choose_grid(grids, wishes, file, grid_notes);
+    const GridSummary& grid = choose_grid(grids, wishes, path, grid_notes);
     if (shape.grid.empty()) {
       shape.grid = grid.name;
       notes.insert(notes.end(), grid_notes.begin(), grid_notes.end());
@@ -184,10 +207,23 @@ void light_scene(Scene& scene, const Vec3d& up_axis) {
 
 } // namespace
 
+bool is_level_set(const GridSummary& grid) {
+  std::string text = grid.grid_class;
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text == "level set";
+}
+
 Scene make_default_scene(const std::string& path, const FramingWishes& wishes) {
+  return make_default_scene(path, read_summaries(path), wishes);
+}
+
+Scene make_default_scene(const std::string& path,
+                         const std::vector<std::vector<GridSummary>>& summaries,
+                         const FramingWishes& wishes) {
   Scene scene;
   scene.path = path;
-  const VolumeShape shape = read_shape(path, wishes, scene.notes);
+  const VolumeShape shape = find_shape(path, summaries, wishes, scene.notes);
   frame_camera(scene, shape.bounds, wishes);
   light_scene(scene, wishes.up);
 
@@ -197,12 +233,13 @@ Scene make_default_scene(const std::string& path, const FramingWishes& wishes) {
   volume.albedo = Rgb(0.98f);
   volume.phase.type = PhaseType::henyey_greenstein;
   volume.phase.g = 0.5;
-  if (shape.optical_depth > 0) {
-    volume.extinction = round_to_digits(target_optical_depth / shape.optical_depth, 2);
-    scene.notes.push_back(fmt::format(
-        "{}: extinction {} chosen: optical depth about {:.2g} through the longest side; change it "
-        "with --set volume.0.extinction=X",
-        path, volume.extinction, volume.extinction * shape.optical_depth));
+  if (shape.mean_depth > 0 && shape.largest_depth > 0) {
+    volume.extinction = round_to_digits(shape.extinction(), 2);
+    scene.notes.push_back(fmt::format("{}: extinction {} chosen: the optical depth along the "
+                                      "longest side is about {:.2g}; change "
+                                      "it with --set volume.0.extinction=X",
+                                      path, volume.extinction,
+                                      volume.extinction * shape.mean_depth));
   }
   scene.volumes.push_back(volume);
   return scene;

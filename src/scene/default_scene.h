@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/scene.h"
+#include "volume/vdb_reader.h"
 
 #include <optional>
 #include <string>
@@ -20,6 +21,14 @@ struct FramingWishes {
 /// decide, so that the camera stands still. `notes` of the scene tell what was chosen. Throws
 /// InputError and FrameError as summarize_vdb.
 Scene make_default_scene(const std::string& path, const FramingWishes& wishes);
+
+/// The same from summaries that are already there, one list per file that decides.
+Scene make_default_scene(const std::string& path,
+                         const std::vector<std::vector<GridSummary>>& summaries,
+                         const FramingWishes& wishes);
+
+/// Signed distances to a surface instead of a density.
+bool is_level_set(const GridSummary& grid);
 
 /// A commented scene file; `file` is the volume's path as it is to be written there.
 std::string scene_text(const Scene& scene, const std::string& file);

@@ -1,0 +1,18 @@
+#include "cli/commands.h"
+
+#include <array>
+
+namespace vdbeam::cli {
+
+std::span<const Command> commands() {
+  static constexpr std::array<Command, 5> table{{
+      {"render", "Render a scene or a VDB to EXR", add_render},
+      {"info", "Show what VDB files hold, what would be rendered, what looks wrong", add_info},
+      {"init", "Write a commented scene file for a VDB", add_init},
+      {"plan", "Show which stages a scene needs, which are left out and why", add_plan},
+      {"compare", "Measure the error of an image against a reference", add_compare},
+  }};
+  return table;
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "volume/vdb_reader.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam::cli {
+
+/// True for grids of one number per voxel, whose value range was measured.
+bool is_scalar(const GridSummary& grid);
+
+/// Which of these grids of a file `vdbeam render FILE` would show and how, or why none.
+std::string rendered_text(const std::string& file, const std::vector<GridSummary>& grids);
+
+/// What in these grids a user should know before rendering, one line each.
+std::vector<std::string> suspicious(const std::vector<GridSummary>& grids);
+
+} // namespace vdbeam::cli

@@ -1,0 +1,59 @@
+#include "cli/commands.h"
+#include "cli/output_paths.h"
+#include "output/atomic_file.h"
+#include "scene/scene_document.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+#include "vdbeam/scene_file.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+namespace vdbeam::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InitOptions {
+  std::string volume, output;
+  bool force = false;
+};
+
+int run_init(const InitOptions& options) {
+  if (options.output.empty()) {
+    fmt::print("{}", scene_template(options.volume));
+    return 0;
+  }
+  check_output_path("-o", options.output, {1});
+  std::error_code error;
+  if (!options.force && fs::exists(options.output, error))
+    throw InputError(
+        one_line(fmt::format("-o {}: is there already; --force replaces it", options.output)));
+  const std::string text =
+      scene_template(options.volume, fs::path(options.output).parent_path().string());
+  AtomicFile file(options.output);
+  file.write(text.data(), text.size());
+  file.commit();
+  fmt::print(stderr, "{0}: written; render it with: vdbeam render {0}\n", options.output);
+  return 0;
+}
+
+} // namespace
+
+CommandRun add_init(CLI::App& app) {
+  const auto options = std::make_shared<InitOptions>();
+  app.add_option("volume", options->volume, "VDB file (#### for the frame number of a sequence)")
+      ->required()
+      ->option_text("VDB");
+  app.add_option("-o,--output", options->output, "Scene file to write; default: standard output")
+      ->option_text("FILE.toml");
+  app.add_flag("--force", options->force, "Replace a file that is there");
+  app.footer(R"(Examples:
+  vdbeam init cloud.vdb -o cloud.toml
+  vdbeam init 'smoke/smoke.####.vdb' -o smoke.toml)");
+  return [options] { return run_init(*options); };
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,60 @@
+#include "cli/output_paths.h"
+
+#include "scene/frame_range.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace vdbeam::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& option, const std::string& path,
+                       const std::string& text) {
+  throw InputError(one_line(fmt::format("{} {}: {}", option, path, text)));
+}
+
+/// "out.exr" becomes "out.####.exr".
+std::string with_pattern(const fs::path& path) {
+  fs::path result = path;
+  return result.replace_filename(path.stem().string() + ".####" + path.extension().string())
+      .string();
+}
+
+void check_one(const std::string& option, const std::string& name) {
+  std::error_code error;
+  const fs::path path(name);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (path.filename().empty() || fs::is_directory(path, error))
+    fail(option, name, "is a folder; add a file's name");
+  if (!fs::exists(folder, error))
+    fail(option, name,
+         fmt::format("there is no folder {0}; make it with: mkdir -p {0}", folder.string()));
+  if (!fs::is_directory(folder, error))
+    fail(option, name, fmt::format("{} is not a folder", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    fail(option, name,
+         fmt::format("no permission to write into {}; choose another folder", folder.string()));
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    fail(option, name, "is not a regular file");
+}
+
+} // namespace
+
+void check_output_path(const std::string& option, const std::string& path,
+                       const std::vector<int>& frames) {
+  if (path.empty())
+    return;
+  if (frames.size() > 1 && !has_frame_pattern(path))
+    fail(
+        option, path,
+        fmt::format("{} frames would go to one file; write {}", frames.size(), with_pattern(path)));
+  for (const int frame : frames)
+    check_one(option, substitute_frame(path, frame));
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vdbeam::cli {
+
+/// Refuses a path that could not be written, before any work is done: the folder must exist and be
+/// writable, the name must not be a folder's, and several frames need a frame number's place in it.
+/// `option` names it in messages ("-o"). Throws InputError with the remedy.
+void check_output_path(const std::string& option, const std::string& path,
+                       const std::vector<int>& frames);
+
+} // namespace vdbeam::cli

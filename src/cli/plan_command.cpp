@@ -1,0 +1,79 @@
+#include "cli/commands.h"
+#include "cli/scene_options.h"
+#include "scene/frame_range.h"
+#include "scene/report.h"
+#include "scene/text.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+#include "vdbeam/render.h"
+#include "vdbeam/scene_file.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace vdbeam::cli {
+namespace {
+
+struct PlanOptions {
+  SceneOptions scene;
+  std::optional<int> frame;
+  bool json = false;
+};
+
+void print_plan(const Scene& scene, const RenderPlan& plan) {
+  fmt::print("{}\n", scene.path);
+  for (const bool needed : {true, false}) {
+    fmt::print("\n{}\n", needed ? "stages" : "left out");
+    for (const PlanStage& stage : plan.stages)
+      if (stage.needed == needed)
+        fmt::print("  {:<18} {}\n", stage.name, stage.reason);
+  }
+  const auto bytes = [](std::uint64_t n) { return format_bytes(static_cast<double>(n)); };
+  fmt::print("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
+             bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
+             bytes(plan.film_bytes));
+}
+
+int run_plan(const PlanOptions& options) {
+  const SceneDocument document = options.scene.open();
+  int frame = options.frame.value_or(1);
+  if (!options.frame && document.has_frame_pattern())
+    if (const auto frames = document.frames_on_disk(); !frames.empty())
+      frame = frames.front();
+  const Scene scene = document.scene_at(frame);
+  for (const std::string& note : scene.notes)
+    fmt::print(stderr, "note: {}\n", note);
+  const RenderPlan plan = make_plan(scene);
+  if (!options.json) {
+    print_plan(scene, plan);
+    return 0;
+  }
+  nlohmann::ordered_json json = plan_json(plan);
+  json["scene"] = scene.path;
+  json["frame"] = frame;
+  json["scene_hash"] = scene_hash(scene);
+  json["settings"] = settings_json(scene);
+  using Handler = nlohmann::ordered_json::error_handler_t;
+  fmt::print("{}\n", json.dump(2, ' ', false, Handler::replace));
+  return 0;
+}
+
+} // namespace
+
+CommandRun add_plan(CLI::App& app) {
+  const auto options = std::make_shared<PlanOptions>();
+  options->scene.declare(app);
+  app.add_option("-f,--frame", options->frame, "Frame; default: the first on disk")
+      ->option_text("N");
+  app.add_flag("--json", options->json, "Print JSON, with all settings");
+  app.footer(R"(Examples:
+  vdbeam plan cloud.toml
+  vdbeam plan smoke.toml -f 7 --json
+  vdbeam plan cloud.vdb --estimator path)");
+  return [options] { return run_plan(*options); };
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,91 @@
+#include "cli/progress.h"
+
+#include "scene/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace vdbeam::cli {
+namespace {
+
+constexpr std::chrono::seconds heartbeat_interval{10};
+constexpr std::chrono::milliseconds redraw_interval{100};
+
+} // namespace
+
+Progress::Progress(std::string title, const RenderSettings& settings, bool quiet)
+    : title_(std::move(title)), settings_(settings), quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
+
+double Progress::fraction(const PassRecord& record, const RenderSettings& settings) {
+  double done = 0;
+  if (settings.passes)
+    done = std::max(done, static_cast<double>(record.pass) / *settings.passes);
+  if (settings.time)
+    done = std::max(done, record.seconds / *settings.time);
+  // The error estimate falls as 1 / passes.
+  if (settings.target_error && std::isfinite(record.error_estimate) && record.error_estimate > 0)
+    done = std::max(done, *settings.target_error / record.error_estimate);
+  return std::min(done, 1.0);
+}
+
+std::string Progress::describe(const PassRecord& record, const RenderSettings& settings) {
+  std::string text = settings.passes ? fmt::format("{}/{} passes", record.pass, *settings.passes)
+                                     : fmt::format("{} passes", record.pass);
+  text += ", " + format_duration(record.seconds);
+  const double done = fraction(record, settings);
+  if (done > 0 && done < 1)
+    text += fmt::format(", {} left", format_duration(record.seconds * (1 - done) / done));
+  if (std::isfinite(record.error_estimate))
+    text += fmt::format(", error {:.2g}", record.error_estimate);
+  return text;
+}
+
+void Progress::line(const std::string& text) {
+  if (quiet_)
+    return;
+  clear_bar();
+  fmt::print(stderr, "{}{}{}\n", title_, title_.empty() ? "" : ": ", text);
+  std::fflush(stderr);
+}
+
+void Progress::clear_bar() {
+  if (bar_shown_)
+    fmt::print(stderr, "\r\x1b[K");
+  bar_shown_ = false;
+}
+
+void Progress::start(const std::string& text) {
+  line(text);
+  last_ = Clock::now();
+}
+
+void Progress::pass(const PassRecord& record) {
+  const auto now = Clock::now();
+  const bool due =
+      terminal_ ? !bar_shown_ || now - last_ >= redraw_interval : now - last_ >= heartbeat_interval;
+  if (quiet_ || !due)
+    return;
+  last_ = now;
+  if (!terminal_)
+    return line(describe(record, settings_));
+  constexpr int width = 20;
+  const int filled = static_cast<int>(fraction(record, settings_) * width);
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {}\x1b[K", title_, "", filled, "", width - filled,
+             describe(record, settings_));
+  std::fflush(stderr);
+  bar_shown_ = true;
+}
+
+void Progress::note(const std::string& text) {
+  line("note: " + text);
+}
+
+void Progress::finish(const std::string& text) {
+  line(text);
+}
+
+} // namespace vdbeam::cli

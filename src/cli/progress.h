@@ -1,0 +1,41 @@
+#pragma once
+
+#include "vdbeam/render.h"
+
+#include <chrono>
+#include <string>
+
+namespace vdbeam::cli {
+
+/// Tells on stderr how a frame comes along: a bar on a terminal; elsewhere a line at the start, one
+/// at the end, and at most one in ten seconds between them, each flushed.
+class Progress {
+public:
+  /// `title` begins each line, e.g. "frame 7 (3/24)".
+  Progress(std::string title, const RenderSettings& settings, bool quiet);
+
+  void start(const std::string& text);
+  void pass(const PassRecord& record);
+  void note(const std::string& line);
+  /// Takes the bar away and says how it went.
+  void finish(const std::string& text);
+
+  /// Share of the work that is done, by the limit that will be met first, in [0, 1].
+  static double fraction(const PassRecord& record, const RenderSettings& settings);
+  /// "12/64 passes, 3.4s, 12.3s left, error 0.0123".
+  static std::string describe(const PassRecord& record, const RenderSettings& settings);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  void line(const std::string& text);
+  void clear_bar();
+
+  std::string title_;
+  RenderSettings settings_;
+  bool quiet_, terminal_;
+  bool bar_shown_ = false;
+  Clock::time_point last_;
+};
+
+} // namespace vdbeam::cli

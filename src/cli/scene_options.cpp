@@ -1,0 +1,85 @@
+#include "cli/scene_options.h"
+
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace vdbeam::cli {
+namespace {
+
+/// Any of these on the command line replaces the whole stop rule of the file.
+constexpr std::array stop_keys{"render.passes", "render.time", "render.target_error"};
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.size() < 10 &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+} // namespace
+
+void SceneOptions::declare_shorthand(CLI::App& app, const std::string& option,
+                                     const std::string& key, const std::string& value_name,
+                                     const std::string& description) {
+  shorthands_.push_back({option, key, {}});
+  const std::size_t index = shorthands_.size() - 1;
+  app.add_option_function<std::string>(
+         option, [this, index](const std::string& value) { shorthands_[index].value = value; },
+         description)
+      ->option_text(value_name);
+}
+
+void SceneOptions::declare(CLI::App& app) {
+  app.add_option("scene", path_, "Scene file, or a VDB (#### for the frame number)")
+      ->required()
+      ->option_text("SCENE|VDB");
+  declare_shorthand(app, "--passes", "render.passes", "N", "Passes to render");
+  declare_shorthand(app, "--time", "render.time", "T",
+                    "Rendering time: seconds, or like 90s, 5m, 1h30m");
+  declare_shorthand(app, "--target-error", "render.target_error", "E",
+                    "Estimated error (MRSE) to reach");
+  declare_shorthand(app, "--estimator", "render.estimator", "NAME", "beam, march or path");
+  app.add_option("--resolution", resolution_, "Size of the picture in pixels")->option_text("WxH");
+  declare_shorthand(app, "--seed", "render.seed", "N", "Random numbers");
+  declare_shorthand(app, "--threads", "render.threads", "N", "Threads; never changes the picture");
+  app.add_option("--set", sets_, "Set any key of the scene; may be repeated")
+      ->option_text("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void SceneOptions::add_resolution(std::vector<Override>& overrides) const {
+  if (resolution_.empty())
+    return;
+  const std::size_t cross = resolution_.find_first_of("xX");
+  const std::string width = resolution_.substr(0, cross);
+  const std::string height = cross == std::string::npos ? "" : resolution_.substr(cross + 1);
+  const std::string origin = "--resolution " + resolution_;
+  if (!is_number(width) || !is_number(height))
+    throw InputError(one_line(origin + ": must look like 640x360"));
+  // TOML has no leading zeros.
+  overrides.push_back({"image.width", std::to_string(std::stoi(width)), origin});
+  overrides.push_back({"image.height", std::to_string(std::stoi(height)), origin});
+}
+
+SceneDocument SceneOptions::open() const {
+  std::vector<Override> overrides;
+  const auto is_stop_rule = [](const Shorthand& s) {
+    return !s.value.empty() &&
+           std::find(stop_keys.begin(), stop_keys.end(), s.key) != stop_keys.end();
+  };
+  if (std::any_of(shorthands_.begin(), shorthands_.end(), is_stop_rule))
+    for (const char* key : stop_keys)
+      overrides.push_back({key, "none", "the stop rule"});
+  for (const Shorthand& shorthand : shorthands_)
+    if (!shorthand.value.empty())
+      overrides.push_back(
+          {shorthand.key, shorthand.value, shorthand.option + " " + shorthand.value});
+  add_resolution(overrides);
+  for (const std::string& text : sets_)
+    overrides.push_back(parse_override(text));
+  return SceneDocument(path_, overrides);
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "scene/scene_document.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace vdbeam::cli {
+
+/// The options that name a scene and change it, shared by the commands that take one.
+class SceneOptions {
+public:
+  /// Declares SCENE, --set and, for commands that render, the shorthands of single keys.
+  void declare(CLI::App& app);
+
+  const std::string& path() const { return path_; }
+  /// Reads the scene with everything the command line changes. Throws InputError.
+  SceneDocument open() const;
+
+private:
+  void declare_shorthand(CLI::App& app, const std::string& option, const std::string& key,
+                         const std::string& value_name, const std::string& description);
+  void add_resolution(std::vector<Override>& overrides) const;
+
+  struct Shorthand {
+    std::string option, key;
+    std::string value; ///< empty: not given
+  };
+  std::string path_, resolution_;
+  std::vector<std::string> sets_;
+  std::vector<Shorthand> shorthands_;
+};
+
+} // namespace vdbeam::cli

@@ -1,0 +1,87 @@
+#include "scene/image_metadata.h"
+
+#include "scene/scene_enums.h"
+#include "scene/versions.h"
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace vdbeam {
+namespace {
+
+using Matrix = std::array<std::array<double, 4>, 4>;
+
+/// OpenEXR's matrices act on row vectors: p' = p M. Camera space is left-handed: x right, y up,
+/// z away from the viewer.
+Matrix world_to_camera(const CameraSettings& camera) {
+  const Vec3d forward = normalize(camera.look_at - camera.position);
+  const Vec3d right = normalize(cross(forward, camera.up));
+  const std::array<Vec3d, 3> axes{right, cross(right, forward), forward};
+  Matrix m{};
+  for (std::size_t column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row)
+      m[static_cast<std::size_t>(row)][column] = axes[column][row];
+    m[3][column] = -dot(axes[column], camera.position);
+  }
+  m[3][3] = 1;
+  return m;
+}
+
+/// Camera space to x and y in [0, 1] from the top left, after division by the fourth component.
+Matrix camera_to_ndc(const CameraSettings& camera, const ImageSettings& image) {
+  const double scale_y = 0.5 / std::tan(camera.fov * std::numbers::pi / 360);
+  const double scale_x = scale_y * image.height / image.width;
+  Matrix m{};
+  m[0][0] = scale_x;
+  m[1][1] = -scale_y;
+  m[2] = {0.5, 0.5, 1, 1};
+  return m;
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix m{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j)
+      for (std::size_t k = 0; k < 4; ++k)
+        m[i][j] += a[i][k] * b[k][j];
+  return m;
+}
+
+std::vector<float> flatten(const Matrix& m) {
+  std::vector<float> values;
+  for (const auto& row : m)
+    for (const double x : row)
+      values.push_back(static_cast<float>(x));
+  return values;
+}
+
+} // namespace
+
+void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result, int frame,
+                        const std::string& hash) {
+  for (const auto& [name, version] : component_versions())
+    if (name == "vdbeam")
+      image.metadata["software"] = "vdbeam " + version;
+  image.metadata["vdbeam:scene"] = scene.path;
+  image.metadata["vdbeam:sceneHash"] = hash;
+  image.metadata["vdbeam:estimator"] = enum_name(scene.render.estimator);
+  image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
+  image.numbers["vdbeam:frame"] = frame;
+  image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
+  if (!result.passes.empty()) {
+    const PassRecord& last = result.passes.back();
+    image.numbers["vdbeam:passes"] = last.pass;
+    image.numbers["vdbeam:seconds"] = last.seconds;
+    if (std::isfinite(last.error_estimate))
+      image.numbers["vdbeam:errorEstimate"] = last.error_estimate;
+  }
+  image.numbers["vdbeam:photonsStored"] = static_cast<double>(result.statistics.photons_stored);
+  image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
+  const Matrix view = world_to_camera(scene.camera);
+  image.matrices["worldToCamera"] = flatten(view);
+  image.matrices["worldToNDC"] = flatten(product(view, camera_to_ndc(scene.camera, scene.image)));
+}
+
+} // namespace vdbeam

@@ -1,0 +1,150 @@
+#include "scene/report.h"
+
+#include "output/atomic_file.h"
+#include "scene/scene_keys.h"
+#include "scene/versions.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/info.h>
+
+namespace vdbeam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json value_json(const SceneKey& key, const KeyValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value))
+    return *whole;
+  if (const auto* real = std::get_if<double>(&value))
+    return number(*real);
+  if (const auto* text = std::get_if<std::string>(&value))
+    return *text;
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+    Json array = Json::array();
+    for (const double x : *list) // colours are floats: give the decimal that was meant
+      array.push_back(key.kind == KeyKind::color && std::isfinite(x)
+                          ? Json(std::stod(fmt::format("{}", static_cast<float>(x))))
+                          : number(x));
+    return array;
+  }
+  return nullptr;
+}
+
+Json passes_json(const RenderResult& result) {
+  Json list = Json::array();
+  for (const PassRecord& pass : result.passes) {
+    Json entry{{"pass", pass.pass},
+               {"seconds", pass.seconds},
+               {"photons", pass.photons},
+               {"error_estimate", number(pass.error_estimate)}};
+    if (pass.has_reference) {
+      entry["rmse"] = number(pass.rmse);
+      entry["mrse"] = number(pass.mrse);
+      entry["relmse"] = number(pass.relmse);
+      entry["bias"] = number(pass.bias);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json seconds_json(const RenderResult& result) {
+  const RenderStatistics& s = result.statistics;
+  return {{"read", s.read},
+          {"build", s.build},
+          {"trace", s.trace},
+          {"order", s.order},
+          {"radii", s.radii},
+          {"query", s.query},
+          {"profile", s.profile},
+          {"direct", s.direct},
+          {"path", s.path},
+          {"write", s.write},
+          {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
+}
+
+Json machine_json(const Scene& scene) {
+  const int cores = tbb::info::default_concurrency();
+  return {{"cpu", cpu_model()},
+          {"cores", cores},
+          {"threads", scene.render.threads > 0 ? scene.render.threads : cores}};
+}
+
+} // namespace
+
+Json settings_json(const Scene& scene) {
+  Json settings = Json::object();
+  settings["volume"] = Json::array();
+  settings["light"] = Json::array();
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.get)
+      continue;
+    for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
+      const Json value = value_json(key, key.get(scene, i));
+      if (key.section == SceneSection::phase)
+        settings["volume"][i]["phase"][key.name] = value;
+      else if (key.is_list_item())
+        settings[section_name(key.section)][i][key.name] = value;
+      else
+        settings[section_name(key.section)][key.name] = value;
+    }
+  }
+  return settings;
+}
+
+Json plan_json(const RenderPlan& plan) {
+  Json stages = Json::array();
+  for (const PlanStage& stage : plan.stages)
+    stages.push_back({{"name", stage.name}, {"needed", stage.needed}, {"reason", stage.reason}});
+  return {{"stages", std::move(stages)},
+          {"memory",
+           {{"volumes", plan.volume_bytes},
+            {"photons", plan.photon_bytes},
+            {"film", plan.film_bytes}}}};
+}
+
+Json report_json(const Scene& scene, const RenderResult& result, const ReportContext& context) {
+  const RenderStatistics& statistics = result.statistics;
+  Json report;
+  for (const auto& [name, version] : component_versions())
+    report["versions"][name] = version;
+  report["scene"] = scene.path;
+  report["scene_hash"] = context.scene_hash;
+  report["frame"] = context.frame;
+  report["output"] = context.output;
+  if (!context.reference.empty())
+    report["reference"] = context.reference;
+  report["machine"] = machine_json(scene);
+  report["settings"] = settings_json(scene);
+  report["notes"] = scene.notes;
+  for (const std::string& note : result.notes)
+    report["notes"].push_back(note);
+  report["plan"] = plan_json(result.plan);
+  report["seconds"] = seconds_json(result);
+  report["peak_memory"] = statistics.peak_memory;
+  report["bytes_per_photon"] = statistics.bytes_per_photon;
+  report["counts"] = {{"light_paths", statistics.light_paths},
+                      {"photons_stored", statistics.photons_stored},
+                      {"contributions", statistics.contributions},
+                      {"lookups", statistics.lookups},
+                      {"camera_rays", statistics.camera_rays}};
+  report["stopped_by"] = result.stopped_by;
+  report["passes"] = passes_json(result);
+  return report;
+}
+
+void write_json(const Json& json, const std::string& path) {
+  // Paths may hold bytes that are not UTF-8; they must not cost the report.
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  AtomicFile file(path);
+  file.write(text.data(), text.size());
+  file.commit();
+}
+
+} // namespace vdbeam

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "vdbeam/render.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace vdbeam {
+
+/// What a report says beside the result of the render.
+struct ReportContext {
+  int frame = 1;
+  std::string scene_hash;
+  std::string output;    ///< path of the image
+  std::string reference; ///< path of the reference, or empty
+};
+
+/// Every key of the scene, as nested objects named like in a scene file.
+nlohmann::ordered_json settings_json(const Scene& scene);
+
+/// The plan, as in reports and `vdbeam plan --json`.
+nlohmann::ordered_json plan_json(const RenderPlan& plan);
+
+/// The report of a frame (docs/scene.md). Numbers that are not finite become null.
+nlohmann::ordered_json report_json(const Scene& scene, const RenderResult& result,
+                                   const ReportContext& context);
+
+/// Writes JSON so that the file is never half there. Throws FrameError.
+void write_json(const nlohmann::ordered_json& json, const std::string& path);
+
+} // namespace vdbeam

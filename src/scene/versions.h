@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vdbeam {
+
+/// Names and versions of vdbeam and the libraries whose code decides the picture or the files:
+/// ("vdbeam", "0.1.0"), ("OpenVDB", ...), ("oneTBB", ...), ("OpenEXR", ...), ("SIMD", target).
+std::vector<std::pair<std::string, std::string>> component_versions();
+
+/// The CPU that this runs on, as it names itself; "unknown" where the system does not tell.
+std::string cpu_model();
+
+} // namespace vdbeam

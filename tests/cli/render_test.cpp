@@ -1,0 +1,175 @@
+#include "cli_fixture.h"
+
+#include "vdbeam/image_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbeam {
+namespace {
+
+using Json = nlohmann::json;
+using RenderCommand = test::CliTest;
+
+TEST_F(RenderCommand, WritesImagePreviewAndReport) {
+  const auto result =
+      render({cloud, "-o", "a.exr", "--preview", "a.png", "--report", "r.json", "--passes", "3"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  EXPECT_TRUE(result.out.empty());
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.exr", "a.png", "r.json"}));
+  const Image image = read_image(file("a.exr"));
+  EXPECT_EQ(image.width, 32);
+  EXPECT_EQ(image.height, 18);
+  for (const char* channel : {"R", "G", "B", "A", "volume_Z"})
+    EXPECT_NE(image.find(channel), nullptr) << channel;
+
+  const Json report = Json::parse(read("r.json"));
+  EXPECT_EQ(report["passes"].size(), 3u);
+  EXPECT_EQ(report["passes"][2]["pass"], 3);
+  EXPECT_FALSE(report["passes"][2].contains("mrse"));
+  EXPECT_EQ(report["stopped_by"], "passes");
+  EXPECT_EQ(report["settings"]["render"]["passes"], 3);
+  EXPECT_EQ(report["settings"]["volume"][0]["phase"]["g"], 0.6);
+  EXPECT_EQ(report["settings"]["volume"][0]["albedo"][0], 0.99);
+  EXPECT_EQ(report["scene_hash"].get<std::string>().size(), 16u);
+  EXPECT_GT(report["peak_memory"], 1000000);
+  EXPECT_GT(report["counts"]["camera_rays"], 0);
+  EXPECT_FALSE(report["plan"]["stages"].empty());
+  for (const char* stage : {"read", "build", "trace", "order", "radii", "query", "direct", "write"})
+    EXPECT_TRUE(report["seconds"].contains(stage)) << stage;
+  EXPECT_TRUE(report["machine"].contains("cpu"));
+  EXPECT_TRUE(report["versions"].contains("OpenVDB"));
+}
+
+TEST_F(RenderCommand, ImageTellsItsCameraAndScene) {
+  ASSERT_EQ(render({cloud, "-o", "a.exr", "--passes", "1", "--estimator", "path"}).code, 0);
+  const std::string bytes = read("a.exr");
+  for (const char* name :
+       {"worldToCamera", "worldToNDC", "vdbeam:sceneHash", "vdbeam:passes", "software"})
+    EXPECT_NE(bytes.find(name), std::string::npos) << name;
+}
+
+TEST_F(RenderCommand, ReferenceGivesErrorsOfEveryPass) {
+  ASSERT_EQ(render({cloud, "-o", "ref.exr", "--passes", "8", "--estimator", "path"}).code, 0);
+  const auto result = render({cloud, "-o", "a.exr", "--passes", "2", "--estimator", "path",
+                              "--seed", "2", "--reference", "ref.exr", "--report", "r.json"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  const Json report = Json::parse(read("r.json"));
+  for (const Json& pass : report["passes"])
+    for (const char* metric : {"rmse", "mrse", "relmse", "bias"})
+      EXPECT_TRUE(pass[metric].is_number()) << metric;
+  EXPECT_TRUE(report["passes"][0]["error_estimate"].is_null()); // one pass has no spread
+
+  const auto compare = run({"compare", "a.exr", "ref.exr", "--json"});
+  ASSERT_EQ(compare.code, 0) << compare.error;
+  const Json metrics = Json::parse(compare.out);
+  // The file holds halves, the report's image floats.
+  EXPECT_NEAR(metrics["mrse"].get<double>() / report["passes"][1]["mrse"].get<double>(), 1, 0.01);
+  EXPECT_GT(metrics["flip"], 0);
+  EXPECT_NE(run({"compare", "a.exr", "ref.exr"}).out.find("relMSE"), std::string::npos);
+}
+
+TEST_F(RenderCommand, WrongReferenceSizeIsRefusedBeforeRendering) {
+  ASSERT_EQ(render({cloud, "-o", "ref.exr", "--passes", "1"}).code, 0);
+  const auto result =
+      run({"render", cloud, "--resolution", "16x16", "--reference", "ref.exr", "-o", "a.exr"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.error,
+            "--reference ref.exr: is 32x18, but the picture is 16x16; use --resolution "
+            "32x18\n");
+  EXPECT_FALSE(exists("a.exr"));
+}
+
+TEST_F(RenderCommand, BareVdbAndDefaultName) {
+  const auto result = render({cloud_vdb, "--passes", "1"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  EXPECT_TRUE(exists("cloud.exr"));
+  EXPECT_NE(result.error.find("extinction"), std::string::npos); // what was chosen is said
+}
+
+TEST_F(RenderCommand, SequenceOfABareVdb) {
+  const auto none = render({smoke_pattern});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.error.find("say which frames, e.g. -f 1,12,24"), std::string::npos) << none.error;
+  const auto result = render({smoke_pattern, "-f", "1,24", "--passes", "1"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(files(), (std::vector<std::string>{"smoke.0001.exr", "smoke.0024.exr"}));
+  EXPECT_NE(result.error.find("frame 24 (2/2)"), std::string::npos);
+}
+
+TEST_F(RenderCommand, MissingFrameIsToldBeforeAnyIsRendered) {
+  const auto result = render({smoke_pattern, "-f", "1-2", "--passes", "1"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.error.find("there are frames 1,12,24"), std::string::npos) << result.error;
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(RenderCommand, OneBadFrameDoesNotStopTheOthers) {
+  for (const char* name : {"c.0001.vdb", "c.0003.vdb"})
+    std::filesystem::copy_file(cloud_vdb, folder_ / name);
+  write("c.0002.vdb", "not a volume");
+  write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
+  const auto result = render({"s.toml", "-f", "1-3", "--passes", "1"});
+  EXPECT_GE(result.code, 2);
+  EXPECT_LE(result.code, 3);
+  EXPECT_TRUE(exists("s.0001.exr"));
+  EXPECT_FALSE(exists("s.0002.exr"));
+  EXPECT_TRUE(exists("s.0003.exr"));
+}
+
+TEST_F(RenderCommand, FailureLeavesNoFileAndSaysOneLine) {
+  write("bad.vdb", "not a volume");
+  write("s.toml", "[[volume]]\nfile = 'bad.vdb'\n");
+  const auto result = render({"s.toml", "-q", "-o", "a.exr", "--report", "r.json"});
+  EXPECT_GE(result.code, 2);
+  EXPECT_LE(result.code, 3);
+  EXPECT_EQ(result.error_lines(), 1u) << result.error;
+  EXPECT_EQ(files(), (std::vector<std::string>{"bad.vdb", "s.toml"}));
+}
+
+TEST_F(RenderCommand, QuietSaysNothing) {
+  const auto result = render({cloud, "-q", "-o", "a.exr", "--passes", "1"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.error.empty()) << result.error;
+}
+
+TEST_F(RenderCommand, StopRuleOfTheCommandLineReplacesTheFilesRule) {
+  write("s.toml", "[render]\npasses = 1\n");
+  const auto result = render({"s.toml", "--time", "0.2", "-o", "a.exr", "--report", "r.json"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  const Json report = Json::parse(read("r.json"));
+  EXPECT_EQ(report["stopped_by"], "time");
+  EXPECT_GT(report["passes"].size(), 1u);
+}
+
+TEST_F(RenderCommand, NegativeFramesAndExposures) {
+  const auto result = render({cloud, "-f=-2--1", "-o", "a.%d.exr", "--preview", "a.%d.png",
+                              "--exposure", "-1", "--passes", "1"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.-1.exr", "a.-1.png", "a.-2.exr", "a.-2.png"}));
+}
+
+class Interrupt : public test::CliTest, public ::testing::WithParamInterface<int> {};
+
+/// A render that would take an hour ends soon after the signal, with a readable image of its
+/// passes.
+TEST_P(Interrupt, WritesTheImageSoFar) {
+  const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
+                             "render.photons=2000", "-o", "a.exr", "--report", "r.json"});
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (read("stderr.txt").empty() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10)); // until the handlers are in place
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  kill(child, GetParam());
+  const auto result = finish(child);
+  EXPECT_EQ(result.code, 128 + GetParam()) << result.error;
+  EXPECT_EQ(read_image(file("a.exr")).width, 32);
+  const Json report = Json::parse(read("r.json"));
+  EXPECT_EQ(report["stopped_by"], "stop");
+  EXPECT_GE(report["passes"].size(), 1u);
+  EXPECT_NE(result.error.find("interrupted"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGTERM));
+
+} // namespace
+} // namespace vdbeam

@@ -1,0 +1,117 @@
+#include "cli_fixture.h"
+
+namespace vdbeam {
+namespace {
+
+using Usage = test::CliTest;
+
+TEST_F(Usage, HelpOfEveryCommandHasExamples) {
+  const auto top = run({"--help"});
+  EXPECT_EQ(top.code, 0);
+  EXPECT_NE(top.out.find("Exit codes:"), std::string::npos);
+  for (const char* command : {"render", "info", "init", "plan", "compare"}) {
+    EXPECT_NE(top.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
+    const auto help = run({command, "--help"});
+    EXPECT_EQ(help.code, 0) << command;
+    EXPECT_TRUE(help.error.empty()) << help.error;
+    EXPECT_NE(help.out.find("Examples:"), std::string::npos) << command;
+    EXPECT_NE(help.out.find(std::string("vdbeam ") + command), std::string::npos) << command;
+  }
+}
+
+TEST_F(Usage, VersionNamesTheLibraries) {
+  const auto result = run({"--version"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.out.starts_with("vdbeam ")) << result.out;
+  for (const char* name : {"OpenVDB 10", "oneTBB 20", "OpenEXR 3", "SIMD "})
+    EXPECT_NE(result.out.find(name), std::string::npos) << result.out;
+}
+
+TEST_F(Usage, SceneKeysAreListed) {
+  const auto result = run({"--help-scene"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.out.find("droplet_diameter"), std::string::npos);
+}
+
+TEST_F(Usage, WrongUseIsBadInputOnOneLine) {
+  const std::vector<std::vector<std::string>> wrong{{},
+                                                    {"rander"},
+                                                    {"render"},
+                                                    {"render", cloud, "--nonsense"},
+                                                    {"render", cloud, "--passes"},
+                                                    {"render", cloud, "extra"},
+                                                    {"render", cloud, "--exposure", "bright"},
+                                                    {"compare", "a.exr"},
+                                                    {"info"},
+                                                    {"plan", cloud, "-f", "x"}};
+  for (const auto& arguments : wrong) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.code, 2) << result.error;
+    EXPECT_EQ(result.error_lines(), 1u) << result.error;
+    EXPECT_TRUE(result.out.empty()) << result.out;
+  }
+}
+
+TEST_F(Usage, BadValuesNameTheirOption) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--passes", "0"}, "--passes 0: render.passes must be at least 1, got 0\n"},
+      {{"--time", "soon"},
+       "--time soon: render.time must be seconds or a text like \"90s\", \"5m\" or \"1h30m\" or "
+       "\"none\", got \"soon\"\n"},
+      {{"--estimator", "beem"},
+       "--estimator beem: render.estimator must be beam, march or path, got \"beem\"; did you mean "
+       "beam?\n"},
+      {{"--resolution", "640"}, "--resolution 640: must look like 640x360\n"},
+      {{"--resolution", "0x10"}, "--resolution 0x10: image.width must lie in [1, 65536], got 0\n"},
+      {{"--seed", "-1"}, "--seed -1: render.seed must be at least 0, got -1\n"},
+      {{"-f", "1..3"},
+       "--frames: frames must look like 7, 1-24, 1-100x2 or 1,5,9-12, got \"1..3\"\n"},
+      {{"--set", "camera.fov"},
+       "--set camera.fov: must look like key.path=value, e.g. volume.0.extinction=80\n"},
+      {{"-f", "1-3", "-o", "a.exr"}, "-o a.exr: 3 frames would go to one file; write a.####.exr\n"},
+      {{"-f", "1-3", "-o", "a.####.exr", "--preview", "a.png"},
+       "--preview a.png: 3 frames would go to one file; write a.####.png\n"},
+      {{"-o", "none/a.exr"},
+       "-o none/a.exr: there is no folder none; make it with: mkdir -p none\n"},
+      {{"-o", "."}, "-o .: is a folder; add a file's name\n"},
+      {{"--report", "none/r.json"},
+       "--report none/r.json: there is no folder none; make it with: mkdir -p none\n"},
+      {{"--reference", "none.exr"}, ""},
+      {{"-o", "a.jpeg"}, ""}};
+  for (const auto& [options, message] : cases) {
+    std::vector<std::string> arguments{"render", cloud};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.code, 2) << result.error;
+    EXPECT_EQ(result.error_lines(), 1u) << result.error;
+    if (!message.empty()) {
+      EXPECT_EQ(result.error, message);
+    }
+    EXPECT_TRUE(files().empty());
+  }
+}
+
+TEST_F(Usage, SceneErrorsHaveFileAndLine) {
+  write("s.toml", "[image]\nwidht = 3\n");
+  for (const char* command : {"render", "plan"}) {
+    const auto result = run({command, "s.toml"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.error, "s.toml:2: unknown key image.widht; did you mean width?\n");
+  }
+}
+
+TEST_F(Usage, FolderWithoutPermission) {
+  if (geteuid() == 0)
+    GTEST_SKIP() << "root may write everywhere";
+  std::filesystem::create_directory(folder_ / "locked");
+  std::filesystem::permissions(folder_ / "locked", std::filesystem::perms::owner_read |
+                                                       std::filesystem::perms::owner_exec);
+  const auto result = run({"render", cloud, "-o", "locked/a.exr"});
+  std::filesystem::permissions(folder_ / "locked", std::filesystem::perms::owner_all);
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.error,
+            "-o locked/a.exr: no permission to write into locked; choose another folder\n");
+}
+
+} // namespace
+} // namespace vdbeam
