@@ -20,7 +20,7 @@ namespace {
 const char* const examples = R"(Examples:
   vdbeam render cloud.vdb                                 a bare VDB, to cloud.exr
   vdbeam render cloud.toml -o out.exr --time 60s --preview out.png
-  vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12, -f=-5--1
+  vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12, -5--1
   vdbeam render cloud.toml --target-error 0.001 --set volume.0.extinction=80
   vdbeam render cloud.toml --reference ref.exr --report report.json)";
 

@@ -142,7 +142,7 @@ TEST_F(RenderCommand, StopRuleOfTheCommandLineReplacesTheFilesRule) {
 }
 
 TEST_F(RenderCommand, NegativeFramesAndExposures) {
-  const auto result = render({cloud, "-f=-2--1", "-o", "a.%d.exr", "--preview", "a.%d.png",
+  const auto result = render({cloud, "-f", "-2--1", "-o", "a.%d.exr", "--preview", "a.%d.png",
                               "--exposure", "-1", "--passes", "1"});
   ASSERT_EQ(result.code, 0) << result.error;
   EXPECT_EQ(files(), (std::vector<std::string>{"a.-1.exr", "a.-1.png", "a.-2.exr", "a.-2.png"}));
