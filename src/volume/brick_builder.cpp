@@ -1,14 +1,14 @@
 #include "volume/brick_builder.h"
 
 #include "vdbeam/error.h"
+#include "volume/leaf_values.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
 #include <unordered_map>
 
 namespace vdbeam {
@@ -19,95 +19,6 @@ constexpr int brick_width = DensityField::brick_width;
 constexpr std::int64_t maximum_cells = std::int64_t(1) << 28;
 constexpr std::int32_t no_source = -1;
 constexpr std::int32_t tile_base = -2; ///< source table: -2 - n is tile n
-
-struct Range {
-  float lowest = 0, highest = 0;
-  void extend(const Range& other) {
-    lowest = std::min(lowest, other.lowest);
-    highest = std::max(highest, other.highest);
-  }
-};
-
-/// Smallest and largest value of a leaf's eight regions. Region r leaves an axis whole where r's
-/// bit (4: x, 2: y, 1: z) is 0, and holds its first layer only where the bit is 1: just what the
-/// cell below along those axes takes from the leaf as its apron.
-using LeafRanges = std::array<Range, 8>;
-
-LeafRanges measure_leaf(const float* values) {
-  LeafRanges ranges;
-  ranges.fill({values[0], values[0]});
-  for (int x = 0; x < leaf_width; ++x)
-    for (int y = 0; y < leaf_width; ++y) {
-      const float* row = values + (x * leaf_width + y) * leaf_width;
-      const Range first{row[0], row[0]};
-      Range whole = first;
-      for (int z = 1; z < leaf_width; ++z)
-        whole.extend({row[z], row[z]});
-      for (int r = 0; r < 8; r += 2)
-        if ((!(r & 4) || x == 0) && (!(r & 2) || y == 0)) {
-          ranges[r].extend(whole);
-          ranges[r + 1].extend(first);
-        }
-    }
-  return ranges;
-}
-
-/// Turns file values into densities and counts what had to be mended.
-class Mender {
-public:
-  explicit Mender(const RawGrid& grid)
-      : level_set_(grid.level_set), per_distance_(level_set_ ? 1 / depth(grid) : 0) {}
-
-  float operator()(float value, GridRepairs& repairs, std::uint64_t weight = 1) const {
-    if (std::isnan(value)) {
-      repairs.nan += weight;
-      return 0;
-    }
-    if (std::isinf(value)) {
-      repairs.infinite += weight;
-      return 0;
-    }
-    if (level_set_)
-      return value < 0 ? std::min(-value * per_distance_, 1.0f) : 0;
-    if (value < 0) {
-      repairs.negative += weight;
-      return 0;
-    }
-    return value == 0 ? 0 : value; // -0 becomes 0
-  }
-
-private:
-  /// Where the fog reaches density 1 inside: the tiles' distance, which is the narrow band's, or
-  /// the deepest voxel where there are no tiles.
-  static float depth(const RawGrid& grid) {
-    float depth = 0;
-    for (const RawTile& tile : grid.tiles)
-      if (std::isfinite(tile.value))
-        depth = std::max(depth, -tile.value);
-    if (depth > 0)
-      return depth;
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, grid.leaf_count, 64), std::numeric_limits<float>::min(),
-        [&grid](const tbb::blocked_range<std::size_t>& leaves, float deepest) {
-          const float* end = grid.leaf_values + leaves.end() * leaf_size;
-          for (const float* v = grid.leaf_values + leaves.begin() * leaf_size; v != end; ++v)
-            if (std::isfinite(*v))
-              deepest = std::max(deepest, -*v);
-          return deepest;
-        },
-        [](float a, float b) { return std::max(a, b); });
-  }
-
-  bool level_set_;
-  float per_distance_;
-};
-
-GridRepairs sum(GridRepairs a, const GridRepairs& b) {
-  a.nan += b.nan;
-  a.infinite += b.infinite;
-  a.negative += b.negative;
-  return a;
-}
 
 class Builder {
 public:
@@ -133,7 +44,7 @@ private:
   std::size_t offset(int i, int j, int k) const {
     return (static_cast<std::size_t>(i) * counts_.y + j) * counts_.z + k;
   }
-  Range range(std::int32_t source, int region) const {
+  ValueRange range(std::int32_t source, int region) const {
     if (source >= 0)
       return ranges_[source][region];
     const float value = source == no_source ? 0 : grid_.tiles[tile_base - source].value;
@@ -165,16 +76,20 @@ GridRepairs Builder::mend() {
       [&](const tbb::blocked_range<std::size_t>& leaves, GridRepairs found) {
         for (std::size_t leaf = leaves.begin(); leaf != leaves.end(); ++leaf) {
           float* values = grid_.leaf_values + leaf * leaf_size;
-          for (int i = 0; i < leaf_size; ++i)
-            values[i] = mender(values[i], found);
+          mender.mend_leaf(values, found);
           ranges_[leaf] = measure_leaf(values);
         }
         return found;
       },
-      sum);
+      [](GridRepairs a, const GridRepairs& b) {
+        a.nan += b.nan;
+        a.infinite += b.infinite;
+        a.negative += b.negative;
+        return a;
+      });
   for (RawTile& tile : grid_.tiles) {
     const auto width = static_cast<std::uint64_t>(tile.width);
-    tile.value = mender(tile.value, repairs, width * width * width);
+    tile.value = mender.mend(tile.value, repairs, width * width * width);
   }
   return repairs;
 }
@@ -239,7 +154,7 @@ void Builder::fill_sources() {
 constexpr std::int32_t brick_mark = 0; ///< classified as a brick, not numbered yet
 
 std::int32_t Builder::classify_cell(int i, int j, int k) const {
-  Range all = range(source(i, j, k), 0);
+  ValueRange all = range(source(i, j, k), 0);
   for (int r = 1; r < 8; ++r)
     all.extend(range(source(i + (r >> 2), j + ((r >> 1) & 1), k + (r & 1)), r));
   if (all.highest == 0)

@@ -101,6 +101,14 @@ std::uint64_t active_tile_voxels(const Tree& tree) {
   return count;
 }
 
+void append_floats(std::vector<float>& to, const float* leaf) {
+  to.insert(to.end(), leaf, leaf + leaf_size);
+}
+void append_floats(std::vector<float>& to, const double* leaf) {
+  std::transform(leaf, leaf + leaf_size, std::back_inserter(to),
+                 [](double value) { return to_float(value); });
+}
+
 template <class Leaf>
 void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
   constexpr std::size_t batch = 64;
@@ -108,9 +116,7 @@ void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
   std::vector<std::int32_t> origins;
   origins.reserve(3 * leaves.size());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const auto* data = leaves[i]->buffer().data();
-    for (int v = 0; v < leaf_size; ++v)
-      values.push_back(to_float(data[v]));
+    append_floats(values, leaves[i]->buffer().data());
     if (values.size() == batch * leaf_size || i + 1 == leaves.size()) {
       write_all(descriptor, values.data(), values.size() * sizeof(float));
       values.clear();

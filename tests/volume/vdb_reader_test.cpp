@@ -16,7 +16,6 @@ namespace {
 
 /// What OpenVDB itself makes of a file, mended by the plainest code.
 openvdb::FloatGrid::Ptr reference_grid(const std::string& path, const std::string& name) {
-  openvdb::logging::setLevel(openvdb::logging::Level::Error);
   openvdb::io::File file(path);
   file.open(false);
   const openvdb::GridBase::Ptr base = file.readGrid(name);
@@ -85,7 +84,9 @@ protected:
     path_ = folder_.file("volume.vdb");
     write_volume(GetParam().kind, path_, options);
     grid_ = read_density_grid(path_, "density");
-    reference_ = reference_grid(path_, "density");
+    // OpenVDB warns where several grids have the name that is asked for.
+    const bool is_one_of_two = GetParam().kind == "duplicates";
+    reference_ = reference_grid(path_, is_one_of_two ? "density[0]" : "density");
   }
 
   test::TempFolder folder_;
