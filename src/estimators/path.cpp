@@ -1,25 +1,43 @@
 #include "estimators/path.h"
 
 #include "estimators/camera_ray.h"
+#include "estimators/direct_light.h"
 #include "estimators/pixel_tiles.h"
-#include "transport/optical_depth.h"
+#include "estimators/profile_shading.h"
+#include "transport/distance_sampling.h"
 #include "transport/scattering.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <chrono>
+#include <cstdlib>
 
 namespace vdbeam {
 
+namespace {
+
+/// Weight under which Russian roulette begins.
+const float roulette_below = getenv("RR") ? (float)atof(getenv("RR")) : 0.25f;
+
+} // namespace
+
+PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
+  for (std::size_t i = 0; i < input_.world.lights.size(); ++i)
+    shadow_rays_.push_back(input_.world.lights[i].wants_shadow_rays());
+  const int samples = input_.world.settings.direct_samples;
+  direct_samples_ = samples > 0 ? samples : 4;
+  if(getenv("SPLITS")) splits_=atoi(getenv("SPLITS"));
+}
+
 struct PathEstimator::Outputs {
-  Rgb direct, indirect, background;
-  float opacity = 0;
-  float depth = 0; ///< of the first collision, render units; 0 if none
+  Rgb direct, indirect;
 };
 
 struct PathEstimator::State {
   Ray ray;
   Rgb throughput{1, 1, 1};
   int bounces = 0;
-  float phase_pdf = 0; ///< of ray.direction, after a scattering
+  float phase_pdf = 0; ///< of ray.direction
   Vec3f scatter_point;
 };
 
@@ -31,8 +49,11 @@ Rgb PathEstimator::escape(const State& state) const {
     const Light& light = input_.world.lights[i];
     if (light.is_delta())
       continue;
+    // Single scattering of these is complete already (direct_light draws both strategies).
+    if (state.bounces == 1 && light.wants_shadow_rays())
+      continue;
     float weight = 1;
-    if (state.bounces > 0 && light.wants_shadow_rays())
+    if (light.wants_shadow_rays())
       weight = state.phase_pdf /
                (state.phase_pdf + light.incident_pdf(state.scatter_point, state.ray.direction));
     sum += light.escaped_radiance(state.ray.direction) * weight;
@@ -60,35 +81,85 @@ Rgb PathEstimator::light(const State& state, const PhaseFunction& phase, Rng& rn
   return sum * state.throughput;
 }
 
-void PathEstimator::trace(const CameraRay& camera_ray, Rng& rng, Outputs& out) const {
-  const World& world = input_.world;
+/// Scatters at a point that was drawn from the camera ray's profile. Its light by shadow rays is
+/// estimated apart (direct_light), so the walk begins with what comes after.
+void PathEstimator::scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
+                                  Outputs& out) const {
+  const Medium& medium = input_.world.medium;
+  // Which volume scatters, in proportion to its share.
+  float total = 0;
+  for (const Rgb& weight : *point.weights)
+    total += mean_component(weight);
+  if (!(total > 0))
+    return;
+  std::size_t volume = 0;
+  float left = rng.uniform() * total - mean_component((*point.weights)[0]);
+  while (left >= 0 && volume + 1 < medium.volumes.size())
+    left -= mean_component((*point.weights)[++volume]);
+  const Rgb& weight = (*point.weights)[volume];
+  if (!(mean_component(weight) > 0))
+    return;
   State state;
-  state.ray = camera_ray.ray;
+  state.ray = {point.position, camera.ray.direction};
+  state.throughput = weight * (total / mean_component(weight));
+  turn(state, medium.phases[medium.volumes[volume].group], rng);
+  walk(state, rng, out);
+}
+
+void PathEstimator::turn(State& state, const PhaseFunction& phase, Rng& rng) const {
+  const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  const Vec3f direction = phase.sample(state.ray.direction, u_lobe, u, v);
+  state.phase_pdf = phase.evaluate(dot(state.ray.direction, direction));
+  state.scatter_point = state.ray.origin;
+  state.ray.direction = direction;
+  ++state.bounces;
+}
+
+/// The walk after the first scattering, until it leaves or ends.
+void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
+  const World& world = input_.world;
   while (true) {
     const Collision hit = next_scattering(world.medium, state.ray, state.throughput, rng);
     if (hit.volume == nullptr) {
-      Rgb& target =
-          state.bounces == 0 ? out.background : (state.bounces == 1 ? out.direct : out.indirect);
-      target += escape(state);
+      (state.bounces == 1 ? out.direct : out.indirect) += escape(state);
       return;
-    }
-    if (state.bounces == 0) {
-      out.opacity = 1;
-      out.depth = hit.t;
     }
     if (world.settings.max_bounces && state.bounces >= *world.settings.max_bounces)
       return;
-    if (!survive_scattering(hit.volume->albedo, state.throughput, rng))
+    state.throughput *= hit.volume->albedo;
+    if (!survive_roulette(roulette_below, state.throughput, rng))
       return;
     const PhaseFunction& phase = world.medium.phases[hit.volume->group];
-    state.scatter_point = state.ray.at(hit.t);
-    (state.bounces == 0 ? out.direct : out.indirect) += light(state, phase, rng);
-    const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-    const Vec3f direction = phase.sample(state.ray.direction, u_lobe, u, v);
-    state.phase_pdf = phase.evaluate(dot(state.ray.direction, direction));
-    state.ray = {state.scatter_point, direction};
-    ++state.bounces;
+    state.ray.origin = state.scatter_point = state.ray.at(hit.t);
+    out.indirect += light(state, phase, rng);
+    turn(state, phase, rng);
   }
+}
+
+/// One pixel: what is seen through the medium and single scattering from the depth profile, the rest
+/// by walks from points drawn from it.
+void PathEstimator::trace(const CameraRay& camera, DepthProfile& profile, std::size_t pixel,
+                          const RngKey& key, PassImage& image) const {
+  const World& world = input_.world;
+  Rng rng(key, RngStage::path, pixel);
+  profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
+                static_cast<float>(world.settings.cutoff));
+  shade_profile(world, camera, profile, pixel, image);
+  if (profile.empty() || (world.settings.max_bounces && *world.settings.max_bounces < 1))
+    return;
+  Outputs out;
+  out.direct = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_, rng);
+  DistanceSampler distances(world.medium, camera.ray, profile);
+  const float share = 1 / static_cast<float>(splits_);
+  Outputs walks;
+  for (int i = 0; i < splits_; ++i) {
+    const float u = (static_cast<float>(i) + rng.uniform()) * share;
+    const int c = world.medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
+    if (distances.opacity(c) > 0)
+      scatter_first(camera, distances.sample(u, c), rng, walks);
+  }
+  image.direct[pixel] = out.direct + walks.direct * share;
+  image.indirect[pixel] = walks.indirect * share;
 }
 
 void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
@@ -96,23 +167,16 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const Camera& camera = input_.camera;
   const RngKey key{input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
   image.resize(camera.width(), camera.height());
+  tbb::enumerable_thread_specific<DepthProfile> profiles;
   for_each_tile(camera.width(), camera.height(), [&](int x0, int y0, int x1, int y1) {
+    DepthProfile& profile = profiles.local();
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
-        Rng rng(key, RngStage::path, pixel);
-        const double px = x + static_cast<double>(rng.uniform());
-        const double py = y + static_cast<double>(rng.uniform());
-        const CameraRay ray = camera_ray(input_.world, camera, px, py);
-        Outputs out;
-        trace(ray, rng, out);
-        image.direct[pixel] = out.direct;
-        image.indirect[pixel] = out.indirect;
-        image.background[pixel] = out.background;
-        image.opacity[pixel] = out.opacity;
-        if (out.opacity > 0)
-          image.depth[pixel] =
-              static_cast<float>((out.depth + ray.shift) / input_.world.space.scale);
+        Rng jitter(key, RngStage::camera, pixel);
+        const double px = x + static_cast<double>(jitter.uniform());
+        const double py = y + static_cast<double>(jitter.uniform());
+        trace(camera_ray(input_.world, camera, px, py), profile, pixel, key, image);
       }
   });
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;

@@ -1,17 +1,19 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "estimators/camera_ray.h"
 #include "math/rng.h"
-#include "transport/delta_tracking.h"
+#include "transport/distance_sampling.h"
 
 namespace vdbeam {
 
-/// Unbiased volumetric path tracing: delta tracking (spectral tracking where the extinction is
-/// chromatic, Kutz et al. 2017), next-event estimation at every collision, multiple importance
-/// sampling for lights that a scattered ray can meet. The truth that the others are held against.
+/// Unbiased volumetric path tracing: the camera ray scatters by its depth profile (forced, stratified),
+/// later flights by delta tracking (spectral tracking where the extinction is chromatic, Kutz et al.
+/// 2017), next-event estimation at every collision, multiple importance sampling for lights that a
+/// scattered ray can meet. The truth that the others are held against.
 class PathEstimator : public Estimator {
 public:
-  explicit PathEstimator(const EstimatorInput& input) : input_(input) {}
+  explicit PathEstimator(const EstimatorInput& input);
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
@@ -19,11 +21,19 @@ private:
   struct Outputs;
   struct State;
 
-  void trace(const struct CameraRay& camera_ray, Rng& rng, Outputs& out) const;
+  void trace(const CameraRay& camera, DepthProfile& profile, std::size_t pixel, const RngKey& key,
+             PassImage& image) const;
+  void scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
+                     Outputs& out) const;
+  void turn(State& state, const PhaseFunction& phase, Rng& rng) const;
+  void walk(State& state, Rng& rng, Outputs& out) const;
   Rgb escape(const State& state) const;
   Rgb light(const State& state, const PhaseFunction& phase, Rng& rng) const;
 
   EstimatorInput input_;
+  std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
+  int direct_samples_ = 1;        ///< shadow-ray samples per camera ray
+  int splits_ = 1;                ///< walks per camera ray
 };
 
 } // namespace vdbeam

@@ -2,6 +2,7 @@
 
 #include "estimators/direct_light.h"
 #include "estimators/pixel_tiles.h"
+#include "estimators/profile_shading.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -17,24 +18,6 @@ double seconds_between(Clock::time_point a, Clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
 }
 
-/// Everything on a pixel's ray but the photons.
-void shade_ray(const World& world, const PhotonStage& stage, const RngKey& key,
-               const TileRays::PixelRay& ray, PassImage& image) {
-  Rng rng(key, RngStage::direct, ray.pixel);
-  Rgb tr(1);
-  if (!ray.profile.empty()) {
-    const Rgb tau = ray.profile.channels(world.medium, ray.profile.knots() - 1);
-    tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
-    image.direct[ray.pixel] = direct_light(world, ray.camera.ray, ray.profile,
-                                           stage.sampled_lights(), stage.direct_samples(), rng);
-    const float opacity = 1 - mean_component(tr);
-    image.opacity[ray.pixel] = opacity;
-    image.depth[ray.pixel] = static_cast<float>(
-        (ray.profile.opacity_depth() + ray.camera.shift * opacity) / world.space.scale);
-  }
-  image.background[ray.pixel] = tr * world.lights.escaped_radiance(Vec3f(ray.direction));
-}
-
 } // namespace
 
 void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass, PassImage& image,
@@ -44,6 +27,12 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height());
   const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
+  const auto shade_ray = [&](const TileRays::PixelRay& ray) {
+    shade_profile(world, ray.camera, ray.profile, ray.pixel, image);
+    Rng rng(key, RngStage::direct, ray.pixel);
+    image.direct[ray.pixel] = direct_light(world, ray.camera.ray, ray.profile,
+                                           stage.sampled_lights(), stage.direct_samples(), rng);
+  };
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(camera.width(), camera.height(), [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
@@ -52,7 +41,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
     const Clock::time_point profiled = Clock::now();
     for (int i = 0; i < TileRays::count; ++i)
       if (scratch.rays[i].inside)
-        shade_ray(world, stage, key, scratch.rays[i], image);
+        shade_ray(scratch.rays[i]);
     const Clock::time_point shaded = Clock::now();
     if (stage.map().size() > 0)
       gather(scratch, key);

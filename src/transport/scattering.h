@@ -23,8 +23,8 @@ inline bool collide_really(const Collision& hit, bool chromatic, Rgb& weight, Rn
   return false;
 }
 
-/// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel
-/// keeps its value. False where the path ends.
+/// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel keeps
+/// its value. False where the path ends.
 inline bool survive_scattering(const Rgb& albedo, Rgb& weight, Rng& rng) {
   const float before = max_component(weight);
   weight *= albedo;
@@ -36,6 +36,18 @@ inline bool survive_scattering(const Rgb& albedo, Rgb& weight, Rng& rng) {
       return false;
     weight *= before / after;
   }
+  return true;
+}
+
+/// Russian roulette once the weight falls under `threshold`, which survivors carry. False where the
+/// path ends.
+inline bool survive_roulette(float threshold, Rgb& weight, Rng& rng) {
+  const float largest = max_component(weight);
+  if (largest >= threshold)
+    return true;
+  if (!(largest > 0) || rng.uniform() * threshold >= largest)
+    return false;
+  weight *= threshold / largest;
   return true;
 }
 

@@ -1,0 +1,58 @@
+#include "transport/distance_sampling.h"
+
+namespace vdbeam {
+
+float DistanceSampler::channel_tau(std::size_t knot, int c) const {
+  if (!medium_.chromatic)
+    return profile_.total(knot);
+  float sum = 0;
+  for (std::size_t v = 0; v < profile_.volume_count(); ++v)
+    sum += medium_.volumes[v].channel_scale[c] * profile_.tau(knot, v);
+  return sum;
+}
+
+ScatterPoint DistanceSampler::sample(float u, int c) {
+  const float tau = std::min(-std::log1p(-u * opacity(c)), channel_tau(profile_.knots() - 1, c));
+  std::size_t low = 0, high = profile_.knots() - 1;
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (channel_tau(middle, c) <= tau ? low : high) = middle;
+  }
+  const float a = channel_tau(low, c), b = channel_tau(low + 1, c);
+  const float fraction = b > a ? std::clamp((tau - a) / (b - a), 0.0f, 1.0f) : 0.5f;
+  const float t = profile_.t(low) + fraction * (profile_.t(low + 1) - profile_.t(low));
+  weigh(low, t);
+  return {t, ray_.at(t), &weights_};
+}
+
+/// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in t,
+/// so two Gauss points give the optical depth from the knot to t exactly. The density of the draw is
+/// sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over the
+/// channels (balance heuristic).
+void DistanceSampler::weigh(std::size_t knot, float t) {
+  const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
+  const float middle = 0.5f * (t_a + t), half = 0.5f * (t - t_a), offset = half * 0.57735027f;
+  Rgb tau, linear_tau, linear_sigma;
+  for (std::size_t v = 0; v < weights_.size(); ++v) {
+    const Volume& volume = medium_.volumes[v];
+    const float begin = profile_.tau(knot, v), piece = profile_.tau(knot + 1, v) - begin;
+    const float sigma = volume.extinction * volume.density(ray_.at(t));
+    float exact = 0;
+    if (piece > 0)
+      exact = volume.extinction * half *
+              (volume.density(ray_.at(middle - offset)) + volume.density(ray_.at(middle + offset)));
+    tau += volume.channel_scale * (begin + exact);
+    linear_tau += volume.channel_scale * (begin + (length > 0 ? (t - t_a) / length : 0) * piece);
+    linear_sigma += volume.channel_scale * (length > 0 ? piece / length : sigma);
+    weights_[v] = volume.albedo * volume.channel_scale * (piece > 0 ? sigma : 0);
+  }
+  float pdf = 0;
+  for (int c = 0; c < 3; ++c)
+    if (opacity(c) > 0)
+      pdf += linear_sigma[c] * std::exp(-linear_tau[c]) / opacity(c) / 3;
+  for (Rgb& weight : weights_)
+    for (int c = 0; c < 3; ++c)
+      weight[c] = pdf > 0 ? weight[c] * std::exp(-tau[c]) / pdf : 0;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "transport/depth_profile.h"
+
+namespace vdbeam {
+
+/// A scattering point drawn along a ray.
+struct ScatterPoint {
+  float t = 0;
+  Vec3f position;
+  /// Per volume: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws is the integral
+  /// of sigma_s Tr along the ray.
+  const std::vector<Rgb>* weights = nullptr;
+};
+
+/// Draws distances in proportion to what scatters, from a ray's depth profile: forced scattering, no
+/// draw leaves the medium. The profile is linear between lattice planes, the true optical depth is
+/// not; the weight makes up for the difference, exactly.
+class DistanceSampler {
+public:
+  /// The arguments must outlive the sampler. Requires a profile that is not empty.
+  DistanceSampler(const Medium& medium, const Ray& ray, const DepthProfile& profile)
+      : medium_(medium), ray_(ray), profile_(profile),
+        end_(profile.channels(medium, profile.knots() - 1)), weights_(medium.volumes.size()) {}
+
+  /// 1 - Tr of the whole ray in channel c.
+  float opacity(int c) const { return -std::expm1(-end_[c]); }
+
+  /// A point drawn from channel c's distribution, where c was chosen with equal chance if the medium
+  /// is chromatic and is 0 otherwise. Requires opacity(c) > 0.
+  ScatterPoint sample(float u, int c);
+
+private:
+  float channel_tau(std::size_t knot, int c) const;
+  void weigh(std::size_t knot, float t);
+
+  const Medium& medium_;
+  const Ray& ray_;
+  const DepthProfile& profile_;
+  Rgb end_;
+  std::vector<Rgb> weights_;
+};
+
+} // namespace vdbeam
