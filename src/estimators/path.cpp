@@ -10,14 +10,13 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <chrono>
-#include <cstdlib>
 
 namespace vdbeam {
 
 namespace {
 
 /// Weight under which Russian roulette begins.
-const float roulette_below = getenv("RR") ? (float)atof(getenv("RR")) : 0.25f;
+constexpr float roulette_below = 0.1f;
 
 } // namespace
 
@@ -26,7 +25,6 @@ PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
     shadow_rays_.push_back(input_.world.lights[i].wants_shadow_rays());
   const int samples = input_.world.settings.direct_samples;
   direct_samples_ = samples > 0 ? samples : 4;
-  if(getenv("SPLITS")) splits_=atoi(getenv("SPLITS"));
 }
 
 struct PathEstimator::Outputs {
@@ -136,8 +134,8 @@ void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
   }
 }
 
-/// One pixel: what is seen through the medium and single scattering from the depth profile, the rest
-/// by walks from points drawn from it.
+/// One pixel: what is seen through the medium and single scattering from the depth profile, the
+/// rest by walks from points drawn from it.
 void PathEstimator::trace(const CameraRay& camera, DepthProfile& profile, std::size_t pixel,
                           const RngKey& key, PassImage& image) const {
   const World& world = input_.world;

@@ -1,16 +1,16 @@
 #pragma once
 
-#include "estimators/estimator.h"
 #include "estimators/camera_ray.h"
+#include "estimators/estimator.h"
 #include "math/rng.h"
 #include "transport/distance_sampling.h"
 
 namespace vdbeam {
 
-/// Unbiased volumetric path tracing: the camera ray scatters by its depth profile (forced, stratified),
-/// later flights by delta tracking (spectral tracking where the extinction is chromatic, Kutz et al.
-/// 2017), next-event estimation at every collision, multiple importance sampling for lights that a
-/// scattered ray can meet. The truth that the others are held against.
+/// Unbiased volumetric path tracing: the camera ray scatters by its depth profile (forced,
+/// stratified), later flights by delta tracking (spectral tracking where the extinction is
+/// chromatic, Kutz et al. 2017), next-event estimation at every collision, multiple importance
+/// sampling for lights that a scattered ray can meet. The truth that the others are held against.
 class PathEstimator : public Estimator {
 public:
   explicit PathEstimator(const EstimatorInput& input);
@@ -33,7 +33,7 @@ private:
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   int direct_samples_ = 1;        ///< shadow-ray samples per camera ray
-  int splits_ = 1;                ///< walks per camera ray
+  int splits_ = 4;                ///< walks per camera ray
 };
 
 } // namespace vdbeam

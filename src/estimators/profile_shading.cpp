@@ -10,8 +10,8 @@ void shade_profile(const World& world, const CameraRay& camera, const DepthProfi
     tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
     const float opacity = 1 - mean_component(tr);
     image.opacity[pixel] = opacity;
-    image.depth[pixel] = static_cast<float>(
-        (profile.opacity_depth() + camera.shift * opacity) / world.space.scale);
+    image.depth[pixel] =
+        static_cast<float>((profile.opacity_depth() + camera.shift * opacity) / world.space.scale);
   }
   image.background[pixel] = tr * world.lights.escaped_radiance(camera.ray.direction);
 }

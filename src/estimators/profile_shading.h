@@ -6,7 +6,8 @@
 
 namespace vdbeam {
 
-/// What a depth profile alone gives a pixel: opacity, depth, and the lights seen through the medium.
+/// What a depth profile alone gives a pixel: opacity, depth, and the lights seen through the
+/// medium.
 void shade_profile(const World& world, const CameraRay& camera, const DepthProfile& profile,
                    std::size_t pixel, PassImage& image);
 

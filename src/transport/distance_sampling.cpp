@@ -25,10 +25,10 @@ ScatterPoint DistanceSampler::sample(float u, int c) {
   return {t, ray_.at(t), &weights_};
 }
 
-/// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in t,
-/// so two Gauss points give the optical depth from the knot to t exactly. The density of the draw is
-/// sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over the
-/// channels (balance heuristic).
+/// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in
+/// t, so two Gauss points give the optical depth from the knot to t exactly. The density of the
+/// draw is sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over
+/// the channels (balance heuristic).
 void DistanceSampler::weigh(std::size_t knot, float t) {
   const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
   const float middle = 0.5f * (t_a + t), half = 0.5f * (t - t_a), offset = half * 0.57735027f;

@@ -8,14 +8,14 @@ namespace vdbeam {
 struct ScatterPoint {
   float t = 0;
   Vec3f position;
-  /// Per volume: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws is the integral
-  /// of sigma_s Tr along the ray.
+  /// Per volume: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws is the
+  /// integral of sigma_s Tr along the ray.
   const std::vector<Rgb>* weights = nullptr;
 };
 
-/// Draws distances in proportion to what scatters, from a ray's depth profile: forced scattering, no
-/// draw leaves the medium. The profile is linear between lattice planes, the true optical depth is
-/// not; the weight makes up for the difference, exactly.
+/// Draws distances in proportion to what scatters, from a ray's depth profile: forced scattering,
+/// no draw leaves the medium. The profile is linear between lattice planes, the true optical depth
+/// is not; the weight makes up for the difference, exactly.
 class DistanceSampler {
 public:
   /// The arguments must outlive the sampler. Requires a profile that is not empty.
@@ -26,8 +26,8 @@ public:
   /// 1 - Tr of the whole ray in channel c.
   float opacity(int c) const { return -std::expm1(-end_[c]); }
 
-  /// A point drawn from channel c's distribution, where c was chosen with equal chance if the medium
-  /// is chromatic and is 0 otherwise. Requires opacity(c) > 0.
+  /// A point drawn from channel c's distribution, where c was chosen with equal chance if the
+  /// medium is chromatic and is 0 otherwise. Requires opacity(c) > 0.
   ScatterPoint sample(float u, int c);
 
 private:

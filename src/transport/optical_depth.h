@@ -8,9 +8,9 @@ namespace vdbeam {
 /// Optical depth beyond which a ray counts as opaque: exp(-25) = 1.4e-11 of the light is left out.
 inline constexpr float opaque_optical_depth = 25;
 
-/// Walks a ray through the lattice cubes of one brick and integrates the density exactly: along a line
-/// a trilinear function is a cubic, which two-point Gauss-Legendre integrates without error. The
-/// stepping is free of branches, since which plane comes next is as good as random.
+/// Walks a ray through the lattice cubes of one brick and integrates the density exactly: along a
+/// line a trilinear function is a cubic, which two-point Gauss-Legendre integrates without error.
+/// The stepping is free of branches, since which plane comes next is as good as random.
 class BrickWalk {
 public:
   /// o + t d runs in brick coordinates, from t_begin to t_end inside the brick.
@@ -38,7 +38,8 @@ public:
 
   /// Integrates to the next lattice plane, moves there, and returns the integral.
   float advance() {
-    const float t_b = std::max(t_, std::min(std::min(next_[0], next_[1]), std::min(next_[2], t_end_)));
+    const float t_b =
+        std::max(t_, std::min(std::min(next_[0], next_[1]), std::min(next_[2], t_end_)));
     const float sum = integrate(t_b);
     for (int a = 0; a < 3; ++a) {
       const int crossed = next_[a] <= t_b;
@@ -76,13 +77,13 @@ private:
 
   Vec3f d_;
   float t_, t_end_;
-  const float* p_;     ///< the present cube's lower corner
-  float o_[3];         ///< origin relative to that corner
-  float next_[3];      ///< where the next plane of each axis is crossed
-  float delta_[3];     ///< between planes
+  const float* p_; ///< the present cube's lower corner
+  float o_[3];     ///< origin relative to that corner
+  float next_[3];  ///< where the next plane of each axis is crossed
+  float delta_[3]; ///< between planes
   float sign_[3];
   int stride_[3];
-  int left_[3];        ///< cubes to go before the brick ends, per axis
+  int left_[3]; ///< cubes to go before the brick ends, per axis
 };
 
 /// Calls visit(t_a, t_b, tau) for consecutive pieces of the ray inside `volume`, tau being the

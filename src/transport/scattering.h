@@ -23,8 +23,8 @@ inline bool collide_really(const Collision& hit, bool chromatic, Rgb& weight, Rn
   return false;
 }
 
-/// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel keeps
-/// its value. False where the path ends.
+/// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel
+/// keeps its value. False where the path ends.
 inline bool survive_scattering(const Rgb& albedo, Rgb& weight, Rng& rng) {
   const float before = max_component(weight);
   weight *= albedo;
