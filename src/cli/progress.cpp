@@ -74,8 +74,8 @@ void Progress::pass(const PassRecord& record) {
     return line(describe(record, settings_));
   constexpr int width = 20;
   const int filled = static_cast<int>(fraction(record, settings_) * width);
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {}\x1b[K", title_, "", filled, "", width - filled,
-             describe(record, settings_));
+  fmt::print(stderr, "\r{}{}[{:#<{}}{:.<{}}] {}\x1b[K", title_, title_.empty() ? "" : " ", "",
+             filled, "", width - filled, describe(record, settings_));
   std::fflush(stderr);
   bar_shown_ = true;
 }

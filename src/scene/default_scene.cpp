@@ -182,7 +182,7 @@ void frame_camera(Scene& scene, const Boxd& bounds, const FramingWishes& wishes)
   scene.image.width = wishes.width.value_or(width);
   scene.image.height = wishes.height.value_or(height);
 
-  constexpr double margin = 0.9; // share of the picture that the box may fill
+  constexpr double margin = 0.95; // share of the picture that the box may fill
   const double half_height = std::tan(camera.fov / 2 * 3.14159265358979323846 / 180) * margin;
   const double half_width = half_height * scene.image.width / scene.image.height;
   double distance = 0;

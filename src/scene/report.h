@@ -21,7 +21,7 @@ nlohmann::ordered_json settings_json(const Scene& scene);
 /// The plan, as in reports and `vdbeam plan --json`.
 nlohmann::ordered_json plan_json(const RenderPlan& plan);
 
-/// The report of a frame (docs/scene.md). Numbers that are not finite become null.
+/// The report of a frame (docs/output.md). Numbers that are not finite become null.
 nlohmann::ordered_json report_json(const Scene& scene, const RenderResult& result,
                                    const ReportContext& context);
 

@@ -18,6 +18,7 @@ namespace vdbeam::test {
 
 struct ProgramResult {
   int code = -1; ///< exit code; 128 + signal where one killed it
+  bool killed = false;
   std::string out, error;
 
   /// Lines on stderr.
@@ -81,10 +82,18 @@ protected:
     int status = 0;
     waitpid(child, &status, 0);
     ProgramResult result;
+    result.killed = WIFSIGNALED(status);
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.out = read("stdout.txt");
     result.error = read("stderr.txt");
     return result;
+  }
+  /// Waits until the program said something on stderr, which it does once rendering begins.
+  void wait_for_output() const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (read("stderr.txt").empty() && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
   ProgramResult run(const std::vector<std::string>& arguments) const {
     return finish(start(arguments));

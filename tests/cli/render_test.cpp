@@ -155,10 +155,7 @@ class Interrupt : public test::CliTest, public ::testing::WithParamInterface<int
 TEST_P(Interrupt, WritesTheImageSoFar) {
   const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
                              "render.photons=2000", "-o", "a.exr", "--report", "r.json"});
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (read("stderr.txt").empty() && std::chrono::steady_clock::now() < deadline)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10)); // until the handlers are in place
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  wait_for_output();
   kill(child, GetParam());
   const auto result = finish(child);
   EXPECT_EQ(result.code, 128 + GetParam()) << result.error;
@@ -167,6 +164,21 @@ TEST_P(Interrupt, WritesTheImageSoFar) {
   EXPECT_EQ(report["stopped_by"], "stop");
   EXPECT_GE(report["passes"].size(), 1u);
   EXPECT_NE(result.error.find("interrupted"), std::string::npos);
+}
+
+/// One pass of this takes minutes: the second signal does not wait for it.
+TEST_P(Interrupt, SecondSignalKills) {
+  const pid_t child =
+      start({"render", cloud, "--estimator", "path", "--passes", "1", "--set",
+             "volume.0.extinction=1e6", "--set", "volume.0.albedo=1", "-o", "a.exr"});
+  wait_for_output();
+  kill(child, GetParam());
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  kill(child, GetParam());
+  const auto result = finish(child);
+  EXPECT_TRUE(result.killed);
+  EXPECT_EQ(result.code, 128 + GetParam());
+  EXPECT_TRUE(files().empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGTERM));
