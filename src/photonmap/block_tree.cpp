@@ -10,9 +10,10 @@ void clear_slot(BoxGroup& group, std::size_t slot) {
     group.lower[axis][slot] = 1e30f;
     group.upper[axis][slot] = -1e30f;
   }
+  group.radius[slot] = 0;
 }
 
-/// Outwards by more than the rounding of p - r and of the tests that use the box.
+/// Outwards by more than the rounding of the tests that use the box.
 constexpr float box_rounding = 4e-7f;
 
 void bound_block(const PhotonBlocks& blocks, std::size_t block, BoxGroup& group, std::size_t slot) {
@@ -23,13 +24,14 @@ void bound_block(const PhotonBlocks& blocks, std::size_t block, BoxGroup& group,
     const float* position = blocks.row(block, axis);
     float lower = 1e30f, upper = -1e30f;
     for (std::size_t i = 0; i < in_block; ++i) {
-      const float margin = radius[i] + (std::abs(position[i]) + radius[i]) * box_rounding;
+      const float margin = std::abs(position[i]) * box_rounding;
       lower = std::min(lower, position[i] - margin);
       upper = std::max(upper, position[i] + margin);
     }
     group.lower[axis][slot] = lower;
     group.upper[axis][slot] = upper;
   }
+  group.radius[slot] = *std::max_element(radius, radius + in_block) * (1 + box_rounding);
 }
 
 void bound_group(const BoxGroup& child, BoxGroup& group, std::size_t slot) {
@@ -37,6 +39,7 @@ void bound_group(const BoxGroup& child, BoxGroup& group, std::size_t slot) {
     group.lower[axis][slot] = *std::min_element(child.lower[axis], child.lower[axis] + 8);
     group.upper[axis][slot] = *std::max_element(child.upper[axis], child.upper[axis] + 8);
   }
+  group.radius[slot] = *std::max_element(child.radius, child.radius + 8);
 }
 
 } // namespace
@@ -62,10 +65,11 @@ BlockTree build_block_tree(const PhotonBlocks& blocks) {
     children = groups == 1 ? 0 : groups;
   }
   if (!tree.levels.empty()) {
-    const BoxGroup& root = tree.levels.back().front();
+    BoxGroup root;
+    bound_group(tree.levels.back().front(), root, 0);
     for (int axis = 0; axis < 3; ++axis) {
-      tree.bounds.lower[axis] = *std::min_element(root.lower[axis], root.lower[axis] + 8);
-      tree.bounds.upper[axis] = *std::max_element(root.upper[axis], root.upper[axis] + 8);
+      tree.bounds.lower[axis] = root.lower[axis][0] - root.radius[0];
+      tree.bounds.upper[axis] = root.upper[axis][0] + root.radius[0];
     }
   }
   return tree;

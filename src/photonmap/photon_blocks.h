@@ -51,10 +51,12 @@ private:
   std::vector<float, tbb::cache_aligned_allocator<float>> rows_;
 };
 
-/// Bounding boxes of eight sibling nodes; a missing sibling is an empty box.
+/// Bounds of eight sibling nodes: a box around the photons' centres and their greatest radius,
+/// which bound spheres more tightly than a box around them. A missing sibling is an empty box.
 struct alignas(32) BoxGroup {
   float lower[3][8];
   float upper[3][8];
+  float radius[8];
 };
 
 /// The implicit 8-ary tree over consecutive blocks: group g of level 0 has the boxes of blocks 8 g
@@ -63,7 +65,7 @@ struct alignas(32) BoxGroup {
 struct BlockTree {
   static constexpr int max_levels = 12;
   std::vector<std::vector<BoxGroup, tbb::cache_aligned_allocator<BoxGroup>>> levels;
-  Boxf bounds;
+  Boxf bounds; ///< of all spheres
 
   std::size_t bytes() const {
     std::size_t sum = 0;
@@ -73,7 +75,7 @@ struct BlockTree {
   }
 };
 
-/// Boxes around the photons' spheres, rounded outwards.
+/// Bounds of all blocks and their groups, rounded outwards.
 BlockTree build_block_tree(const PhotonBlocks& blocks);
 
 } // namespace vdbeam

@@ -72,14 +72,13 @@ HWY_INLINE std::uint32_t boxes_on_ray(const NearRay& ray, const BoxGroup& group)
   std::uint32_t mask = 0;
   for (std::size_t lane = 0; lane < 8; lane += hn::Lanes(d)) {
     auto enter = hn::Set(d, ray.t_begin - ray.margin), leave = hn::Set(d, ray.t_end + ray.margin);
+    const auto reach = hn::Add(hn::Load(d, group.radius + lane), hn::Set(d, ray.margin));
     for (int axis = 0; axis < 3; ++axis) {
-      const auto inverse = hn::Set(d, ray.inverse[axis]);
-      const auto t0 = hn::Mul(
-          hn::Sub(hn::Load(d, group.lower[axis] + lane), hn::Set(d, ray.origin[axis] + ray.margin)),
-          inverse);
-      const auto t1 = hn::Mul(
-          hn::Sub(hn::Load(d, group.upper[axis] + lane), hn::Set(d, ray.origin[axis] - ray.margin)),
-          inverse);
+      const auto inverse = hn::Set(d, ray.inverse[axis]), origin = hn::Set(d, ray.origin[axis]);
+      const auto lower = hn::Sub(hn::Load(d, group.lower[axis] + lane), reach);
+      const auto upper = hn::Add(hn::Load(d, group.upper[axis] + lane), reach);
+      const auto t0 = hn::Mul(hn::Sub(lower, origin), inverse);
+      const auto t1 = hn::Mul(hn::Sub(upper, origin), inverse);
       enter = hn::Max(enter, hn::Min(t0, t1));
       leave = hn::Min(leave, hn::Max(t0, t1));
     }
@@ -95,12 +94,17 @@ HWY_INLINE std::uint32_t boxes_around(const float* point, const BoxGroup& group)
   const D8 d;
   std::uint32_t mask = 0;
   for (std::size_t lane = 0; lane < 8; lane += hn::Lanes(d)) {
-    auto hit = hn::Le(hn::Load(d, group.lower[0] + lane), hn::Load(d, group.upper[0] + lane));
+    // Squared distance to the box of centres against the greatest radius.
+    auto square = hn::Zero(d);
     for (int axis = 0; axis < 3; ++axis) {
       const auto x = hn::Set(d, point[axis]);
-      hit = hn::And(hit, hn::And(hn::Le(hn::Load(d, group.lower[axis] + lane), x),
-                                 hn::Ge(hn::Load(d, group.upper[axis] + lane), x)));
+      const auto below = hn::Sub(hn::Load(d, group.lower[axis] + lane), x);
+      const auto above = hn::Sub(x, hn::Load(d, group.upper[axis] + lane));
+      const auto outside = hn::Max(hn::Max(below, above), hn::Zero(d));
+      square = hn::MulAdd(outside, outside, square);
     }
+    const auto radius = hn::Load(d, group.radius + lane);
+    const auto hit = hn::Le(square, hn::Mul(radius, radius));
     mask |= mask_bits(d, hit) << lane;
   }
   return mask;

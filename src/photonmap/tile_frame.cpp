@@ -11,6 +11,16 @@ struct TangentBox {
   double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
   double cos0 = 1, cos1 = 0; ///< least and greatest dw
   bool wide = false;         ///< some ray is nearly square to the axis: no bound in tangents
+
+  void extend(const TangentBox& box) {
+    a0 = std::min(a0, box.a0);
+    a1 = std::max(a1, box.a1);
+    b0 = std::min(b0, box.b0);
+    b1 = std::max(b1, box.b1);
+    cos0 = std::min(cos0, box.cos0);
+    cos1 = std::max(cos1, box.cos1);
+    wide = wide || box.wide;
+  }
 };
 
 Vec3d ray_direction(const BeamTile& tile, int ray) {
@@ -26,20 +36,20 @@ bool is_live(const Vec3d& d) {
 TangentBox bound_tangents(const BeamTile& tile, int subtile) {
   TangentBox box;
   for (int r = 0; r < rays; ++r) {
-    Vec3d d = ray_direction(tile, subtile * rays + r);
+    const Vec3d d = ray_direction(tile, subtile * rays + r);
     if (!is_live(d))
       continue;
-    d = normalize(d);
     if (d.z < 0.05) {
       box.wide = true;
       box.cos0 = -1;
       box.cos1 = 1;
       return box;
     }
-    box.a0 = std::min(box.a0, d.x / d.z);
-    box.a1 = std::max(box.a1, d.x / d.z);
-    box.b0 = std::min(box.b0, d.y / d.z);
-    box.b1 = std::max(box.b1, d.y / d.z);
+    const double a = d.x / d.z, b = d.y / d.z;
+    box.a0 = std::min(box.a0, a);
+    box.a1 = std::max(box.a1, a);
+    box.b0 = std::min(box.b0, b);
+    box.b1 = std::max(box.b1, b);
     box.cos0 = std::min(box.cos0, d.z);
     box.cos1 = std::max(box.cos1, d.z);
   }
@@ -53,10 +63,14 @@ TangentBox bound_tangents(const BeamTile& tile, int subtile) {
 }
 
 bool row_is_zero(const float* weights, std::size_t rows, int knots, int knot) {
-  for (std::size_t row = 0; row < rows; ++row)
-    for (int r = 0; r < rays; ++r)
-      if (weights[(row * knots + knot) * rays + r] != 0)
-        return false;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const float* w = weights + (row * static_cast<std::size_t>(knots) + knot) * rays;
+    float sum = 0;
+    for (int r = 0; r < rays; r += 4) // an order that compilers turn into vectors
+      sum += (std::abs(w[r]) + std::abs(w[r + 1])) + (std::abs(w[r + 2]) + std::abs(w[r + 3]));
+    if (sum != 0)
+      return false;
+  }
   return true;
 }
 
@@ -78,26 +92,25 @@ double fill_rays(const BeamTile& tile, int subtile, SubtileFrame& s) {
   for (int r = 0; r < rays; ++r) {
     const Vec3d d = ray_direction(tile, subtile * rays + r);
     if (is_live(d))
-      mean += normalize(d);
+      mean += d;
   }
   if (!(dot(mean, mean) > 1e-6))
     return -1;
   const Vec3d w = normalize(mean);
   Vec3d u, v;
   orthonormal_frame(w, u, v);
-  double spread = 0;
+  float spread = 0; // squared
   for (int r = 0; r < rays; ++r) {
-    Vec3d d = ray_direction(tile, subtile * rays + r);
+    const Vec3d d = ray_direction(tile, subtile * rays + r);
     const bool live = is_live(d);
-    d = live ? normalize(d) : w;
-    const double dw = std::max(dot(d, w), 1e-3);
-    const double a = dot(d, u) / dw, b = dot(d, v) / dw;
-    s.a[r] = static_cast<float>(a);
-    s.b[r] = static_cast<float>(b);
-    s.dw[r] = static_cast<float>(dw);
-    s.stretch[r] = static_cast<float>(1 / dw - 1);
+    const double inverse = 1 / std::max(dot(d, w), 1e-3);
+    s.a[r] = live ? static_cast<float>(dot(d, u) * inverse) : 0.0f;
+    s.b[r] = live ? static_cast<float>(dot(d, v) * inverse) : 0.0f;
+    const float square = s.a[r] * s.a[r] + s.b[r] * s.b[r];
+    s.stretch[r] = square / (1 + std::sqrt(1 + square)); // sqrt(1 + square) - 1
+    s.dw[r] = 1 / (1 + s.stretch[r]);
     s.scale[r] = live ? 1.0f : 0.0f;
-    spread = std::max(spread, std::sqrt(a * a + b * b));
+    spread = std::max(spread, square);
   }
   const Vec3d axes[3] = {u, v, w};
   for (int i = 0; i < 3; ++i) {
@@ -108,7 +121,7 @@ double fill_rays(const BeamTile& tile, int subtile, SubtileFrame& s) {
     s.offset[i] = static_cast<float>(axes[i].z * tile.camera_distance);
   }
   s.knot_offset = static_cast<float>(w.z * tile.camera_distance - tile.profiles[subtile].t_begin);
-  return spread;
+  return std::sqrt(static_cast<double>(spread));
 }
 
 /// Whether the phase functions are as good as linear over a cone of this tangent: the second-order
@@ -164,26 +177,55 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
   }
 }
 
-void set_plane(float* plane, const TileFrame& frame, double cu, double cv, double cw,
-               double offset) {
+void set_plane(float* plane, const TileFrame& frame, double cu, double cv, double cw, double offset,
+               double reach) {
   for (int j = 0; j < 3; ++j)
     plane[j] =
         static_cast<float>(cu * frame.axes[0][j] + cv * frame.axes[1][j] + cw * frame.axes[2][j]);
   plane[3] = static_cast<float>(offset + 2 * frame.margin);
+  plane[4] = static_cast<float>(reach);
 }
 
 void make_planes(const TangentBox& box, double w0, double w1, TileFrame& frame) {
   const double distance = frame.camera_distance;
+  const double tangent =
+      std::max({std::abs(box.a0), std::abs(box.a1), std::abs(box.b0), std::abs(box.b1)});
+  const double side = std::sqrt(1 + tangent * tangent);
+  const double depth = box.wide ? 1 : std::sqrt(std::max(0.0, 1 - box.cos0 * box.cos0)) + 1e-6;
+  frame.side_reach = box.wide ? 1e3f : static_cast<float>(side);
+  frame.depth_reach = static_cast<float>(depth);
   for (int i = 0; i < 4; ++i)
-    set_plane(frame.planes[i], frame, 0, 0, 0, 1);
+    set_plane(frame.planes[i], frame, 0, 0, 0, 1, 0);
   if (!box.wide) {
-    set_plane(frame.planes[0], frame, 1, 0, -box.a0, -box.a0 * distance);
-    set_plane(frame.planes[1], frame, -1, 0, box.a1, box.a1 * distance);
-    set_plane(frame.planes[2], frame, 0, 1, -box.b0, -box.b0 * distance);
-    set_plane(frame.planes[3], frame, 0, -1, box.b1, box.b1 * distance);
+    set_plane(frame.planes[0], frame, 1, 0, -box.a0, -box.a0 * distance, side);
+    set_plane(frame.planes[1], frame, -1, 0, box.a1, box.a1 * distance, side);
+    set_plane(frame.planes[2], frame, 0, 1, -box.b0, -box.b0 * distance, side);
+    set_plane(frame.planes[3], frame, 0, -1, box.b1, box.b1 * distance, side);
   }
-  set_plane(frame.planes[4], frame, 0, 0, 1, distance - w0);
-  set_plane(frame.planes[5], frame, 0, 0, -1, w1 - distance);
+  set_plane(frame.planes[4], frame, 0, 0, 1, distance - w0, depth);
+  set_plane(frame.planes[5], frame, 0, 0, -1, w1 - distance, depth);
+}
+
+/// Rectangle and depths of one sub-tile, for culling.
+void bound_subtile(const BeamTile& tile, int index, TileFrame& frame, TangentBox& all) {
+  const TangentBox box = bound_tangents(tile, index);
+  const BeamTile::Profile& profile = tile.profiles[index];
+  const SubtileFrame& s = frame.subtiles[index];
+  const double t0 = profile.t_begin + static_cast<double>(s.first_knot) * profile.step;
+  const double t1 = profile.t_begin + static_cast<double>(s.last_knot) * profile.step;
+  // A ray at t has depth t dw; rounded outwards.
+  const double w0 = std::min(t0 * box.cos0, t0 * box.cos1);
+  const double w1 = std::max(t1 * box.cos0, t1 * box.cos1);
+  frame.w0[index] = static_cast<float>(w0 - 1e-6 * std::abs(w0) - frame.margin);
+  frame.w1[index] = static_cast<float>(w1 + 1e-6 * std::abs(w1) + frame.margin);
+  frame.a0[index] = static_cast<float>(box.a0);
+  frame.a1[index] = static_cast<float>(box.a1);
+  frame.b0[index] = static_cast<float>(box.b0);
+  frame.b1[index] = static_cast<float>(box.b1);
+  frame.active |= 1u << index;
+  if (box.wide)
+    frame.wide |= 1u << index;
+  all.extend(box);
 }
 
 } // namespace
@@ -201,33 +243,12 @@ void make_tile_frame(const BeamTile& tile, float mean_radius, float reach, bool 
   TangentBox all;
   double nearest = 1e30, farthest = -1e30;
   for (int i = 0; i < BeamTile::subtile_count; ++i) {
-    SubtileFrame& s = frame.subtiles[i];
-    make_subtile(tile, i, mean_radius, reach, has_directions, s);
     frame.a0[i] = frame.b0[i] = frame.w0[i] = 1e30f;
     frame.a1[i] = frame.b1[i] = frame.w1[i] = -1e30f;
-    if (!s.active)
+    make_subtile(tile, i, mean_radius, reach, has_directions, frame.subtiles[i]);
+    if (!frame.subtiles[i].active)
       continue;
-    frame.active |= 1u << i;
-    const TangentBox box = bound_tangents(tile, i);
-    const BeamTile::Profile& profile = tile.profiles[i];
-    const double t0 = profile.t_begin + static_cast<double>(s.first_knot) * profile.step;
-    const double t1 = profile.t_begin + static_cast<double>(s.last_knot) * profile.step;
-    // A ray at t has depth t dw; rounded outwards.
-    const double w0 = std::min(t0 * box.cos0, t0 * box.cos1),
-                 w1 = std::max(t1 * box.cos0, t1 * box.cos1);
-    frame.w0[i] = static_cast<float>(w0 - 1e-6 * std::abs(w0) - frame.margin);
-    frame.w1[i] = static_cast<float>(w1 + 1e-6 * std::abs(w1) + frame.margin);
-    if (box.wide)
-      frame.wide |= 1u << i;
-    frame.a0[i] = static_cast<float>(box.a0);
-    frame.a1[i] = static_cast<float>(box.a1);
-    frame.b0[i] = static_cast<float>(box.b0);
-    frame.b1[i] = static_cast<float>(box.b1);
-    all.wide = all.wide || box.wide;
-    all.a0 = std::min(all.a0, box.a0);
-    all.a1 = std::max(all.a1, box.a1);
-    all.b0 = std::min(all.b0, box.b0);
-    all.b1 = std::max(all.b1, box.b1);
+    bound_subtile(tile, i, frame, all);
     nearest = std::min(nearest, static_cast<double>(frame.w0[i]));
     farthest = std::max(farthest, static_cast<double>(frame.w1[i]));
   }

@@ -41,8 +41,12 @@ struct TileFrame {
   float reference[3];
   float camera_distance;
   float margin; ///< outward margin of the box tests [length]
-  /// Planes n . (p - reference) + offset >= 0 around the tile's frustum.
-  float planes[6][4];
+  /// Planes around the tile's frustum: n . (p - reference) + offset + reach * radius >= 0, as
+  /// (n, offset, reach).
+  float planes[6][5];
+  /// How far a sphere of radius 1 reaches across a side of a pyramid, and along the tile's axis a
+  /// photon may lie from its closest point on a ray.
+  float side_reach, depth_reach;
   std::uint32_t active = 0; ///< bit per sub-tile
   std::uint32_t wide = 0;   ///< sub-tiles whose rays the tangents do not bound
 };

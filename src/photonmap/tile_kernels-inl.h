@@ -21,7 +21,7 @@ struct Candidates {
   static constexpr std::size_t slots = capacity + 32;
   std::size_t count = 0;
   alignas(64) float u[slots], v[slots], w[slots];
-  alignas(64) float kernel[3][slots];   ///< step, linear, square; times power where grey
+  alignas(64) float strength[slots];    ///< 1 / r^2; times power where grey
   alignas(64) float fraction[slots];    ///< shared knots: of the interval; per ray: knot coordinate
   alignas(64) std::int32_t knot[slots]; ///< shared knots: offset of the knot's row of weights
   alignas(64) float depth[slots];       ///< per ray: w / step in length units
@@ -37,6 +37,20 @@ struct TileQuery {
   const std::vector<PhaseFunction>& phases;
   int weight_channels;
   int power_channels;
+  /// One group, and a kernel square * k (k + shift) of k = 1 - s: `square` goes into the strength.
+  bool plain;
+  float kernel_shift;
+
+  TileQuery(const PhotonBlocks& blocks_, KernelShape shape, const BeamTile& tile)
+      : blocks(blocks_), kernel(disc_polynomial(shape)), phases(*tile.phases),
+        weight_channels(tile.weight_channels), power_channels(blocks_.channels()),
+        plain(phases.size() == 1 && kernel.step == 0 && kernel.square != 0),
+        kernel_shift(plain ? kernel.linear / kernel.square : 0) {}
+
+  /// Sub-tiles with knots per ray have no plain loop.
+  float strength_factor(const SubtileFrame& s) const {
+    return plain && !s.per_ray ? kernel.square : 1;
+  }
 };
 
 template <class D>
@@ -93,15 +107,13 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
     put(hn::Mul(u, inverse_radius), out.u);
     put(hn::Mul(v, inverse_radius), out.v);
     put(hn::Mul(w, inverse_radius), out.w);
-    auto strength = inverse_square;
+    auto strength = hn::Mul(inverse_square, hn::Set(d, query.strength_factor(s)));
     if (query.power_channels == 1 && query.weight_channels == 1)
       strength = hn::Mul(strength, field(PhotonBlocks::power));
     else
       for (int c = 0; c < 3; ++c)
         put(field(PhotonBlocks::power + c % query.power_channels), out.power[c]);
-    put(hn::Mul(strength, hn::Set(d, query.kernel.step)), out.kernel[0]);
-    put(hn::Mul(strength, hn::Set(d, query.kernel.linear)), out.kernel[1]);
-    put(hn::Mul(strength, hn::Set(d, query.kernel.square)), out.kernel[2]);
+    put(strength, out.strength);
     if (s.per_ray) {
       put(f, out.fraction);
       put(hn::Mul(w, hn::Set(d, s.inverse_step)), out.depth);

@@ -4,6 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photonmap/tile_query.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -24,7 +25,7 @@ struct BlockHit {
   std::uint32_t subtiles;
 };
 
-/// Which of eight boxes touch the tile's frustum.
+/// Which of eight nodes have spheres that touch the tile's frustum.
 HWY_INLINE std::uint32_t boxes_in_frustum(const TileFrame& frame, const BoxGroup& group) {
   const D8 d;
   std::uint32_t mask = 0;
@@ -36,9 +37,10 @@ HWY_INLINE std::uint32_t boxes_in_frustum(const TileFrame& frame, const BoxGroup
       upper[axis] =
           hn::Sub(hn::Load(d, group.upper[axis] + lane), hn::Set(d, frame.reference[axis]));
     }
+    const auto radius = hn::Load(d, group.radius + lane);
     auto hit = hn::Le(lower[0], upper[0]);
     for (const float* plane : frame.planes) {
-      auto sum = hn::Set(d, plane[3]);
+      auto sum = hn::MulAdd(hn::Set(d, plane[4]), radius, hn::Set(d, plane[3]));
       for (int axis = 0; axis < 3; ++axis)
         sum =
             hn::MulAdd(hn::Set(d, plane[axis]), plane[axis] >= 0 ? upper[axis] : lower[axis], sum);
@@ -49,10 +51,11 @@ HWY_INLINE std::uint32_t boxes_in_frustum(const TileFrame& frame, const BoxGroup
   return mask;
 }
 
-/// Which sub-tiles' pyramids touch a box.
+/// Which sub-tiles' pyramids the spheres of a block may touch.
 HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup& group,
                                          std::uint32_t slot) {
   float center[3], half[3];
+  const float radius = group.radius[slot];
   for (int axis = 0; axis < 3; ++axis) {
     center[axis] =
         (group.lower[axis][slot] + group.upper[axis][slot]) * 0.5f - frame.reference[axis];
@@ -63,7 +66,8 @@ HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup&
     const float* axis = frame.axes[i];
     middle[i] = axis[0] * center[0] + axis[1] * center[1] + axis[2] * center[2];
     extent[i] = std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1] +
-                std::abs(axis[2]) * half[2] + frame.margin;
+                std::abs(axis[2]) * half[2] + frame.margin +
+                radius * (i == 2 ? frame.depth_reach : frame.side_reach);
   }
   const D16 d;
   const float w = middle[2] + frame.camera_distance;
@@ -93,8 +97,7 @@ HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup&
 class TileWalk {
 public:
   TileWalk(const MapView& map, const BeamTile& tile, const TileFrame& frame)
-      : frame_(frame), query_{map.blocks, disc_polynomial(map.shape), *tile.phases,
-                              tile.weight_channels, map.blocks.channels()} {
+      : frame_(frame), query_(map.blocks, map.shape, tile) {
     for (int s = 0; s < BeamTile::subtile_count; ++s)
       if (frame.active >> s & 1)
         shaders_[s] = choose_shader(query_, frame.subtiles[s]);
@@ -110,6 +113,7 @@ public:
             if (subtiles == 0)
               continue;
             ++counts.blocks;
+            prefetch_block(8 * group_index + slot);
             hits_[hit_count_++] = {8 * group_index + slot, subtiles};
             if (hit_count_ == hit_capacity)
               shade_hits();
@@ -130,6 +134,12 @@ public:
 
 private:
   static constexpr std::size_t hit_capacity = 64;
+
+  void prefetch_block(std::size_t block) const {
+    const float* row = query_.blocks.row(block, 0);
+    for (int field = 0; field <= PhotonBlocks::power; ++field)
+      hwy::Prefetch(row + static_cast<std::size_t>(field) * PhotonBlocks::width);
+  }
 
   /// Sub-tile by sub-tile, so that its weights and sums stay near.
   void shade_hits() {

@@ -16,8 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Sums of a tile, channel-major like BeamTile::radiance.
 using TileSums = float[3][BeamTile::ray_count];
 
-/// What the loop over photons is compiled for. `plain`: one group and a kernel that vanishes at its
-/// edge, so that nothing needs a mask.
+/// What the loop over photons is compiled for; `plain` as in TileQuery.
 template <bool per_ray_, PhaseMode phase_, int power_, int weight_, bool plain_>
 struct ShadeConfig {
   static constexpr bool per_ray = per_ray_, plain = plain_;
@@ -134,6 +133,7 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
   const D16 d;
   const I16 di;
   const auto zero = hn::Zero(d);
+  const auto kernel_shift = hn::Set(d, query.kernel_shift);
   auto inside_count = hn::Zero(di);
   for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
     const RayLanes ray = load_rays(s, lane);
@@ -150,10 +150,12 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
       const auto inside = hn::Gt(k, zero);
       inside_count = hn::Sub(inside_count, hn::VecFromMask(di, hn::RebindMask(di, inside)));
       k = hn::Max(k, zero);
-      auto kernel =
-          hn::Mul(k, hn::MulAdd(hn::Set(d, c.kernel[2][i]), k, hn::Set(d, c.kernel[1][i])));
-      if constexpr (!Config::plain)
-        kernel = hn::Add(kernel, hn::IfThenElseZero(inside, hn::Set(d, c.kernel[0][i])));
+      const auto strength = hn::Set(d, c.strength[i]);
+      V16 kernel;
+      if constexpr (Config::plain)
+        kernel = hn::Mul(hn::Mul(k, strength), hn::Add(k, kernel_shift));
+      else
+        kernel = hn::Mul(strength, kernel_value(query.kernel, k));
       V16 value[3] = {zero, zero, zero};
       scattering<Config>(query, s, c, i, ray, weights, knots, value);
       if constexpr (Config::channels == 1) {
@@ -191,7 +193,7 @@ Shader choose_channels(const TileQuery& query) {
 
 /// The loop that fits a sub-tile.
 inline Shader choose_shader(const TileQuery& query, const SubtileFrame& s) {
-  const bool plain = query.phases.size() == 1 && query.kernel.step == 0;
+  const bool plain = query.plain;
   if (s.per_ray)
     return s.phase == PhaseMode::isotropic
                ? choose_channels<true, PhaseMode::isotropic, false>(query)
