@@ -28,9 +28,11 @@ std::string read_text(const std::string& path) {
     throw InputError(one_line(fmt::format("{}: cannot be opened: {}", path,
                                           fs::exists(path, error) ? "no permission to read it"
                                                                   : "there is no such file")));
-  std::string text(longest_scene_file + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::string text, chunk(1 << 16, '\0');
+  while (text.size() <= longest_scene_file &&
+         (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) ||
+          stream.gcount() > 0))
+    text.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
   if (text.size() > longest_scene_file)
     throw InputError(one_line(fmt::format("{}: is too large for a scene file", path)));
   return text;
