@@ -5,48 +5,57 @@
 namespace vdbeam {
 namespace {
 
-void clear_slot(BoxGroup& group, std::size_t slot) {
-  for (int axis = 0; axis < 3; ++axis) {
-    group.lower[axis][slot] = 1e30f;
-    group.upper[axis][slot] = -1e30f;
-  }
-  group.radius[slot] = 0;
-}
-
 /// Outwards by more than the rounding of the tests that use the box.
 constexpr float box_rounding = 4e-7f;
 
-void bound_block(const PhotonBlocks& blocks, std::size_t block, BoxGroup& group, std::size_t slot) {
-  const std::size_t in_block =
-      std::min(PhotonBlocks::width, blocks.count() - block * PhotonBlocks::width);
-  const float* radius = blocks.row(block, PhotonBlocks::radius);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float* position = blocks.row(block, axis);
-    float lower = 1e30f, upper = -1e30f;
-    for (std::size_t i = 0; i < in_block; ++i) {
-      const float margin = std::abs(position[i]) * box_rounding;
-      lower = std::min(lower, position[i] - margin);
-      upper = std::max(upper, position[i] + margin);
+struct Bounds {
+  Boxf centres;
+  float radius = 0;
+};
+
+Bounds bound_blocks(const PhotonBlocks& blocks, std::size_t begin, std::size_t end) {
+  Bounds bounds;
+  for (std::size_t block = begin; block < end; ++block) {
+    const std::size_t in_block =
+        std::min(PhotonBlocks::width, blocks.count() - block * PhotonBlocks::width);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* position = blocks.row(block, axis);
+      for (std::size_t i = 0; i < in_block; ++i) {
+        const float margin = std::abs(position[i]) * box_rounding;
+        bounds.centres.lower[axis] = std::min(bounds.centres.lower[axis], position[i] - margin);
+        bounds.centres.upper[axis] = std::max(bounds.centres.upper[axis], position[i] + margin);
+      }
     }
-    group.lower[axis][slot] = lower;
-    group.upper[axis][slot] = upper;
+    const float* radius = blocks.row(block, PhotonBlocks::radius);
+    bounds.radius = std::max(bounds.radius, *std::max_element(radius, radius + in_block));
   }
-  group.radius[slot] = *std::max_element(radius, radius + in_block) * (1 + box_rounding);
+  bounds.radius *= 1 + box_rounding;
+  return bounds;
 }
 
-void bound_group(const BoxGroup& child, BoxGroup& group, std::size_t slot) {
+Bounds bound_group(const BoxGroup& group) {
+  Bounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
-    group.lower[axis][slot] = *std::min_element(child.lower[axis], child.lower[axis] + 8);
-    group.upper[axis][slot] = *std::max_element(child.upper[axis], child.upper[axis] + 8);
+    bounds.centres.lower[axis] = *std::min_element(group.lower[axis], group.lower[axis] + 8);
+    bounds.centres.upper[axis] = *std::max_element(group.upper[axis], group.upper[axis] + 8);
   }
-  group.radius[slot] = *std::max_element(child.radius, child.radius + 8);
+  bounds.radius = *std::max_element(group.radius, group.radius + 8);
+  return bounds;
 }
 
-} // namespace
+void set_slot(const Bounds& bounds, BoxGroup& group, std::size_t slot) {
+  for (int axis = 0; axis < 3; ++axis) {
+    group.lower[axis][slot] = bounds.centres.lower[axis];
+    group.upper[axis][slot] = bounds.centres.upper[axis];
+  }
+  group.radius[slot] = bounds.radius;
+}
 
-BlockTree build_block_tree(const PhotonBlocks& blocks) {
+/// `bound_leaf(i)`: the bounds of the i-th of `leaves`.
+template <class BoundLeaf>
+BlockTree build_tree(std::size_t leaves, const BoundLeaf& bound_leaf) {
   BlockTree tree;
-  std::size_t children = blocks.block_count();
+  std::size_t children = leaves;
   while (children > 0) {
     const std::size_t groups = (children + 7) / 8;
     auto& level = tree.levels.emplace_back(groups);
@@ -55,24 +64,37 @@ BlockTree build_block_tree(const PhotonBlocks& blocks) {
       for (std::size_t slot = 0; slot < 8; ++slot) {
         const std::size_t child = 8 * g + slot;
         if (child >= children)
-          clear_slot(level[g], slot);
-        else if (below)
-          bound_group((*below)[child], level[g], slot);
+          set_slot({}, level[g], slot);
         else
-          bound_block(blocks, child, level[g], slot);
+          set_slot(below ? bound_group((*below)[child]) : bound_leaf(child), level[g], slot);
       }
     });
     children = groups == 1 ? 0 : groups;
   }
   if (!tree.levels.empty()) {
-    BoxGroup root;
-    bound_group(tree.levels.back().front(), root, 0);
-    for (int axis = 0; axis < 3; ++axis) {
-      tree.bounds.lower[axis] = root.lower[axis][0] - root.radius[0];
-      tree.bounds.upper[axis] = root.upper[axis][0] + root.radius[0];
-    }
+    const Bounds all = bound_group(tree.levels.back().front());
+    tree.bounds.lower = all.centres.lower - Vec3f(all.radius);
+    tree.bounds.upper = all.centres.upper + Vec3f(all.radius);
   }
   return tree;
+}
+
+} // namespace
+
+BlockTree build_block_tree(const PhotonBlocks& blocks) {
+  return build_tree(blocks.block_count(),
+                    [&](std::size_t block) { return bound_blocks(blocks, block, block + 1); });
+}
+
+BlockTree build_cell_tree(const PhotonBlocks& blocks, std::size_t blocks_per_cell) {
+  const std::size_t cells = (blocks.block_count() + blocks_per_cell - 1) / blocks_per_cell;
+  return build_tree(cells, [&](std::size_t cell) {
+    Bounds bounds =
+        bound_blocks(blocks, cell * blocks_per_cell,
+                     std::min(blocks.block_count(), (cell + 1) * blocks_per_cell));
+    bounds.radius = 0;
+    return bounds;
+  });
 }
 
 } // namespace vdbeam

@@ -1,64 +1,48 @@
 #include "photonmap/kernel_radii.h"
 
+#include "photonmap/cell_radii.h"
+
 #include <tbb/parallel_for.h>
 
 namespace vdbeam {
 namespace {
 
-Boxf tight_box(const PhotonBlocks& blocks, std::size_t begin, std::size_t end) {
-  Boxf box;
-  for (std::size_t i = begin; i < end; ++i)
-    box.extend(blocks.position(i));
-  return box;
-}
-
-/// Radius of the ball that is expected to hold `neighbours` of the `count` photons of a cell, the
-/// cell being a box, or as good as a rectangle or a line.
-float cell_radius(const Boxf& box, float count, float neighbours) {
-  // n uniform points in an interval span (n - 1) / (n + 1) of it; per axis, for points in a box.
-  const float widening = (count + 1) / std::max(count - 1, 1.0f);
-  Vec3f size = box.size() * widening;
-  float e[3] = {size.x, size.y, size.z};
-  std::sort(e, e + 3);
-  const float share = std::min(1.0f, neighbours / count);
-  const float ball = std::cbrt(share * e[0] * e[1] * e[2] * 3 / (4 * pi));
-  const float disc = std::sqrt(share * e[1] * e[2] / pi);
-  const float line = share * e[2] / 2;
-  return std::max({ball, disc, line}) * std::cbrt(std::max(1.0f, neighbours / count));
-}
+/// Cells hold about this share of a kernel's photons: fewer would cost more, more would be coarse.
+constexpr float cell_share = 1.0f / 16;
 
 /// Where no least radius was asked for: far below any useful kernel, far above rounding.
-float radius_floor(const Boxf& box, float asked) {
+float radius_floor(const PhotonBlocks& blocks, float asked) {
   if (asked > 0)
     return asked;
-  const Vec3f size = box.size();
+  Boxf box;
+  for (std::size_t i = 0; i < blocks.count(); ++i)
+    box.extend(blocks.position(i));
   const Vec3f reach = max(max(box.upper, -box.lower), Vec3f(0));
-  return std::max({max_component(size) * 1e-5f, max_component(reach) * 1e-6f, 1e-9f});
+  return std::max({max_component(box.size()) * 1e-5f, max_component(reach) * 1e-6f, 1e-9f});
 }
 
 } // namespace
 
 void find_kernel_radii(PhotonBlocks& blocks, const RadiusSettings& settings) {
   const std::size_t count = blocks.count();
-  const float floor = radius_floor(tight_box(blocks, 0, count), settings.min_radius);
+  if (count == 0)
+    return;
+  const float floor = radius_floor(blocks, settings.min_radius);
   const float ceiling = std::max(floor, settings.max_radius);
-  const auto clamped = [&](float radius) {
-    return std::clamp(radius * settings.scale, floor, ceiling);
-  };
   const float neighbours = std::max(1.0f, settings.neighbours);
-  std::size_t cell = PhotonBlocks::width;
-  while (cell < count && static_cast<float>(cell) < neighbours)
-    cell *= 2;
-  tbb::parallel_for(std::size_t(0), (count + cell - 1) / cell, [&](std::size_t c) {
-    const std::size_t end = std::min(count, (c + 1) * cell);
-    // A last, partial cell borrows from the one before, which is not always its sibling but near.
-    const std::size_t begin = c * cell;
-    const float radius = settings.mode == KernelRadius::fixed
-                             ? settings.fixed_radius
-                             : cell_radius(tight_box(blocks, begin, end),
-                                           static_cast<float>(end - begin), neighbours);
-    for (std::size_t i = begin; i < end; ++i)
-      blocks.at(i, PhotonBlocks::radius) = clamped(radius);
+  std::size_t cell = 1;
+  std::vector<float> radii(1, settings.fixed_radius);
+  if (settings.mode == KernelRadius::adaptive) {
+    while (static_cast<float>(2 * cell * PhotonBlocks::width) <= neighbours * cell_share &&
+           2 * cell * PhotonBlocks::width <= count)
+      cell *= 2;
+    radii = find_cell_radii(blocks, cell, neighbours);
+  } else {
+    cell = blocks.block_count();
+  }
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+    const float radius = radii[i / (cell * PhotonBlocks::width)] * settings.scale;
+    blocks.at(i, PhotonBlocks::radius) = std::clamp(radius, floor, ceiling);
   });
 }
 

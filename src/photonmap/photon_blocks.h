@@ -77,5 +77,7 @@ struct BlockTree {
 
 /// Bounds of all blocks and their groups, rounded outwards.
 BlockTree build_block_tree(const PhotonBlocks& blocks);
+/// Bounds of cells of `blocks_per_cell` blocks, of the photons' centres alone.
+BlockTree build_cell_tree(const PhotonBlocks& blocks, std::size_t blocks_per_cell);
 
 } // namespace vdbeam

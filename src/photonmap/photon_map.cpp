@@ -21,11 +21,17 @@ bool finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// A position whose distances can be squared.
+bool placeable(const Vec3f& p) {
+  constexpr float farthest = 1e15f;
+  return std::abs(p.x) < farthest && std::abs(p.y) < farthest && std::abs(p.z) < farthest;
+}
+
 std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
   std::vector<OrderedPhoton> ordered;
   ordered.reserve(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    if (finite(photons.position[i]) && finite(photons.power[i]) &&
+    if (placeable(photons.position[i]) && finite(photons.power[i]) &&
         (photons.direction.empty() || finite(photons.direction[i])))
       ordered.push_back({photons.position[i], static_cast<std::uint32_t>(i)});
   return ordered;

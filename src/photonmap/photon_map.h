@@ -29,7 +29,8 @@ struct MapTimes {
 ///
 /// Building is deterministic and parallel (oneTBB); the result does not depend on the number of
 /// threads. Queries are const and may run concurrently. Any input is legal: no photons, coincident,
-/// collinear, coplanar photons; photons with a non-finite field are dropped and counted.
+/// collinear, coplanar photons; photons with a non-finite field, or
+/// farther than 1e15 from the origin, are dropped and counted.
 class PhotonMap {
 public:
   PhotonMap();
@@ -46,7 +47,7 @@ public:
   std::size_t bytes() const;
   int channels() const;
   MapTimes times() const;
-  std::size_t dropped() const; ///< non-finite photons
+  std::size_t dropped() const; ///< photons left out
   Boxf bounds() const;         ///< of all spheres
   float mean_radius() const;
 
