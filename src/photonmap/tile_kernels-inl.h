@@ -9,6 +9,24 @@
 
 #include "photonmap/photon_math-inl.h"
 #include "photonmap/tile_frame.h"
+#include "photonmap/tree_walk-inl.h"
+
+#ifndef VDBEAM_PACK_ORDER_ONCE_
+#define VDBEAM_PACK_ORDER_ONCE_
+namespace vdbeam {
+
+/// For each set of 8 lanes: the numbers of its lanes in order, four bits each.
+inline constexpr std::array<std::uint32_t, 256> pack_order = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t mask = 0; mask < 256; ++mask)
+    for (std::uint32_t lane = 0, at = 0; lane < 8; ++lane)
+      if (mask >> lane & 1)
+        table[mask] |= lane << (4 * at++);
+  return table;
+}();
+
+} // namespace vdbeam
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace vdbeam {
@@ -60,11 +78,36 @@ HWY_INLINE hn::Vec<D> rotate(D d, const float* axis, hn::Vec<D> x, hn::Vec<D> y,
                     hn::MulAdd(hn::Set(d, axis[1]), y, hn::MulAdd(hn::Set(d, axis[2]), z, offset)));
 }
 
-/// Writes the chosen lanes side by side; the slots after them are scratch.
-template <class D>
-HWY_INLINE void append(D d, hn::Vec<D> value, hn::Mask<D> mask, bool all, hn::TFromD<D>* to) {
-  hn::StoreU(all ? value : hn::Compress(value, mask), d, to);
-}
+/// Writes all lanes, or the hit ones side by side; the slots after them are scratch.
+class LaneWriter {
+public:
+  HWY_INLINE LaneWriter(hn::Mask<D16> hit, bool keep_all) : hit_(hit), keep_all_(keep_all) {
+    if constexpr (hn::MaxLanes(D16()) <= 8) {
+      // Highway's Compress would look its permutation up again for every field.
+      const I16 di;
+      const std::uint32_t packed = pack_order[mask_bits(D16(), hit)];
+      const auto shifts = hn::ShiftLeft<2>(hn::Iota(di, 0));
+      const auto order =
+          hn::And(hn::Shr(hn::Set(di, static_cast<std::int32_t>(packed)), shifts), hn::Set(di, 7));
+      hn::Store(order, di, order_);
+    }
+  }
+
+  template <class D>
+  HWY_INLINE void write(D d, hn::Vec<D> value, hn::TFromD<D>* to) const {
+    if (keep_all_)
+      hn::StoreU(value, d, to);
+    else if constexpr (hn::MaxLanes(D16()) <= 8)
+      hn::StoreU(hn::TableLookupLanes(value, hn::SetTableIndices(d, order_)), d, to);
+    else
+      hn::StoreU(hn::Compress(value, hn::RebindMask(d, hit_)), d, to);
+  }
+
+private:
+  hn::Mask<D16> hit_;
+  bool keep_all_;
+  alignas(64) std::int32_t order_[16];
+};
 
 /// Takes the photons of a block whose spheres reach the sub-tile's cone.
 HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference,
@@ -94,20 +137,23 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
     hit = hn::And(hit, hn::Gt(radius, hn::Zero(d)));
     hit = hn::And(hit, hn::Ge(f, hn::Sub(hn::Set(d, s.first_knot), kernel_margin)));
     hit = hn::And(hit, hn::Le(f, hn::Add(hn::Set(d, s.last_knot), kernel_margin)));
-    if (hn::AllFalse(d, hit))
+    const std::size_t hits = hn::CountTrue(d, hit);
+    if (hits == 0)
       continue;
-    const bool all = hn::AllTrue(d, hit);
+    // Where most lanes are hit it is cheaper to keep the others, moved out of reach, than to pack.
+    const bool keep_all = 4 * hits >= 3 * hn::Lanes(d);
     const std::size_t n = out.count;
-    const auto put = [&](hn::Vec<D16> value, float* array) {
-      append(d, value, hit, all, array + n);
-    };
+    out.count = n + (keep_all ? hn::Lanes(d) : hits);
+    const LaneWriter writer(hit, keep_all);
+    const auto put = [&](hn::Vec<D16> value, float* array) { writer.write(d, value, array + n); };
 
-    const auto inverse_radius = hn::Div(hn::Set(d, 1.0f), radius);
-    const auto inverse_square = hn::Mul(inverse_radius, inverse_radius);
-    put(hn::Mul(u, inverse_radius), out.u);
+    const auto one = hn::Set(d, 1.0f);
+    const auto inverse_radius = hn::Div(one, hn::IfThenElse(hit, radius, one));
+    put(hn::IfThenElse(hit, hn::Mul(u, inverse_radius), hn::Set(d, 1e9f)), out.u);
     put(hn::Mul(v, inverse_radius), out.v);
     put(hn::Mul(w, inverse_radius), out.w);
-    auto strength = hn::Mul(inverse_square, hn::Set(d, query.strength_factor(s)));
+    auto strength =
+        hn::Mul(hn::Mul(inverse_radius, inverse_radius), hn::Set(d, query.strength_factor(s)));
     if (query.power_channels == 1 && query.weight_channels == 1)
       strength = hn::Mul(strength, field(PhotonBlocks::power));
     else
@@ -119,10 +165,11 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
       put(hn::Mul(w, hn::Set(d, s.inverse_step)), out.depth);
       put(hn::Mul(radius, hn::Set(d, s.inverse_step)), out.reach);
     } else {
+      const auto inside = hn::IfThenElseZero(hit, f);
       const auto knot =
-          hn::Min(hn::ConvertTo(di, f), hn::Set(di, static_cast<std::int32_t>(s.knots - 2)));
-      put(hn::Sub(f, hn::ConvertTo(d, knot)), out.fraction);
-      append(di, hn::ShiftLeft<4>(knot), hn::RebindMask(di, hit), all, out.knot + n);
+          hn::Min(hn::ConvertTo(di, inside), hn::Set(di, static_cast<std::int32_t>(s.knots - 2)));
+      put(hn::Sub(inside, hn::ConvertTo(d, knot)), out.fraction);
+      writer.write(di, hn::ShiftLeft<4>(knot), out.knot + n);
     }
     if (s.phase != PhaseMode::isotropic) {
       const int df = blocks.direction_field();
@@ -143,7 +190,6 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
         put(dw, out.phase[2]);
       }
     }
-    out.count = n + hn::CountTrue(d, hit);
   }
 }
 
