@@ -36,7 +36,17 @@ void DepthProfile::build_single(const Volume& volume, const Ray& ray, float t_be
     }
     if (t_.empty())
       return true;
-    sum += piece;
+    // Within an optically thick cube a straight line is far from the truth, so it is cut up.
+    const int parts = static_cast<int>(std::min(32.0f, std::ceil(piece)));
+    float t = t_a;
+    for (int i = 1; i < parts && sum * weakest < limit; ++i) {
+      const float t_next = t_a + (t_b - t_a) * static_cast<float>(i) / static_cast<float>(parts);
+      sum += cube_optical_depth(volume, ray, t, t_next);
+      t_.push_back(t_next);
+      tau_.push_back(sum);
+      t = t_next;
+    }
+    sum += t > t_a ? cube_optical_depth(volume, ray, t, t_b) : piece;
     t_.push_back(t_b);
     tau_.push_back(sum);
     return sum * weakest < limit;
@@ -54,15 +64,36 @@ void DepthProfile::build_several(const Medium& medium, const Ray& ray, float t_b
   t_.erase(std::unique(t_.begin(), t_.end()), t_.end());
   tau_.resize(t_.size() * volumes_);
   for (std::size_t v = 0; v < volumes_; ++v) {
-    if (parts[v].empty())
-      continue;
-    ProfileCursor cursor(parts[v]);
-    for (std::size_t knot = 0; knot < t_.size(); ++knot) {
-      cursor.move_to(t_[knot]);
-      tau_[knot * volumes_ + v] = cursor.tau();
-    }
+    if (!parts[v].empty())
+      read_at_knots(parts[v], medium.volumes[v], ray, v);
   }
 }
+
+/// Optical depth of volume v, whose own profile is `part`, at every knot. Knots of other volumes
+/// lie inside its cubes, where it is integrated anew: interpolation would not be exact.
+void DepthProfile::read_at_knots(const DepthProfile& part, const Volume& volume, const Ray& ray,
+                                 std::size_t v) {
+  std::size_t own = 0;
+  for (std::size_t knot = 0; knot < t_.size(); ++knot) {
+    const float t = t_[knot];
+    while (own + 1 < part.knots() && part.t(own + 1) <= t)
+      ++own;
+    float tau = part.tau(own);
+    if (t > part.t(own) && own + 1 < part.knots() && part.tau(own + 1) > tau)
+      tau = std::min(tau + cube_optical_depth(volume, ray, part.t(own), t), part.tau(own + 1));
+    tau_[knot * volumes_ + v] = tau;
+  }
+}
+
+namespace {
+
+/// Where in a piece of optical depth `tau`, from 0 to 1, its collisions lie on average: the mean of
+/// an exponential distribution cut at 1.
+float mean_collision(float tau) {
+  return tau < 0.01f ? 0.5f - tau / 12 : 1 / tau - 1 / std::expm1(tau);
+}
+
+} // namespace
 
 float DepthProfile::sharpest_piece() const {
   float sharpest = 0, before = 0;
@@ -75,10 +106,12 @@ float DepthProfile::sharpest_piece() const {
 }
 
 float DepthProfile::opacity_depth() const {
-  float sum = 0, before = 1;
+  float sum = 0, tau = 0, before = 1;
   for (std::size_t knot = 1; knot < t_.size(); ++knot) {
-    const float after = std::exp(-total(knot));
-    sum += (before - after) * 0.5f * (t_[knot - 1] + t_[knot]);
+    const float piece = total(knot) - tau, after = std::exp(-total(knot));
+    const float t = t_[knot - 1] + mean_collision(piece) * (t_[knot] - t_[knot - 1]);
+    sum += (before - after) * t;
+    tau += piece;
     before = after;
   }
   return sum;

@@ -4,7 +4,8 @@
 
 namespace vdbeam {
 
-/// Optical depth along one camera ray: exact at the crossings of lattice planes, linear in between.
+/// Optical depth along one camera ray: exact at the crossings of lattice planes and inside cubes
+/// that are optically thick, linear in between.
 /// One value per volume, for its strongest channel, so that overlapping media of different albedo,
 /// phase function or colour can be told apart.
 class DepthProfile {
@@ -44,6 +45,8 @@ public:
 private:
   void build_single(const Volume& volume, const Ray& ray, float t_begin, float t_end, float limit);
   void build_several(const Medium& medium, const Ray& ray, float t_begin, float t_end, float limit);
+
+  void read_at_knots(const DepthProfile& part, const Volume& volume, const Ray& ray, std::size_t v);
 
   std::size_t volumes_ = 1;
   std::vector<float> t_, tau_;

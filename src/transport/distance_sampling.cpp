@@ -26,21 +26,17 @@ ScatterPoint DistanceSampler::sample(float u, int c) {
 }
 
 /// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in
-/// t, so two Gauss points give the optical depth from the knot to t exactly. The density of the
+/// t, so the optical depth from the knot to t is known exactly. The density of the
 /// draw is sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over
 /// the channels (balance heuristic).
 void DistanceSampler::weigh(std::size_t knot, float t) {
   const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
-  const float middle = 0.5f * (t_a + t), half = 0.5f * (t - t_a), offset = half * 0.57735027f;
   Rgb tau, linear_tau, linear_sigma;
   for (std::size_t v = 0; v < weights_.size(); ++v) {
     const Volume& volume = medium_.volumes[v];
     const float begin = profile_.tau(knot, v), piece = profile_.tau(knot + 1, v) - begin;
     const float sigma = volume.extinction * volume.density(ray_.at(t));
-    float exact = 0;
-    if (piece > 0)
-      exact = volume.extinction * half *
-              (volume.density(ray_.at(middle - offset)) + volume.density(ray_.at(middle + offset)));
+    const float exact = piece > 0 ? cube_optical_depth(volume, ray_, t_a, t) : 0;
     tau += volume.channel_scale * (begin + exact);
     linear_tau += volume.channel_scale * (begin + (length > 0 ? (t - t_a) / length : 0) * piece);
     linear_sigma += volume.channel_scale * (length > 0 ? piece / length : sigma);
