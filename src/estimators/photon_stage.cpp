@@ -6,14 +6,39 @@ namespace vdbeam {
 
 namespace {
 
-constexpr double default_neighbours = 1000;
-constexpr double default_keep = 0.5;
-constexpr std::uint64_t default_photons = 400000;
-constexpr std::uint64_t first_paths = 20000;
+constexpr double default_neighbours = 500;
+/// Collisions of one path that are kept on average: more of them tell little that is new.
+constexpr double kept_per_path = 4;
+/// Cost of a camera ray (profile, shadow rays, query) and of a light path's start, in storable
+/// collisions: what balances the two sides of a pass. Counts, not clocks, so that every machine
+/// chooses the same.
+constexpr double camera_ray_cost = 13;
+constexpr double path_start_cost = 1;
+constexpr std::uint64_t fewest_paths = 2000;
+constexpr double most_photons = 2e6;
+constexpr std::uint64_t pilot_paths = 1024;
+constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+
+/// Camera rays of a pass that meet the medium, from a coarse sample.
+double count_hits(const EstimatorInput& input) {
+  constexpr int samples = 48;
+  const Camera& camera = input.camera;
+  DepthProfile profile;
+  int hits = 0;
+  for (int y = 0; y < samples; ++y)
+    for (int x = 0; x < samples; ++x) {
+      const CameraRay ray = camera_ray(input.world, camera, (x + 0.5) * camera.width() / samples,
+                                       (y + 0.5) * camera.height() / samples);
+      profile.build(input.world.medium, ray.ray, ray.t_begin, ray.t_end, 0.5f);
+      hits += !profile.empty();
+    }
+  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+}
 
 } // namespace
 
-PhotonStage::PhotonStage(const EstimatorInput& input) : input_(input) {
+PhotonStage::PhotonStage(const EstimatorInput& input)
+    : input_(input), support_(input.world.medium, input.camera.origin()) {
   const std::vector<Volume>& volumes = input_.world.medium.volumes;
   common_albedo_ = true;
   for (const Volume& volume : volumes)
@@ -45,10 +70,36 @@ void PhotonStage::choose_lights() {
 void PhotonStage::choose_counts() {
   const RenderSettings& settings = input_.world.settings;
   direct_samples_ = settings.direct_samples > 0 ? settings.direct_samples : 2;
-  keep_ = settings.keep > 0 ? settings.keep : default_keep;
   neighbours_ = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
-  target_photons_ = settings.photons.value_or(default_photons);
-  paths_ = std::min(first_paths, target_photons_);
+  if (!needs_map_)
+    return;
+  PhotonPassSettings pilot = pass_settings(pilot_pass);
+  pilot.paths = pilot_paths;
+  const double collisions = std::max(1e-3, trace_photons(input_.world, pilot).mean_collisions);
+  keep_ = settings.keep > 0 ? settings.keep : std::min(1.0, kept_per_path / collisions);
+  const double stored_per_path = collisions * keep_;
+  double paths = static_cast<double>(settings.photons.value_or(0)) / stored_per_path;
+  if (!settings.photons) {
+    const double balanced = count_hits(input_) * camera_ray_cost / (collisions + path_start_cost);
+    paths = std::min(std::max(static_cast<double>(fewest_paths), balanced),
+                     most_photons / stored_per_path);
+  }
+  paths_ = static_cast<std::uint64_t>(std::ceil(paths));
+}
+
+PhotonPassSettings PhotonStage::pass_settings(std::uint64_t pass) const {
+  const World& world = input_.world;
+  PhotonPassSettings settings;
+  settings.paths = paths_;
+  settings.store = world.settings.store;
+  settings.keep = static_cast<float>(keep_);
+  settings.skip_first_flight = sampled_;
+  settings.max_bounces = world.settings.max_bounces;
+  settings.directions = !world.medium.isotropic();
+  if (common_albedo_ && settings.store == PhotonStore::fluence)
+    settings.factor = world.medium.volumes[0].albedo;
+  settings.key = {world.settings.seed, input_.frame, pass};
+  return settings;
 }
 
 float PhotonStage::radius_scale(int pass, double alpha) {
@@ -69,6 +120,12 @@ RadiusSettings PhotonStage::radii(int pass) const {
   radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
   if (settings.max_radius > 0)
     radii.max_radius = static_cast<float>(settings.max_radius) * scale;
+  if (settings.store == PhotonStore::fluence)
+    radii.support = [this](const Vec3f& photon, float radius) {
+      return input_.world.settings.estimator == EstimatorType::march
+                 ? support_.ball_share(photon, radius)
+                 : support_.disc_share(photon, radius);
+    };
   return radii;
 }
 
@@ -79,17 +136,7 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   }
   const auto start = std::chrono::steady_clock::now();
   const World& world = input_.world;
-  PhotonPassSettings settings;
-  settings.paths = paths_;
-  settings.store = world.settings.store;
-  settings.keep = static_cast<float>(keep_);
-  settings.skip_first_flight = sampled_;
-  settings.max_bounces = world.settings.max_bounces;
-  settings.directions = !world.medium.isotropic();
-  if (common_albedo_ && settings.store == PhotonStore::fluence)
-    settings.factor = world.medium.volumes[0].albedo;
-  settings.key = {world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
-  PhotonPass photons = trace_photons(world, settings);
+  PhotonPass photons = trace_photons(world, pass_settings(static_cast<std::uint64_t>(pass)));
   statistics.trace +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   statistics.light_paths += paths_;

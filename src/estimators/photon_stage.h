@@ -1,7 +1,10 @@
 #pragma once
 
+#include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
+#include "estimators/kernel_support.h"
 #include "photonmap/photon_map.h"
+#include "transport/depth_profile.h"
 #include "transport/photon_tracing.h"
 
 namespace vdbeam {
@@ -30,6 +33,7 @@ public:
 private:
   void choose_lights();
   void choose_counts();
+  PhotonPassSettings pass_settings(std::uint64_t pass) const;
   RadiusSettings radii(int pass) const;
 
   EstimatorInput input_;
@@ -39,8 +43,8 @@ private:
   int direct_samples_ = 1;
   double keep_ = 1;
   double neighbours_ = 0;
-  std::uint64_t target_photons_ = 0; ///< stored per pass
-  std::uint64_t paths_ = 0;          ///< per pass, adjusted to the target after the first
+  std::uint64_t paths_ = 0; ///< light paths per pass
+  KernelSupport support_;
   PhotonMap map_;
 };
 

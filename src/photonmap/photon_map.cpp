@@ -53,6 +53,14 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedP
   return blocks;
 }
 
+void divide_by_support(PhotonBlocks& blocks, const RadiusSettings& radii) {
+  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+    const float share = radii.support(blocks.position(i), blocks.at(i, PhotonBlocks::radius));
+    for (int c = 0; c < blocks.channels(); ++c)
+      blocks.at(i, PhotonBlocks::power + c) /= share;
+  });
+}
+
 } // namespace
 
 struct PhotonMap::Data {
@@ -85,6 +93,8 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
 
   start = Clock::now();
   find_kernel_radii(data.blocks, radii);
+  if (radii.support)
+    divide_by_support(data.blocks, radii);
   data.times.radii = seconds_since(start);
 
   start = Clock::now();

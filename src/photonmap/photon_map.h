@@ -5,6 +5,7 @@
 #include "photonmap/beam_tile.h"
 #include "photonmap/photon.h"
 
+#include <functional>
 #include <memory>
 
 namespace vdbeam {
@@ -17,6 +18,9 @@ struct RadiusSettings {
   float scale = 1;           ///< progressive shrinking: applied to adaptive and fixed radii alike
   float min_radius = 0;      ///< clamp after scaling; > 0
   float max_radius = 1e30f;  ///< clamp after scaling
+  /// Share of a photon's kernel that lies where photons can be stored at all, from its position and
+  /// radius; its power is divided by it. Empty: 1.
+  std::function<float(const Vec3f& position, float radius)> support;
 };
 
 struct MapTimes {

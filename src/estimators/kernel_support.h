@@ -1,0 +1,32 @@
+#pragma once
+
+#include "transport/medium.h"
+
+namespace vdbeam {
+
+/// How much of a photon's kernel lies where photons can be stored at all: in cells whose majorant
+/// is not 0. A kernel at the edge of the medium reaches into space that no photon ever marks, and
+/// the estimate darkens by that share. Dividing a photon's power by the share inside takes this
+/// boundary bias away to first order; the factor tends to 1 as radii shrink, so the estimate stays
+/// consistent.
+class KernelSupport {
+public:
+  /// Both arguments in render space; the medium must outlive this.
+  KernelSupport(const Medium& medium, const Vec3d& camera) : medium_(&medium), camera_(camera) {}
+
+  /// Share of the disc of radius r about a photon, perpendicular to the ray from the camera.
+  float disc_share(const Vec3f& photon, float radius) const;
+  /// Share of the ball of radius r.
+  float ball_share(const Vec3f& photon, float radius) const;
+
+  /// No photon is raised by more than 1 / least_share.
+  static constexpr float least_share = 0.25f;
+
+private:
+  bool inside(const Vec3f& point) const;
+
+  const Medium* medium_;
+  Vec3d camera_;
+};
+
+} // namespace vdbeam
