@@ -16,7 +16,7 @@ public:
 
   void start(const std::string& text);
   void pass(const PassRecord& record);
-  void note(const std::string& line);
+  void note(const std::string& text);
   /// Takes the bar away and says how it went.
   void finish(const std::string& text);
 

@@ -47,13 +47,14 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
     grid = find(is_density);
   if (!grid) {
     std::vector<std::string> names;
+    names.reserve(grids.size());
     for (const GridSummary& g : grids)
       names.push_back(fmt::format("{} ({})", g.name, g.value_type));
     throw InputError(fmt::format("{}: there is no float grid to render; it holds {}", file,
                                  names.empty() ? "no grid at all" : join_words(names, "and")));
   }
   notes.push_back(
-      fmt::format("{}: there is no grid \"density\"; \"{}\" is rendered", file, grid->name));
+      fmt::format(R"({}: there is no grid "density"; "{}" is rendered)", file, grid->name));
   return *grid;
 }
 
@@ -98,6 +99,7 @@ std::vector<std::vector<GridSummary>> read_summaries(const std::string& path) {
     }
   }
   std::vector<std::vector<GridSummary>> summaries;
+  summaries.reserve(files.size());
   for (const std::string& file : files)
     summaries.push_back(summarize_vdb(file));
   return summaries;

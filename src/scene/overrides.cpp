@@ -137,7 +137,7 @@ void apply_override(toml::table& root, const Override& entry) {
   toml::table values = parse_value(entry);
   toml::node& parent = find_parent(root, parts, entry);
   const std::string& name = parts.back();
-  values.get("v")->visit([&](auto&& value) {
+  values.get("v")->visit([&](auto& value) {
     if (auto* table = parent.as_table()) {
       table->insert_or_assign(name, std::move(value));
       return;

@@ -149,6 +149,7 @@ std::vector<int> SceneDocument::frames_on_disk() const {
 
 Scene load_scene(const std::string& path, int frame, const std::vector<std::string>& overrides) {
   std::vector<Override> entries;
+  entries.reserve(overrides.size());
   for (const std::string& text : overrides)
     entries.push_back(parse_override(text));
   return SceneDocument(path, entries).scene_at(frame);

@@ -85,6 +85,7 @@ E enum_value(std::string_view text) {
 template <class E>
 std::vector<std::string> enum_names() {
   std::vector<std::string> names;
+  names.reserve(EnumNames<E>::table.size());
   for (const auto& [entry, name] : EnumNames<E>::table)
     names.emplace_back(name);
   return names;

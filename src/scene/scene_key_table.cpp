@@ -139,7 +139,7 @@ void add_volume(Table& table) {
 
   using P = PhaseSettings;
   table.section(SceneSection::phase);
-  table.add("type", &P::type, "phase function; phase = \"NAME\" is short for it");
+  table.add("type", &P::type, R"(phase function; phase = "NAME" is short for it)");
   table.add("g", &P::g, "mean cosine, of the first lobe where there are two")
       .inside(-1, 1)
       .types({"henyey_greenstein", "two_lobe"});
@@ -195,7 +195,7 @@ void add_stop_rule(Table& table) {
   table.add("passes", &R::passes, "passes to render; 64 where no limit at all is given")
       .at_least(1)
       .absent("none");
-  table.add("time", &R::time, "rendering time, as a number or like \"90s\", \"5m\", \"1h30m\"")
+  table.add("time", &R::time, R"(rendering time, as a number or like "90s", "5m", "1h30m")")
       .kind(KeyKind::duration)
       .unit("seconds")
       .above(0)
@@ -217,7 +217,7 @@ void add_render(Table& table) {
       .at_least(1);
   table.add("kernel", &R::kernel, "photon radii by local density, or one radius for all");
   table.add("kernel_shape", &R::kernel_shape, "profile of the kernel");
-  table.add_auto("radius", &R::radius, "radius of the fixed kernel, needed for kernel = \"fixed\"")
+  table.add_auto("radius", &R::radius, R"(radius of the fixed kernel, needed for kernel = "fixed")")
       .unit("world")
       .above(0)
       .absent("none");
@@ -252,6 +252,7 @@ std::vector<SceneKey> make_table() {
   add_light(table);
   add_render(table);
   std::vector<SceneKey> keys;
+  keys.reserve(entries.size());
   for (Entry& entry : entries)
     keys.push_back(std::move(entry.key));
   return keys;

@@ -137,7 +137,7 @@ std::string SceneKey::kind_text() const {
   case KeyKind::color:
     return "3 numbers (red, green, blue) or one for all";
   case KeyKind::duration:
-    return "seconds or a text like \"90s\", \"5m\" or \"1h30m\"";
+    return R"(seconds or a text like "90s", "5m" or "1h30m")";
   case KeyKind::matrix:
     return "12 numbers";
   }

@@ -68,6 +68,7 @@ Scene SceneReader::read(const toml::table& root) {
       continue;
     }
     std::vector<std::string> names;
+    names.reserve(sections.size());
     for (const auto& [name, section] : sections)
       names.push_back(name);
     std::string hint = "; the tables are " + join_words(names, "and");
@@ -147,7 +148,7 @@ void SceneReader::read_key(const SceneKey& key, std::size_t index, const toml::n
   const std::string path = key_path(key, index);
   KeyValue value = read_key_value(key, path, node);
   locations_[path] = location_of(node);
-  if (key.kind == KeyKind::file && std::get<std::string>(value) != "")
+  if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
     value = resolve_file(std::get<std::string>(value), path, node);
   if (key.set)
     key.set(scene_, index, value);
@@ -160,7 +161,7 @@ std::string SceneReader::resolve_file(const std::string& text, const std::string
   namespace fs = std::filesystem;
   // A path typed in a shell is relative to where it was typed.
   const fs::path pattern = is_override(node) ? fs::path(text) : folder_ / text;
-  const std::string file = substitute_frame(pattern.string(), frame_);
+  std::string file = substitute_frame(pattern.string(), frame_);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_directory(status))

@@ -76,7 +76,7 @@ void validate_consistency(const Scene& scene, const KeyLocator& locate) {
 }
 
 void validate_scene(const Scene& scene) {
-  const std::string name = scene.path.empty() ? "scene" : scene.path;
+  std::string name = scene.path.empty() ? "scene" : scene.path;
   for (const SceneKey& key : scene_keys()) {
     if (!key.get)
       continue;
@@ -84,7 +84,7 @@ void validate_scene(const Scene& scene) {
       if (const auto complaint = key.complaint(key.get(scene, i)))
         throw InputError(fmt::format("{}: {} {}", name, key_path(key, i), *complaint));
   }
-  validate_consistency(scene, [&](const std::string&) { return name; });
+  validate_consistency(scene, [&](const std::string&) -> std::string { return name; });
 }
 
 } // namespace vdbeam
