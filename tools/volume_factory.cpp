@@ -163,6 +163,16 @@ FloatGrid::Ptr bad_values(const VolumeOptions& options) {
   return grid;
 }
 
+/// Values whose active flags are off count all the same.
+FloatGrid::Ptr inactive(const VolumeOptions& options) {
+  FloatGrid::Ptr grid = noise_cloud(options);
+  for (auto value = grid->beginValueOn(); value; ++value)
+    value.setActiveState(false);
+  grid->tree().addTile(1, Coord(-8 * options.size, 0, 0), static_cast<float>(options.density),
+                       false);
+  return grid;
+}
+
 FloatGrid::Ptr level_set(const VolumeOptions& options) {
   return openvdb::tools::createLevelSetSphere<FloatGrid>(static_cast<float>(0.45 * options.extent),
                                                          openvdb::Vec3f(0),
@@ -288,6 +298,7 @@ const std::vector<Recipe>& recipes() {
       single("frustum", "the noise cloud in a frustum (not supported by vdbeam)", frustum),
       single("levelset", "a sphere as a level set", level_set),
       single("bad", "the noise cloud with NaN, infinite and negative values", bad_values),
+      single("inactive", "the noise cloud and a tile with all active flags off", inactive),
       single("background", "the noise cloud with a background of 0.25", with_background),
       single("vector", "a vec3s grid where a density is expected", converted<openvdb::Vec3SGrid>),
       single("integer", "an int32 grid where a density is expected", converted<openvdb::Int32Grid>),

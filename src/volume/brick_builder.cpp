@@ -30,6 +30,7 @@ public:
 private:
   GridRepairs mend();
   bool find_bounds();
+  void check_size(std::uint64_t cells, std::uint64_t bricks) const;
   void fill_sources();
   void fill_tile(std::int32_t number);
   void classify();
@@ -122,8 +123,18 @@ bool Builder::find_bounds() {
         "{}: its voxels span {} x {} x {}, more than the 2^28 blocks of 8^3 that fit in the index "
         "table; crop the grid or split it in several volumes",
         label_, 8 * widths.x, 8 * widths.y, 8 * widths.z));
+  check_size(static_cast<std::uint64_t>(widths.x * widths.y * widths.z), 0);
   counts_ = Vec3<int>(widths);
   return true;
+}
+
+void Builder::check_size(std::uint64_t cells, std::uint64_t bricks) const {
+  const std::uint64_t bytes =
+      bricks * sizeof(float) * DensityField::brick_size + cells * 3 * sizeof(std::int32_t);
+  if (bytes > maximum_bytes_)
+    throw FrameError(fmt::format(
+        "{}: needs {:.2f} GiB as bricks, more than the limit of {:.2f} GiB", label_,
+        static_cast<double>(bytes) / (1 << 30), static_cast<double>(maximum_bytes_) / (1 << 30)));
 }
 
 void Builder::fill_tile(std::int32_t number) {
@@ -246,12 +257,7 @@ BrickedGrid Builder::build() {
   fill_sources();
   classify();
   number_cells();
-  const std::uint64_t bytes = brick_cells_.size() * sizeof(float) * DensityField::brick_size +
-                              cells_.size() * 2 * sizeof(std::int32_t);
-  if (bytes > maximum_bytes_)
-    throw FrameError(fmt::format(
-        "{}: needs {:.1f} GiB as bricks, more than the limit of {:.1f} GiB", label_,
-        static_cast<double>(bytes) / (1 << 30), static_cast<double>(maximum_bytes_) / (1 << 30)));
+  check_size(cells_.size(), brick_cells_.size());
   fill_bricks();
   result.field = DensityField(lower_ * std::int64_t(8), counts_, std::move(cells_),
                               std::move(bricks_), std::move(uniform_values_));

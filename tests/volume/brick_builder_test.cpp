@@ -125,6 +125,12 @@ TEST(BrickBuilder, refuses_what_cannot_fit) {
   Leaves noise = dense_noise(8);
   RawGrid small = noise.grid();
   EXPECT_THROW(build_bricks(small, "label", 1 << 20), FrameError);
+  Leaves apart;
+  apart.add(0, 0, 0, 1);
+  apart.add(8 * 200, 8 * 200, 8 * 200, 1);
+  RawGrid sparse = apart.grid();
+  EXPECT_THROW(build_bricks(sparse, "label", 1 << 20), FrameError)
+      << "the index table is too large";
 }
 
 TEST(BrickBuilder, nothing_gives_an_empty_field) {

@@ -131,9 +131,9 @@ TEST_P(ReadKind, transform_equals_OpenVDBs) {
 
 std::vector<Case> readable_kinds() {
   std::vector<Case> cases{{"tiles", 256}, {"noise", 41}, {"box", 7}};
-  for (const char* kind :
-       {"sphere", "box", "slab", "ramp", "noise", "spikes", "tiles", "voxel", "half", "double",
-        "rotated", "sheared", "mirrored", "anisotropic", "far", "levelset", "bad", "duplicates"})
+  for (const char* kind : {"sphere", "box", "slab", "ramp", "noise", "spikes", "tiles", "voxel",
+                           "half", "double", "rotated", "sheared", "mirrored", "anisotropic", "far",
+                           "levelset", "bad", "duplicates", "inactive"})
     cases.push_back({kind, 32});
   return cases;
 }
