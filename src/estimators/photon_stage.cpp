@@ -9,12 +9,11 @@ namespace {
 constexpr double default_neighbours = 500;
 /// Collisions of one path that are kept on average: more of them tell little that is new.
 constexpr double kept_per_path = 4;
-/// Cost of a camera ray (profile, shadow rays, query) and of a light path's start, in storable
-/// collisions: what balances the two sides of a pass. Counts, not clocks, so that every machine
+/// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
+/// on thin and on thick media (docs/decisions.md). A count, not a clock, so that every machine
 /// chooses the same.
-constexpr double camera_ray_cost = 13;
-constexpr double path_start_cost = 1;
-constexpr std::uint64_t fewest_paths = 2000;
+constexpr double paths_per_hit = 2;
+constexpr double fewest_paths = 10000;
 constexpr double most_photons = 2e6;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
@@ -79,11 +78,9 @@ void PhotonStage::choose_counts() {
   keep_ = settings.keep > 0 ? settings.keep : std::min(1.0, kept_per_path / collisions);
   const double stored_per_path = collisions * keep_;
   double paths = static_cast<double>(settings.photons.value_or(0)) / stored_per_path;
-  if (!settings.photons) {
-    const double balanced = count_hits(input_) * camera_ray_cost / (collisions + path_start_cost);
-    paths = std::min(std::max(static_cast<double>(fewest_paths), balanced),
+  if (!settings.photons)
+    paths = std::min(std::max(fewest_paths, paths_per_hit * count_hits(input_)),
                      most_photons / stored_per_path);
-  }
   paths_ = static_cast<std::uint64_t>(std::ceil(paths));
 }
 
