@@ -2,6 +2,8 @@
 
 #include "math/sampling.h"
 
+#include <bit>
+
 namespace vdbeam {
 namespace {
 
@@ -65,10 +67,10 @@ TangentBox bound_tangents(const BeamTile& tile, int subtile) {
 bool row_is_zero(const float* weights, std::size_t rows, int knots, int knot) {
   for (std::size_t row = 0; row < rows; ++row) {
     const float* w = weights + (row * static_cast<std::size_t>(knots) + knot) * rays;
-    float sum = 0;
-    for (int r = 0; r < rays; r += 4) // an order that compilers turn into vectors
-      sum += (std::abs(w[r]) + std::abs(w[r + 1])) + (std::abs(w[r + 2]) + std::abs(w[r + 3]));
-    if (sum != 0)
+    std::uint32_t bits = 0; // of all values together, without signs
+    for (int r = 0; r < rays; ++r)
+      bits |= std::bit_cast<std::uint32_t>(w[r]);
+    if ((bits & 0x7fffffffu) != 0)
       return false;
   }
   return true;
