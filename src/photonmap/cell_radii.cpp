@@ -72,8 +72,9 @@ HWY_INLINE bool gather_near(const Cells& cells, const Boxf& box, float reach, Ne
   near.count = 0;
   bool fits = true;
   walk_tree(
-      cells.tree, [&](const BoxGroup& group) { return fits ? boxes_within(box, reach, group) : 0; },
-      [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) {
+      cells.tree,
+      [&](const BoxGroup& group) HWY_ATTR { return fits ? boxes_within(box, reach, group) : 0; },
+      [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
         for (; mask != 0; mask &= mask - 1) {
           if (near.count == NearCells::capacity) {
             fits = false;

@@ -40,16 +40,25 @@ std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
 PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedPhoton>& order,
                            int channels) {
   PhotonBlocks blocks(order.size(), channels, !photons.direction.empty());
-  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
-    const std::uint32_t from = order[i].index;
-    for (int axis = 0; axis < 3; ++axis)
-      blocks.at(i, axis) = order[i].position[axis];
-    for (int c = 0; c < channels; ++c)
-      blocks.at(i, PhotonBlocks::power + c) = photons.power[from][c];
-    if (blocks.has_directions())
+  const auto fill_block = [&](std::size_t block) {
+    const std::size_t begin = block * PhotonBlocks::width;
+    const std::size_t count = std::min(PhotonBlocks::width, order.size() - begin);
+    float* rows = blocks.row(block, 0);
+    const auto put = [&](int field, std::size_t lane, float value) {
+      rows[static_cast<std::size_t>(field) * PhotonBlocks::width + lane] = value;
+    };
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const std::uint32_t from = order[begin + lane].index;
       for (int axis = 0; axis < 3; ++axis)
-        blocks.at(i, blocks.direction_field() + axis) = photons.direction[from][axis];
-  });
+        put(axis, lane, order[begin + lane].position[axis]);
+      for (int c = 0; c < channels; ++c)
+        put(PhotonBlocks::power + c, lane, photons.power[from][c]);
+      if (blocks.has_directions())
+        for (int axis = 0; axis < 3; ++axis)
+          put(blocks.direction_field() + axis, lane, photons.direction[from][axis]);
+    }
+  };
+  tbb::parallel_for(std::size_t(0), blocks.block_count(), fill_block);
   return blocks;
 }
 

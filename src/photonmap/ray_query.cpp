@@ -149,8 +149,8 @@ public:
 
   void run() {
     walk_tree(
-        map_.tree, [&](const BoxGroup& group) { return boxes_on_ray(ray_, group); },
-        [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) {
+        map_.tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_on_ray(ray_, group); },
+        [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
           for (; mask != 0; mask &= mask - 1) {
             ++counts.blocks;
             counts.candidates += PhotonBlocks::width;

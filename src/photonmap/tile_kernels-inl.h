@@ -116,7 +116,7 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
   const I16 di;
   const PhotonBlocks& blocks = query.blocks;
   for (std::size_t lane = 0; lane < PhotonBlocks::width; lane += hn::Lanes(d)) {
-    const auto field = [&](int f) { return hn::Load(d, blocks.row(block, f) + lane); };
+    const auto field = [&](int f) HWY_ATTR { return hn::Load(d, blocks.row(block, f) + lane); };
     const auto x = hn::Sub(field(PhotonBlocks::x), hn::Set(d, reference[0]));
     const auto y = hn::Sub(field(PhotonBlocks::y), hn::Set(d, reference[1]));
     const auto z = hn::Sub(field(PhotonBlocks::z), hn::Set(d, reference[2]));
@@ -145,7 +145,8 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
     const std::size_t n = out.count;
     out.count = n + (keep_all ? hn::Lanes(d) : hits);
     const LaneWriter writer(hit, keep_all);
-    const auto put = [&](hn::Vec<D16> value, float* array) { writer.write(d, value, array + n); };
+    const auto put = [&](hn::Vec<D16> value, float* array)
+                         HWY_ATTR { writer.write(d, value, array + n); };
 
     const auto one = hn::Set(d, 1.0f);
     const auto inverse_radius = hn::Div(one, hn::IfThenElse(hit, radius, one));

@@ -81,7 +81,7 @@ HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup&
     const auto w1 = hn::Min(high, hn::Load(d, frame.w1 + lane));
     auto hit = hn::Le(w0, w1);
     const auto overlap = [&](const float* tangent0, const float* tangent1, hn::Vec<D16> from,
-                             hn::Vec<D16> to) {
+                             hn::Vec<D16> to) HWY_ATTR {
       const auto t0 = hn::Load(d, tangent0 + lane), t1 = hn::Load(d, tangent1 + lane);
       const auto least = hn::Min(hn::Mul(t0, w0), hn::Mul(t0, w1));
       const auto most = hn::Max(hn::Mul(t1, w0), hn::Mul(t1, w1));
@@ -105,8 +105,8 @@ public:
 
   void run(const BlockTree& tree) {
     walk_tree(
-        tree, [&](const BoxGroup& group) { return boxes_in_frustum(frame_, group); },
-        [&](std::uint32_t group_index, const BoxGroup& group, std::uint32_t mask) {
+        tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_in_frustum(frame_, group); },
+        [&](std::uint32_t group_index, const BoxGroup& group, std::uint32_t mask) HWY_ATTR {
           for (; mask != 0; mask &= mask - 1) {
             const auto slot = static_cast<std::uint32_t>(std::countr_zero(mask));
             const std::uint32_t subtiles = subtiles_of_box(frame_, group, slot);
