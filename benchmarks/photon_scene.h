@@ -94,10 +94,10 @@ inline PhotonList walk_photons(const NoisyBall& ball, std::size_t count, bool di
   return photons;
 }
 
-/// The tiles of an image of the ball, with depth profiles of 64 knots.
+/// The tiles of an image of the ball, with uniform depth profiles.
 inline std::vector<BeamTile> camera_tiles(const NoisyBall& ball, int width, int height,
-                                          const std::vector<PhaseFunction>& phases) {
-  constexpr int knots = 64;
+                                          const std::vector<PhaseFunction>& phases,
+                                          int knots = 64) {
   const float distance = 6, tangent = 1.1f / distance;
   std::vector<BeamTile> tiles;
   for (int y0 = 0; y0 < height; y0 += 16)
@@ -113,7 +113,7 @@ inline std::vector<BeamTile> camera_tiles(const NoisyBall& ball, int width, int 
       tile.camera_distance = distance;
       tile.reference = Vec3f{0, 0, distance} + tile.axis_w * distance;
       tile.phases = &phases;
-      tile.weights.assign(std::size_t(knots) * BeamTile::ray_count, 0);
+      tile.weights.assign(static_cast<std::size_t>(knots) * BeamTile::ray_count, 0);
       tile.radiance.assign(3 * BeamTile::ray_count, 0);
       for (int r = 0; r < BeamTile::ray_count; ++r) {
         const int sub = r / 16, lane = r % 16;
@@ -124,8 +124,8 @@ inline std::vector<BeamTile> camera_tiles(const NoisyBall& ball, int width, int 
         tile.dv[r] = dot(d, tile.axis_v);
         tile.dw[r] = dot(d, tile.axis_w);
         BeamTile::Profile& profile = tile.profiles[sub];
-        profile = {distance - 1.05f, 2.1f / (knots - 1), knots,
-                   static_cast<std::size_t>(sub) * knots * 16};
+        profile = {distance - 1.05f, 2.1f / static_cast<float>(knots - 1), knots,
+                   static_cast<std::size_t>(sub * knots) * 16};
         float tau = 0;
         for (int k = 0; k < knots; ++k) {
           const float sigma = ball.at(Vec3f{0, 0, distance} +

@@ -3,6 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photonmap/ray_query.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -151,6 +152,8 @@ public:
     walk_tree(
         map_.tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_on_ray(ray_, group); },
         [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
+          for (std::uint32_t bits = mask; bits != 0; bits &= bits - 1)
+            prefetch_block(8 * index + static_cast<unsigned>(std::countr_zero(bits)));
           for (; mask != 0; mask &= mask - 1) {
             ++counts.blocks;
             counts.candidates += PhotonBlocks::width;
@@ -165,6 +168,11 @@ public:
   QueryCounts counts;
 
 private:
+  HWY_INLINE void prefetch_block(std::size_t block) const {
+    for (int field = 0; field <= PhotonBlocks::power; ++field)
+      hwy::Prefetch(map_.blocks.row(block, field));
+  }
+
   HWY_INLINE void add_photons(const PhotonLanes& photons) {
     const D16 d;
     const I16 di;

@@ -9,6 +9,9 @@ namespace {
 
 constexpr int rays = BeamTile::rays_per_subtile;
 
+/// Tangent of the widest cone whose rays share knots and measure distances across its axis.
+constexpr double widest_shared_spread = 0.05;
+
 struct TangentBox {
   double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
   double cos0 = 1, cos1 = 0; ///< least and greatest dw
@@ -161,11 +164,13 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
   const double cosine = 1 / std::sqrt(1 + spread * spread);
   s.cos_spread = static_cast<float>(cosine);
   s.sin_spread = static_cast<float>(std::min(1.0, spread * cosine * (1 + 1e-5) + 1e-7));
-  // How far f differs between the rays: from the kernel's width, and from depth against distance.
+  // Rays that share a knot see a photon at the distance along the cone's axis instead of their own.
+  // Seen from them it is moved along the ray, by spread * radius (to either side, by where it lies)
+  // and by depth * spread^2 / 2: nothing that a kernel of that radius would resolve.
   const double farthest = tile.camera_distance + reach;
-  const double by_kernel = 2 * mean_radius * spread / profile.step;
-  const double by_depth = farthest * spread * spread / (2 * profile.step);
-  s.per_ray = by_kernel > 0.25 || by_depth > 0.0625 || spread > 0.02;
+  const double by_depth = farthest * spread * spread / 2;
+  s.per_ray = spread > widest_shared_spread ||
+              by_depth > std::max(0.0625 * profile.step, 0.05 * mean_radius);
   s.knot_margin = static_cast<float>((1 / cosine - 1) * farthest / profile.step + 1);
   s.phase = phase_mode(*tile.phases, spread, has_directions);
   if (s.per_ray && s.phase == PhaseMode::linear)

@@ -5,8 +5,7 @@
 
 namespace vdbeam {
 
-/// How a sub-tile's candidates are weighted: by shared knots and a phase function linear over the
-/// sub-tile where its cone is narrow enough, else exactly per ray.
+/// How a sub-tile's phase function is evaluated: linear over its cone where that is narrow enough.
 enum class PhaseMode { isotropic, linear, exact };
 
 /// The 4 x 4 rays of a sub-tile in a frame of their own, whose third axis is their mean direction
