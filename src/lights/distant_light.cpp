@@ -21,10 +21,10 @@ public:
   }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
   Rgb escaped_radiance(const Vec3f&) const override { return {}; }
-  EmittedPhoton emit(Rng& rng) const override {
+  EmittedPhoton emit(double place, Rng& rng) const override {
     if (mask_.area() <= 0)
       return {{{}, direction_}, {}};
-    const std::uint32_t pixel = rng.bits();
+    const auto pixel = static_cast<std::uint32_t>(place * 0x1p32);
     const float u = rng.uniform(), v = rng.uniform();
     const SilhouetteMask::Point start = mask_.sample(pixel, u, v);
     return {{start.position + direction_ * start.depth, direction_}, irradiance_ * mask_.area()};
@@ -63,8 +63,8 @@ public:
   Rgb escaped_radiance(const Vec3f& direction) const override {
     return shows(direction) ? radiance_ : Rgb{};
   }
-  EmittedPhoton emit(Rng& rng) const override {
-    return masked() ? emit_through_mask(rng) : emit_to_boxes(rng);
+  EmittedPhoton emit(double place, Rng& rng) const override {
+    return masked() ? emit_through_mask(place, rng) : emit_to_boxes(place, rng);
   }
   Rgb power() const override {
     return irradiance_ * (masked() ? mask_.area() : boxes_.projected_area(axis_));
@@ -83,10 +83,10 @@ private:
     const Vec3d chord = Vec3d(direction) + cone_.axis;
     return dot(chord, chord) <= 2 * cone_.one_minus_cos;
   }
-  EmittedPhoton emit_through_mask(Rng& rng) const {
+  EmittedPhoton emit_through_mask(double place, Rng& rng) const {
     if (mask_.area() <= 0)
       return {{{}, axis_}, {}};
-    const std::uint32_t pixel = rng.bits();
+    const auto pixel = static_cast<std::uint32_t>(place * 0x1p32);
     const float u = rng.uniform(), v = rng.uniform();
     const SilhouetteMask::Point start = mask_.sample(pixel, u, v);
     const float u_direction = rng.uniform(), v_direction = rng.uniform();
@@ -95,11 +95,12 @@ private:
     return {{start.position + direction * (start.depth / cosine), direction},
             total_ * (mask_.area() * cosine)};
   }
-  EmittedPhoton emit_to_boxes(Rng& rng) const {
-    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  EmittedPhoton emit_to_boxes(double place, Rng& rng) const {
+    const float u = rng.uniform(), v = rng.uniform();
     const float u_direction = rng.uniform(), v_direction = rng.uniform();
     const Vec3f direction(cone_.sample(u_direction, v_direction));
-    const EntrySampler::Entry entry = boxes_.sample_line(direction, u_face, u, v);
+    const EntrySampler::Entry entry =
+        boxes_.sample_line(direction, static_cast<float>(place), u, v);
     return {{entry.point, direction}, total_ * entry.weight};
   }
 

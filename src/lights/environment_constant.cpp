@@ -18,8 +18,8 @@ public:
   }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return density; }
   Rgb escaped_radiance(const Vec3f&) const override { return radiance_; }
-  EmittedPhoton emit(Rng& rng) const override {
-    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  EmittedPhoton emit(double place, Rng& rng) const override {
+    const float u_face = static_cast<float>(place), u = rng.uniform(), v = rng.uniform();
     const float u_direction = rng.uniform(), v_direction = rng.uniform();
     const EntrySampler::Entry entry = boxes_.sample_surface(u_face, u, v, u_direction, v_direction);
     return {{entry.point, entry.direction}, radiance_ * entry.weight};

@@ -133,8 +133,8 @@ public:
     const Place place = locate(direction);
     return map_.lookup(place.theta_share, place.turn);
   }
-  EmittedPhoton emit(Rng& rng) const override {
-    const float u_face = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  EmittedPhoton emit(double place, Rng& rng) const override {
+    const float u_face = static_cast<float>(place), u = rng.uniform(), v = rng.uniform();
     const float u_direction = rng.uniform(), v_direction = rng.uniform();
     const Drawn drawn = draw(u_direction, v_direction);
     const EntrySampler::Entry entry = boxes_.sample_line(-drawn.direction, u_face, u, v);

@@ -32,8 +32,14 @@ public:
   /// Radiance seen by a ray that leaves the scene along `direction`; 0 for lights that a ray cannot
   /// meet (delta lights and local lights).
   virtual Rgb escaped_radiance(const Vec3f& direction) const = 0;
-  /// One photon aimed at the occupied region. The first numbers drawn place it, the others turn it.
-  virtual EmittedPhoton emit(Rng& rng) const = 0;
+  /// One photon aimed at the occupied region. `place`, uniform in [0, 1), says where it starts;
+  /// equal steps of it over a light's photons stratify them and start neighbours close together,
+  /// which the caches of the walk like. The rest is drawn from rng.
+  virtual EmittedPhoton emit(double place, Rng& rng) const = 0;
+  EmittedPhoton emit(Rng& rng) const {
+    const double place = rng.uniform();
+    return emit(place, rng);
+  }
   /// Power into the occupied region (render units), to share photons between lights.
   virtual Rgb power() const = 0;
   /// True where only sample_incident can find the light.

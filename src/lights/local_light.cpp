@@ -30,8 +30,8 @@ IncidentSample LocalLight::sample_incident(const Vec3f& point, float, float) con
   return {Vec3f(wi), static_cast<float>(distance), Rgb(intensity_ * factor), 0};
 }
 
-EmittedPhoton LocalLight::emit(Rng& rng) const {
-  const float u = rng.uniform(), v = rng.uniform();
+EmittedPhoton LocalLight::emit(double place, Rng& rng) const {
+  const float u = static_cast<float>(place), v = rng.uniform();
   const Vec3d direction = cone_.sample(u, v);
   Vec3d origin;
   if (sphere_.radius < 0 || !advance_to_region(position_, direction, sphere_, origin))

@@ -13,7 +13,7 @@ public:
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
   Rgb escaped_radiance(const Vec3f&) const override { return {}; }
-  EmittedPhoton emit(Rng& rng) const override;
+  EmittedPhoton emit(double place, Rng& rng) const override;
   bool is_delta() const override { return true; }
 
 protected:

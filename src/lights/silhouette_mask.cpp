@@ -115,6 +115,17 @@ private:
   std::vector<float> depth_;
 };
 
+/// The bits of x and y interleaved.
+std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
+  const auto spread = [](std::uint32_t v) {
+    v = (v | v << 8) & 0x00ff00ffu;
+    v = (v | v << 4) & 0x0f0f0f0fu;
+    v = (v | v << 2) & 0x33333333u;
+    return (v | v << 1) & 0x55555555u;
+  };
+  return spread(x) | spread(y) << 1;
+}
+
 } // namespace
 
 SilhouetteMask::SilhouetteMask(const Vec3f& axis, float tan_spread, const OccupiedRegion& region) {
@@ -146,6 +157,9 @@ SilhouetteMask::SilhouetteMask(const Vec3f& axis, float tan_spread, const Occupi
       if (raster.depth(x, y) < infinity)
         pixels_.push_back(
             {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), raster.depth(x, y)});
+  // Along a Morton curve, so that a run of pixels is compact.
+  std::sort(pixels_.begin(), pixels_.end(),
+            [](const Pixel& a, const Pixel& b) { return morton(a.x, a.y) < morton(b.x, b.y); });
   corner_ = frame.origin + frame.x * lower.x + frame.y * lower.y;
   step_x_ = frame.x * pixel;
   step_y_ = frame.y * pixel;

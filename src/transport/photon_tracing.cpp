@@ -39,9 +39,13 @@ public:
   PathTracer(const World& world, const PhotonPassSettings& settings)
       : world_(world), settings_(settings) {}
 
-  void trace(std::uint64_t number, std::size_t light, std::uint64_t light_paths) {
+  /// Path `number` of the pass, the `index`-th of `light_paths` from its light.
+  void trace(std::uint64_t number, std::size_t light, std::uint64_t index,
+             std::uint64_t light_paths) {
     Rng rng(settings_.key, RngStage::photon, number);
-    EmittedPhoton photon = world_.lights[light].emit(rng);
+    const double place = (static_cast<double>(index) + static_cast<double>(rng.uniform())) /
+                         static_cast<double>(light_paths);
+    const EmittedPhoton photon = world_.lights[light].emit(place, rng);
     Rgb flux = photon.flux / static_cast<float>(light_paths);
     if (!(max_component(flux) > 0))
       return;
@@ -130,7 +134,8 @@ PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings)
                         for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {
                           while (path >= first[light + 1])
                             ++light;
-                          tracers[chunk].trace(path, light, first[light + 1] - first[light]);
+                          tracers[chunk].trace(path, light, path - first[light],
+                                               first[light + 1] - first[light]);
                         }
                       }
                     });
