@@ -9,10 +9,10 @@ packages=(
   # OpenVDB; its development package does not pull in all that its headers and find module need
   libopenvdb-dev libboost-iostreams-dev libblosc-dev zlib1g-dev
   # the other libraries
-  libtbb-dev libopenexr-dev libimath-dev libpng-dev libstb-dev libfmt-dev libtomlplusplus-dev
+  libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libhwy-dev
   # tests and benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev
+  libgtest-dev libbenchmark-dev
   # tools
   python3 python3-numpy python3-matplotlib
 )
