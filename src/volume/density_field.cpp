@@ -77,7 +77,8 @@ struct Summary {
 DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
                            std::vector<std::int32_t> cells, std::vector<float> bricks,
                            std::vector<float> uniform_values)
-    : origin_(origin), cell_counts_(cell_counts), cells_(std::move(cells)),
+    : origin_(origin), cell_counts_(cell_counts),
+      limit_(Vec3f(cell_counts) * static_cast<float>(cell_width)), cells_(std::move(cells)),
       bricks_(std::move(bricks)), uniform_values_(std::move(uniform_values)) {
   const std::size_t count = static_cast<std::size_t>(cell_counts.x) * cell_counts.y * cell_counts.z;
   if (cells_.size() != count || bricks_.size() % brick_size != 0)

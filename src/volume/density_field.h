@@ -60,6 +60,7 @@ public:
 private:
   Vec3<std::int64_t> origin_;
   Vec3<int> cell_counts_;
+  Vec3f limit_; ///< upper end of the cells, local
   std::vector<std::int32_t> cells_;
   std::vector<float> bricks_;
   std::vector<float> uniform_values_;
@@ -68,14 +69,9 @@ private:
   Boxf occupied_;
 };
 
-/// The trilinear value in a brick at cell-local coordinates, 0 <= x, y, z <= 8.
-inline float sample_brick(const float* brick, float x, float y, float z) {
+/// The trilinear value between the lattice points at `p` and one further along each axis.
+inline float sample_cube(const float* p, float fx, float fy, float fz) {
   constexpr int width = DensityField::brick_width;
-  const int i = std::min(static_cast<int>(x), 7), j = std::min(static_cast<int>(y), 7),
-            k = std::min(static_cast<int>(z), 7);
-  const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j),
-              fz = z - static_cast<float>(k);
-  const float* p = brick + (i * width + j) * width + k;
   const auto along_z = [fz](const float* q) { return q[0] + fz * (q[1] - q[0]); };
   const float c00 = along_z(p), c01 = along_z(p + width), c10 = along_z(p + width * width),
               c11 = along_z(p + width * width + width);
@@ -83,20 +79,26 @@ inline float sample_brick(const float* brick, float x, float y, float z) {
   return c0 + fx * (c1 - c0);
 }
 
+/// The trilinear value in a brick at cell-local coordinates, 0 <= x, y, z <= 8.
+inline float sample_brick(const float* brick, float x, float y, float z) {
+  constexpr int width = DensityField::brick_width;
+  const int i = std::min(static_cast<int>(x), 7), j = std::min(static_cast<int>(y), 7),
+            k = std::min(static_cast<int>(z), 7);
+  return sample_cube(brick + (i * width + j) * width + k, x - static_cast<float>(i),
+                     y - static_cast<float>(j), z - static_cast<float>(k));
+}
+
 inline float DensityField::sample(const Vec3f& local) const {
-  if (!(local.x >= 0 && local.y >= 0 && local.z >= 0))
+  if (!(local.x >= 0 && local.y >= 0 && local.z >= 0 && local.x < limit_.x && local.y < limit_.y &&
+        local.z < limit_.z))
     return 0;
-  const float limit_x = static_cast<float>(cell_counts_.x * cell_width),
-              limit_y = static_cast<float>(cell_counts_.y * cell_width),
-              limit_z = static_cast<float>(cell_counts_.z * cell_width);
-  if (!(local.x < limit_x && local.y < limit_y && local.z < limit_z))
-    return 0;
-  const int i = static_cast<int>(local.x) >> 3, j = static_cast<int>(local.y) >> 3,
-            k = static_cast<int>(local.z) >> 3;
-  const std::int32_t entry = cell(i, j, k);
+  const int i = static_cast<int>(local.x), j = static_cast<int>(local.y),
+            k = static_cast<int>(local.z);
+  const std::int32_t entry = cell(i >> 3, j >> 3, k >> 3);
   if (entry >= 0)
-    return sample_brick(brick(entry), local.x - static_cast<float>(8 * i),
-                        local.y - static_cast<float>(8 * j), local.z - static_cast<float>(8 * k));
+    return sample_cube(brick(entry) + ((i & 7) * brick_width + (j & 7)) * brick_width + (k & 7),
+                       local.x - static_cast<float>(i), local.y - static_cast<float>(j),
+                       local.z - static_cast<float>(k));
   return entry == empty_cell ? 0 : uniform_value(entry);
 }
 

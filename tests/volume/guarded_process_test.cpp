@@ -95,12 +95,16 @@ TEST(GuardedProcess, hangs_end_in_time) {
 
 TEST(GuardedProcess, memory_is_limited) {
   const auto grow = [](int) {
-    for (;;) {
-      // Mapped, since the sanitizers' allocators have their own way out of memory.
+    // Mapped, since the sanitizers' allocators have their own way out of memory; some room is left
+    // for the exception.
+    for (void* last = nullptr;;) {
       void* block =
           ::mmap(nullptr, 8 * mib, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-      if (block == MAP_FAILED)
+      if (block == MAP_FAILED) {
+        ::munmap(last, 8 * mib);
         throw std::bad_alloc();
+      }
+      last = block;
     }
   };
   EXPECT_EQ(failure(ample, grow), "label: reading needs more than 0.06 GiB; the file is corrupt, "
