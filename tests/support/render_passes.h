@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "support/memory_scene.h"
 #include "support/statistics.h"
 #include "transport/camera.h"
 
@@ -29,8 +30,11 @@ inline void add_means(std::array<Samples, 3>& samples, const std::vector<Rgb>& v
   }
 }
 
-inline PassMeans render_passes(const World& world, const Camera& camera, EstimatorType type,
-                               int passes) {
+/// Renders passes 0 to `passes` - 1 of a scene.
+inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes) {
+  scene.scene.render.estimator = type;
+  const World world = scene.world();
+  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
   const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, 1});
   PassMeans means;
   PassImage image;
@@ -58,11 +62,6 @@ inline PassMeans render_passes(const World& world, const Camera& camera, Estimat
   for (const Vec3d& sum : sums)
     means.pixels.push_back(Rgb(sum / static_cast<double>(passes)));
   return means;
-}
-
-inline PassMeans render_passes(const World& world, const Scene& scene, EstimatorType type,
-                               int passes) {
-  return render_passes(world, Camera(scene.camera, scene.image, world.space), type, passes);
 }
 
 } // namespace vdbeam::test

@@ -74,7 +74,7 @@ MemoryScene moved(MemoryScene scene, const Affine& motion) {
 }
 
 std::vector<Rgb> picture(const MemoryScene& scene, int passes) {
-  return test::render_passes(scene.world(), scene.scene, EstimatorType::path, passes).pixels;
+  return test::render_passes(scene, EstimatorType::path, passes).pixels;
 }
 
 TEST(World, FarFromTheOriginItIsTheSamePicture) {
@@ -104,8 +104,8 @@ TEST(World, ScaledByAPowerOfTwoItIsTheSamePictureBitForBit) {
 
 /// Same pixels up to noise: each pixel's spread is taken from its passes.
 void expect_same_picture(const MemoryScene& a, const MemoryScene& b) {
-  const test::PassMeans x = test::render_passes(a.world(), a.scene, EstimatorType::path, 48);
-  const test::PassMeans y = test::render_passes(b.world(), b.scene, EstimatorType::path, 48);
+  const test::PassMeans x = test::render_passes(a, EstimatorType::path, 48);
+  const test::PassMeans y = test::render_passes(b, EstimatorType::path, 48);
   for (std::size_t c = 0; c < 3; ++c) {
     test::expect_same_mean(x.direct[c], y.direct[c]);
     test::expect_same_mean(x.indirect[c], y.indirect[c]);
@@ -166,12 +166,12 @@ TEST(World, ShearedVolumeHasItsChord) {
   // Along +y at (x, z) = (0.75, 0.6): i in [0, 1] and z - i / 4 in [0, 1] hold for y in [0, 1].
   scene.look({0.75, -3, 0.6}, {0.75, 1, 0.6}, 1e-3, 1, 1);
   const test::PassMeans means =
-      test::render_passes(scene.world(), scene.scene, EstimatorType::path, 4);
+      test::render_passes(scene, EstimatorType::path, 4);
   EXPECT_NEAR(means.total[0].mean(), std::exp(-3.0), 1e-4 * std::exp(-3.0));
   // Along +x at (y, z) = (0.5, 0.2): i from 0 until z = i / 4 leaves nothing below, at i = 0.8.
   scene.look({-3, 0.5, 0.2}, {1, 0.5, 0.2}, 1e-3, 1, 1);
   const test::PassMeans across =
-      test::render_passes(scene.world(), scene.scene, EstimatorType::path, 4);
+      test::render_passes(scene, EstimatorType::path, 4);
   EXPECT_NEAR(across.total[0].mean(), std::exp(-2.4), 1e-3 * std::exp(-2.4));
 }
 
