@@ -68,36 +68,42 @@ public:
     if (range.intervals == 0)
       return;
     profile.step = static_cast<float>((range.end - range.begin) / range.intervals);
-    // A knot in the middle of each interval, and one of weight 0 before and after.
-    profile.knots = range.intervals + 2;
-    profile.t_begin = static_cast<float>(range.begin - 0.5 * profile.step);
+    if (settings_.store == PhotonStore::fluence) {
+      profile.knots = range.intervals + 1;
+      profile.t_begin = static_cast<float>(range.begin);
+    } else {
+      // A knot in the middle of each interval, and one of weight 0 before and after.
+      profile.knots = range.intervals + 2;
+      profile.t_begin = static_cast<float>(range.begin - 0.5 * profile.step);
+    }
     profile.offset = tile_.weights.size();
     tile_.weights.resize(profile.offset + static_cast<std::size_t>(profile.knots) * 16 * groups_ *
                                               tile_.weight_channels);
     for (int ray = 0; ray < 16; ++ray) {
       const TileRays::PixelRay& pixel = rays[16 * subtile + ray];
       if (!pixel.profile.empty())
-        write_ray(pixel, static_cast<float>(range.begin - pixel.camera.shift), profile, ray);
+        write_ray(pixel, range, profile, ray);
     }
   }
 
 private:
-  void write_ray(const TileRays::PixelRay& pixel, float begin, const BeamTile::Profile& profile,
-                 int ray) {
+  void write_ray(const TileRays::PixelRay& pixel, const KnotRange& range,
+                 const BeamTile::Profile& profile, int ray) {
+    const float begin = static_cast<float>(range.begin - pixel.camera.shift);
     const std::size_t volumes = world_.medium.volumes.size();
     ProfileCursor cursor(pixel.profile);
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
-    for (int k = 1; k + 1 < profile.knots; ++k) {
-      cursor.move_to(begin + static_cast<float>(k) * profile.step);
+    for (int i = 0; i < range.intervals; ++i) {
+      cursor.move_to(begin + static_cast<float>(i + 1) * profile.step);
       for (std::size_t v = 0; v < volumes; ++v)
         after_[v] = cursor.tau(v);
       if (settings_.store == PhotonStore::scatter)
-        write_transmittance(profile, k, ray);
+        write_transmittance(profile, i + 1, ray);
       else if (volumes == 1 && tile_.weight_channels == 1)
-        write_simple(profile, k, ray);
+        write_simple(profile, i, ray);
       else
-        write_scattering(profile, k, ray);
+        write_scattering(profile, i, ray);
       std::swap(before_, after_);
     }
   }
@@ -107,14 +113,24 @@ private:
     return &tile_.weights[profile.offset + (table * profile.knots + knot) * 16 + ray];
   }
 
-  void write_simple(const BeamTile::Profile& profile, int knot, int ray) {
-    const float piece = after_[0] - before_[0];
-    if (piece > 0)
-      *weight(profile, 0, 0, knot, ray) =
-          std::exp(-before_[0]) * -std::expm1(-piece) / profile.step;
+  /// Gives half of an interval's mean weight to the knot at either end. The knots at the ends of
+  /// the table, which weigh over half an interval, get all of theirs: photons lie right up to the
+  /// medium's border, so a ramp there would lose light.
+  void deposit(const BeamTile::Profile& profile, int group, int channel, int interval, int ray,
+               float mean) {
+    float* knot = weight(profile, group, channel, interval, ray);
+    knot[0] += interval == 0 ? mean : 0.5f * mean;
+    knot[16] += interval + 2 == profile.knots ? mean : 0.5f * mean;
   }
 
-  void write_scattering(const BeamTile::Profile& profile, int knot, int ray) {
+  void write_simple(const BeamTile::Profile& profile, int interval, int ray) {
+    const float piece = after_[0] - before_[0];
+    if (piece > 0)
+      deposit(profile, 0, 0, interval, ray,
+              std::exp(-before_[0]) * -std::expm1(-piece) / profile.step);
+  }
+
+  void write_scattering(const BeamTile::Profile& profile, int interval, int ray) {
     const std::vector<Volume>& volumes = world_.medium.volumes;
     for (int c = 0; c < tile_.weight_channels; ++c) {
       float tau_before = 0, tau_after = 0;
@@ -129,7 +145,7 @@ private:
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
-        *weight(profile, volumes[v].group, c, knot, ray) += scattered * share * albedo;
+        deposit(profile, volumes[v].group, c, interval, ray, scattered * share * albedo);
       }
     }
   }

@@ -13,9 +13,10 @@ struct WeightSettings {
 
 /// Fills the tile's frame, directions and weight tables from its rays.
 ///
-/// Fluence storage: W at a knot is the mean of Tr sigma_s over the knot's interval, taken from
-/// exact optical depths at its ends, (Tr(a) - Tr(b)) / (b - a) * albedo. So the table's integral is
-/// exact however stiff the medium, and no voxel can be missed. Scatter storage: W = Tr.
+/// Fluence storage: the mean of Tr sigma_s over each interval between knots is taken from exact
+/// optical depths at its ends, (Tr(a) - Tr(b)) / (b - a) * albedo, and W at a knot is the mean of
+/// the two intervals that it joins. So the table's integral is exact however stiff the medium, and
+/// no voxel can be missed. Scatter storage: W = Tr.
 void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
                     const WeightSettings& settings, BeamTile& tile);
 

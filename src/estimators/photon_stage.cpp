@@ -117,7 +117,9 @@ RadiusSettings PhotonStage::radii(int pass) const {
   radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
   if (settings.max_radius > 0)
     radii.max_radius = static_cast<float>(settings.max_radius) * scale;
-  if (settings.store == PhotonStore::fluence)
+  // The share is that of a positive kernel; a kernel of fourth order, whose rim is negative, would
+  // gain bias by it.
+  if (settings.store == PhotonStore::fluence && settings.kernel_shape != KernelShape::fourth_order)
     radii.support = [this](const Vec3f& photon, float radius) {
       return input_.world.settings.estimator == EstimatorType::march
                  ? support_.ball_share(photon, radius)

@@ -165,13 +165,11 @@ TEST(World, ShearedVolumeHasItsChord) {
   scene.add_light(LightType::environment);
   // Along +y at (x, z) = (0.75, 0.6): i in [0, 1] and z - i / 4 in [0, 1] hold for y in [0, 1].
   scene.look({0.75, -3, 0.6}, {0.75, 1, 0.6}, 1e-3, 1, 1);
-  const test::PassMeans means =
-      test::render_passes(scene, EstimatorType::path, 4);
+  const test::PassMeans means = test::render_passes(scene, EstimatorType::path, 4);
   EXPECT_NEAR(means.total[0].mean(), std::exp(-3.0), 1e-4 * std::exp(-3.0));
   // Along +x at (y, z) = (0.5, 0.2): i from 0 until z = i / 4 leaves nothing below, at i = 0.8.
   scene.look({-3, 0.5, 0.2}, {1, 0.5, 0.2}, 1e-3, 1, 1);
-  const test::PassMeans across =
-      test::render_passes(scene, EstimatorType::path, 4);
+  const test::PassMeans across = test::render_passes(scene, EstimatorType::path, 4);
   EXPECT_NEAR(across.total[0].mean(), std::exp(-2.4), 1e-3 * std::exp(-2.4));
 }
 
