@@ -41,7 +41,7 @@ struct GridSummary {
   double voxel_size[3] = {0, 0, 0};
   double minimum = 0, maximum = 0, mean = 0; ///< over active voxels, scalar float grids only
   double background = 0;
-  GridRepairs bad_values; ///< counted, not changed
+  GridRepairs bad_values; ///< counted, not changed; a level set has no bad negative ones
 };
 
 /// How far an untrusted file may go before it is refused.

@@ -63,6 +63,8 @@ void summarize_tree(const Grid& grid, GridSummary& summary) {
       statistics.add(tile.getValue(), tile.getVoxelCount());
   }
   if constexpr (is_scalar) {
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET)
+      statistics.bad.negative = 0; // the inside of a level set
     statistics.store(summary);
     summary.background = grid.background();
   }

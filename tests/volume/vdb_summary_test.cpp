@@ -79,7 +79,10 @@ TEST_F(Summary, every_kind_of_grid) {
   ASSERT_EQ(doubles.size(), 2u);
   EXPECT_EQ(doubles[1].name, "density[1]");
   EXPECT_EQ(summarize("half").at(0).value_type, "half");
-  EXPECT_EQ(summarize("levelset").at(0).grid_class, "Level Set");
+  const GridSummary level_set = summarize("levelset").at(0);
+  EXPECT_EQ(level_set.grid_class, "Level Set");
+  EXPECT_LT(level_set.minimum, 0);
+  EXPECT_EQ(level_set.bad_values.negative, 0u) << "its inside is not a mistake";
   EXPECT_EQ(summarize("frustum").at(0).map_type, "NonlinearFrustumMap");
   EXPECT_EQ(summarize("background").at(0).background, 0.25);
   const GridSummary empty = summarize("empty").at(0);
