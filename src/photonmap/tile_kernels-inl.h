@@ -109,88 +109,124 @@ private:
   alignas(64) std::int32_t order_[16];
 };
 
+/// A part of a block, as many photons as lanes.
+struct BlockPart {
+  const PhotonBlocks& blocks;
+  std::size_t block, lane;
+
+  HWY_INLINE V16 field(int f) const { return hn::Load(D16(), blocks.row(block, f) + lane); }
+};
+
+/// Photons in a sub-tile's frame, and their knot coordinate on its axis.
+struct PlacedPhotons {
+  V16 u, v, w, f, radius;
+};
+
+HWY_INLINE PlacedPhotons place_photons(const BlockPart& part, const float* reference,
+                                       const SubtileFrame& s) {
+  const D16 d;
+  const auto x = hn::Sub(part.field(PhotonBlocks::x), hn::Set(d, reference[0]));
+  const auto y = hn::Sub(part.field(PhotonBlocks::y), hn::Set(d, reference[1]));
+  const auto z = hn::Sub(part.field(PhotonBlocks::z), hn::Set(d, reference[2]));
+  const auto along = rotate(d, s.axes[2], x, y, z, hn::Zero(d));
+  return {rotate(d, s.axes[0], x, y, z, hn::Set(d, s.offset[0])),
+          rotate(d, s.axes[1], x, y, z, hn::Set(d, s.offset[1])),
+          hn::Add(along, hn::Set(d, s.offset[2])),
+          hn::Mul(hn::Add(along, hn::Set(d, s.knot_offset)), hn::Set(d, s.inverse_step)),
+          part.field(PhotonBlocks::radius)};
+}
+
+/// Which spheres reach the sub-tile's cone where it has weights. Padding, of radius 0, never does.
+HWY_INLINE hn::Mask<D16> reaches_cone(const PlacedPhotons& p, const SubtileFrame& s) {
+  const D16 d;
+  // Within the radius of the cone: h cos - w sin < r, squared.
+  const auto across =
+      hn::Mul(hn::MulAdd(p.u, p.u, hn::Mul(p.v, p.v)), hn::Set(d, s.cos_spread * s.cos_spread));
+  const auto reach = hn::MulAdd(p.w, hn::Set(d, s.sin_spread), p.radius);
+  const auto margin =
+      s.per_ray ? hn::MulAdd(p.radius, hn::Set(d, s.inverse_step), hn::Set(d, s.knot_margin))
+                : hn::Zero(d);
+  auto hit = hn::And(hn::Lt(across, hn::Mul(reach, reach)), hn::Gt(reach, hn::Zero(d)));
+  hit = hn::And(hit, hn::Gt(p.radius, hn::Zero(d)));
+  hit = hn::And(hit, hn::Ge(p.f, hn::Sub(hn::Set(d, s.first_knot), margin)));
+  return hn::And(hit, hn::Le(p.f, hn::Add(hn::Set(d, s.last_knot), margin)));
+}
+
+/// Place, size and knots of the hit photons.
+HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
+                            const PlacedPhotons& p, hn::Mask<D16> hit, const LaneWriter& writer,
+                            std::size_t at, Candidates& out) {
+  const D16 d;
+  const I16 di;
+  const auto one = hn::Set(d, 1.0f), inverse_step = hn::Set(d, s.inverse_step);
+  const auto inverse_radius = hn::Div(one, hn::IfThenElse(hit, p.radius, one));
+  const auto u = hn::IfThenElse(hit, hn::Mul(p.u, inverse_radius), hn::Set(d, 1e9f));
+  writer.write(d, u, out.u + at);
+  writer.write(d, hn::Mul(p.v, inverse_radius), out.v + at);
+  writer.write(d, hn::Mul(p.w, inverse_radius), out.w + at);
+  auto strength =
+      hn::Mul(hn::Mul(inverse_radius, inverse_radius), hn::Set(d, query.strength_factor(s)));
+  if (query.power_channels == 1 && query.weight_channels == 1)
+    strength = hn::Mul(strength, part.field(PhotonBlocks::power));
+  else
+    for (int c = 0; c < 3; ++c)
+      writer.write(d, part.field(PhotonBlocks::power + c % query.power_channels),
+                   out.power[c] + at);
+  writer.write(d, strength, out.strength + at);
+  if (s.per_ray) {
+    writer.write(d, p.f, out.fraction + at);
+    writer.write(d, hn::Mul(p.w, inverse_step), out.depth + at);
+    writer.write(d, hn::Mul(p.radius, inverse_step), out.reach + at);
+  } else {
+    const auto inside = hn::IfThenElseZero(hit, p.f);
+    const auto knot =
+        hn::Min(hn::ConvertTo(di, inside), hn::Set(di, static_cast<std::int32_t>(s.knots - 2)));
+    writer.write(d, hn::Sub(inside, hn::ConvertTo(d, knot)), out.fraction + at);
+    writer.write(di, hn::ShiftLeft<4>(knot), out.knot + at);
+  }
+}
+
+/// What the phase function needs of the hit photons.
+HWY_INLINE void write_phase(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
+                            const LaneWriter& writer, std::size_t at, Candidates& out) {
+  const D16 d;
+  const int df = part.blocks.direction_field();
+  const auto zero = hn::Zero(d);
+  const auto dx = part.field(df), dy = part.field(df + 1), dz = part.field(df + 2);
+  const auto du = hn::Neg(rotate(d, s.axes[0], dx, dy, dz, zero));
+  const auto dv = hn::Neg(rotate(d, s.axes[1], dx, dy, dz, zero));
+  const auto dw = hn::Neg(rotate(d, s.axes[2], dx, dy, dz, zero));
+  if (s.phase == PhaseMode::linear) {
+    auto value = zero, slope = zero;
+    phase_line(d, query.phases[0], dw, value, slope);
+    writer.write(d, value, out.phase[0] + at);
+    writer.write(d, hn::Mul(slope, du), out.phase[1] + at);
+    writer.write(d, hn::Mul(slope, dv), out.phase[2] + at);
+  } else {
+    writer.write(d, du, out.phase[0] + at);
+    writer.write(d, dv, out.phase[1] + at);
+    writer.write(d, dw, out.phase[2] + at);
+  }
+}
+
 /// Takes the photons of a block whose spheres reach the sub-tile's cone.
 HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference,
                                   const SubtileFrame& s, std::size_t block, Candidates& out) {
   const D16 d;
-  const I16 di;
-  const PhotonBlocks& blocks = query.blocks;
   for (std::size_t lane = 0; lane < PhotonBlocks::width; lane += hn::Lanes(d)) {
-    const auto field = [&](int f) HWY_ATTR { return hn::Load(d, blocks.row(block, f) + lane); };
-    const auto x = hn::Sub(field(PhotonBlocks::x), hn::Set(d, reference[0]));
-    const auto y = hn::Sub(field(PhotonBlocks::y), hn::Set(d, reference[1]));
-    const auto z = hn::Sub(field(PhotonBlocks::z), hn::Set(d, reference[2]));
-    const auto radius = field(PhotonBlocks::radius);
-    const auto u = rotate(d, s.axes[0], x, y, z, hn::Set(d, s.offset[0]));
-    const auto v = rotate(d, s.axes[1], x, y, z, hn::Set(d, s.offset[1]));
-    const auto along = rotate(d, s.axes[2], x, y, z, hn::Zero(d));
-    const auto w = hn::Add(along, hn::Set(d, s.offset[2]));
-    const auto f = hn::Mul(hn::Add(along, hn::Set(d, s.knot_offset)), hn::Set(d, s.inverse_step));
-    // Within the radius of the cone: h cos - w sin < r, squared.
-    const auto across =
-        hn::Mul(hn::MulAdd(u, u, hn::Mul(v, v)), hn::Set(d, s.cos_spread * s.cos_spread));
-    const auto reach = hn::MulAdd(w, hn::Set(d, s.sin_spread), radius);
-    const auto margin = hn::Set(d, s.per_ray ? s.knot_margin : 0.0f);
-    const auto kernel_margin =
-        s.per_ray ? hn::MulAdd(radius, hn::Set(d, s.inverse_step), margin) : margin;
-    auto hit = hn::And(hn::Lt(across, hn::Mul(reach, reach)), hn::Gt(reach, hn::Zero(d)));
-    hit = hn::And(hit, hn::Gt(radius, hn::Zero(d)));
-    hit = hn::And(hit, hn::Ge(f, hn::Sub(hn::Set(d, s.first_knot), kernel_margin)));
-    hit = hn::And(hit, hn::Le(f, hn::Add(hn::Set(d, s.last_knot), kernel_margin)));
+    const BlockPart part{query.blocks, block, lane};
+    const PlacedPhotons placed = place_photons(part, reference, s);
+    const auto hit = reaches_cone(placed, s);
     const std::size_t hits = hn::CountTrue(d, hit);
     if (hits == 0)
       continue;
     // Where most lanes are hit it is cheaper to keep the others, moved out of reach, than to pack.
     const bool keep_all = 4 * hits >= 3 * hn::Lanes(d);
-    const std::size_t n = out.count;
-    out.count = n + (keep_all ? hn::Lanes(d) : hits);
     const LaneWriter writer(hit, keep_all);
-    const auto put = [&](hn::Vec<D16> value, float* array)
-                         HWY_ATTR { writer.write(d, value, array + n); };
-
-    const auto one = hn::Set(d, 1.0f);
-    const auto inverse_radius = hn::Div(one, hn::IfThenElse(hit, radius, one));
-    put(hn::IfThenElse(hit, hn::Mul(u, inverse_radius), hn::Set(d, 1e9f)), out.u);
-    put(hn::Mul(v, inverse_radius), out.v);
-    put(hn::Mul(w, inverse_radius), out.w);
-    auto strength =
-        hn::Mul(hn::Mul(inverse_radius, inverse_radius), hn::Set(d, query.strength_factor(s)));
-    if (query.power_channels == 1 && query.weight_channels == 1)
-      strength = hn::Mul(strength, field(PhotonBlocks::power));
-    else
-      for (int c = 0; c < 3; ++c)
-        put(field(PhotonBlocks::power + c % query.power_channels), out.power[c]);
-    put(strength, out.strength);
-    if (s.per_ray) {
-      put(f, out.fraction);
-      put(hn::Mul(w, hn::Set(d, s.inverse_step)), out.depth);
-      put(hn::Mul(radius, hn::Set(d, s.inverse_step)), out.reach);
-    } else {
-      const auto inside = hn::IfThenElseZero(hit, f);
-      const auto knot =
-          hn::Min(hn::ConvertTo(di, inside), hn::Set(di, static_cast<std::int32_t>(s.knots - 2)));
-      put(hn::Sub(inside, hn::ConvertTo(d, knot)), out.fraction);
-      writer.write(di, hn::ShiftLeft<4>(knot), out.knot + n);
-    }
-    if (s.phase != PhaseMode::isotropic) {
-      const int df = blocks.direction_field();
-      const auto zero = hn::Zero(d);
-      const auto dx = field(df), dy = field(df + 1), dz = field(df + 2);
-      const auto du = hn::Neg(rotate(d, s.axes[0], dx, dy, dz, zero));
-      const auto dv = hn::Neg(rotate(d, s.axes[1], dx, dy, dz, zero));
-      const auto dw = hn::Neg(rotate(d, s.axes[2], dx, dy, dz, zero));
-      if (s.phase == PhaseMode::linear) {
-        auto value = zero, slope = zero;
-        phase_line(d, query.phases[0], dw, value, slope);
-        put(value, out.phase[0]);
-        put(hn::Mul(slope, du), out.phase[1]);
-        put(hn::Mul(slope, dv), out.phase[2]);
-      } else {
-        put(du, out.phase[0]);
-        put(dv, out.phase[1]);
-        put(dw, out.phase[2]);
-      }
-    }
+    write_shape(query, s, part, placed, hit, writer, out.count, out);
+    if (s.phase != PhaseMode::isotropic)
+      write_phase(query, s, part, writer, out.count, out);
+    out.count += keep_all ? hn::Lanes(d) : hits;
   }
 }
 
