@@ -110,6 +110,10 @@ struct Case {
   const char* name;
   MemoryScene (*make)();
   double power = 0.015; ///< standard errors stay below this share of the mean
+
+  friend std::ostream& operator<<(std::ostream& out, const Case& test_case) {
+    return out << test_case.name;
+  }
 };
 class Agreement : public testing::TestWithParam<Case> {};
 

@@ -116,6 +116,10 @@ struct PhotonFurnace {
   double depth, g;
   double power = 0.02; ///< standard errors stay below this
   KernelShape shape = KernelShape::biweight;
+
+  friend std::ostream& operator<<(std::ostream& out, const PhotonFurnace& furnace_settings) {
+    return out << "depth " << furnace_settings.depth << " g " << furnace_settings.g;
+  }
 };
 
 /// A probe of the box's middle: every pixel sees the same.
