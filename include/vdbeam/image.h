@@ -17,6 +17,10 @@ struct ImageChannel {
 struct Image {
   int width = 0;
   int height = 0;
+  /// Where the picture lies in the whole one, for one that was cut out: its top left pixel, and the
+  /// whole one's size (0: it is whole).
+  int x = 0, y = 0;
+  int full_width = 0, full_height = 0;
   std::vector<ImageChannel> channels;
   std::map<std::string, std::string> metadata;       ///< string attributes
   std::map<std::string, double> numbers;             ///< double attributes (report values)

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +24,9 @@ struct PassRecord {
 
 /// Seconds and counts of a render, by stage.
 struct RenderStatistics {
-  double read = 0, build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0,
+  double read = 0;    ///< volumes: file to bricks; 0 where the last frame's were kept
+  double prepare = 0; ///< majorants, lights
+  double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0,
          path = 0, write = 0;
   std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, lookups = 0,
                 camera_rays = 0;
@@ -58,6 +62,25 @@ struct RenderResult {
   RenderPlan plan;
   std::vector<std::string> notes; ///< for the user: repairs, empty grids, choices made
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
+  int resumed_passes = 0;         ///< passes that came from a checkpoint
+};
+
+/// Passes first to last, both included, counted from 0.
+struct PassRange {
+  int first = 0, last = 0;
+};
+
+/// Pixels x0 <= x < x1, y0 <= y < y1.
+struct PixelRegion {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// A file from which a render that was ended goes on, bit for bit (docs/sequences.md).
+struct CheckpointSettings {
+  std::string path;   ///< empty: none is written
+  double seconds = 0; ///< written whenever so much time has gone by; 0: not by time
+  int passes = 0;     ///< written whenever so many passes are done; 0: not by passes
+  bool resume = true; ///< begin with what is in the file, if it is of this scene
 };
 
 /// Hooks of the caller; all optional.
@@ -66,15 +89,50 @@ struct RenderHooks {
   std::function<void(const PassRecord&, const RenderStatistics&)> on_pass;
   /// A line for the user, as soon as it is known.
   std::function<void(const std::string&)> on_note;
-  /// Ends the render after the pass in progress when it becomes true.
+  /// Ends the render soon when it becomes true; the pass in progress is lost.
   const std::atomic<bool>* stop = nullptr;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
   int frame = 1; ///< keys the random numbers
+  /// Renders exactly these passes instead of those of the scene's stop rule.
+  std::optional<PassRange> pass_range;
+  /// Renders only this part; its pixels are those of the whole image.
+  std::optional<PixelRegion> region;
+  /// Where the passes go as a partial image, to be joined with others by merge_partials.
+  std::string partial;
+  /// Written at intervals and when stopped, removed by nobody but the caller.
+  CheckpointSettings checkpoint;
+  /// When it becomes true, it is set to false and on_snapshot gets the image so far.
+  std::atomic<bool>* snapshot = nullptr;
+  std::function<void(RenderResult&)> on_snapshot;
 };
+
+/// A scene's volumes and lights, read and made ready for rendering.
+class PreparedScene;
+using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
+
+/// Reads what `render` needs, and takes over from `previous` (or null) what is the same. May run
+/// while `previous` is rendered. Throws InputError and FrameError.
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous = nullptr);
+
+/// Renders one frame of a scene that is ready. Throws InputError and FrameError.
+RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
+                    const RenderHooks& hooks = {});
 
 /// Renders one frame. Throws InputError and FrameError.
 RenderResult render(const Scene& scene, const RenderHooks& hooks = {});
+
+/// How merge_partials joins.
+struct MergeSettings {
+  bool allow_gaps = false;   ///< join also where passes are missing
+  std::optional<int> passes; ///< passes 0 to passes - 1 must be there, and no others
+  std::string partial;       ///< write the joined passes as a partial image too; empty: no
+};
+
+/// Joins partial images of one scene, frame and region into the image of all their passes, bit for
+/// bit that of an undivided render. Throws InputError for other files, passes that are there twice,
+/// and passes that are missing.
+Image merge_partials(const std::vector<std::string>& paths, const MergeSettings& settings = {});
 
 /// The plan alone, from the scene and the grids' headers; reads no voxels.
 RenderPlan make_plan(const Scene& scene);

@@ -37,6 +37,7 @@ struct PhaseSettings {
 
 struct VolumeSettings {
   std::string file;                ///< path, frame pattern already substituted
+  bool present = true;             ///< false: this frame lies outside its sequence; nothing is there
   std::string density = "density"; ///< grid name
   double extinction = 1;           ///< sigma_t = extinction * extinction_scale * density [1/world]
   Rgb extinction_scale{1, 1, 1};   ///< per-channel factor of the extinction (chromatic media)
@@ -100,6 +101,7 @@ struct Scene {
   std::vector<VolumeSettings> volumes;
   std::vector<LightSettings> lights;
   RenderSettings render;
+  bool black = false;                  ///< a volume's file is missing and the frame is to be black
   std::vector<std::string> notes;      ///< for the user: what load_scene chose or found odd
 };
 

@@ -25,4 +25,7 @@ void validate_scene(const Scene& scene);
 /// cannot be read.
 std::string scene_hash(const Scene& scene);
 
+/// The same without the stop rule (passes, time, target_error): equal where passes may be joined.
+std::string pass_hash(const Scene& scene);
+
 } // namespace vdbeam

@@ -14,6 +14,7 @@ CommandRun add_info(CLI::App& app);
 CommandRun add_init(CLI::App& app);
 CommandRun add_plan(CLI::App& app);
 CommandRun add_compare(CLI::App& app);
+CommandRun add_merge(CLI::App& app);
 
 struct Command {
   const char* name;

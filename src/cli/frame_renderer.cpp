@@ -3,6 +3,7 @@
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "output/output_formats.h"
+#include "render/film_file.h"
 #include "scene/frame_range.h"
 #include "scene/image_metadata.h"
 #include "scene/report.h"
@@ -14,8 +15,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
 namespace vdbeam::cli {
@@ -42,9 +45,8 @@ std::string start_text(const Scene& scene) {
 
 std::string end_text(const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
-  std::string text =
-      fmt::format("{}{}: {} {} in {}", result.stopped_by == "stop" ? "interrupted, " : "", output,
-                  last.pass, last.pass == 1 ? "pass" : "passes", format_duration(last.seconds));
+  std::string text = fmt::format("{}: {} {} in {}", output, last.pass,
+                                 last.pass == 1 ? "pass" : "passes", format_duration(last.seconds));
   if (std::isfinite(last.error_estimate))
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
   if (last.has_reference)
@@ -52,46 +54,173 @@ std::string end_text(const RenderResult& result, const std::string& output) {
   return text + ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
 }
 
-} // namespace
-
-void FrameRenderer::write_files(const Scene& scene, RenderResult& result, int frame) const {
-  const auto begin = std::chrono::steady_clock::now();
-  ReportContext context;
-  context.frame = frame;
-  context.scene_hash = scene_hash(scene);
-  context.output = substitute_frame(files_.output, frame);
-  context.reference = substitute_frame(files_.reference, frame);
-  add_image_metadata(result.image, scene, result, frame, context.scene_hash);
-  write_image(result.image, context.output, {exposure_});
-  if (!files_.preview.empty())
-    write_image(result.image, substitute_frame(files_.preview, frame), {exposure_});
-  result.statistics.write =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (!files_.report.empty())
-    write_json(report_json(scene, result, context), substitute_frame(files_.report, frame));
+std::string stop_text(const RenderResult& result, const std::string& checkpoint) {
+  if (result.passes.empty())
+    return "interrupted before the first pass was finished; nothing is written";
+  return fmt::format("interrupted after {} {}; the same command goes on from {}, which also shows "
+                     "the image so far",
+                     result.passes.back().pass, result.passes.back().pass == 1 ? "pass" : "passes",
+                     checkpoint);
 }
 
-void FrameRenderer::render_frame(const SceneDocument& document, int frame,
-                                 const std::string& title) const {
-  const Scene scene = document.scene_at(frame);
-  Progress progress(title, scene.render, quiet_);
+/// Bars and time left are about the passes that are asked for.
+RenderSettings progress_settings(const Scene& scene, const std::optional<PassRange>& range) {
+  RenderSettings settings = scene.render;
+  if (range) {
+    settings.passes = range->last - range->first + 1;
+    settings.time.reset();
+    settings.target_error.reset();
+  }
+  return settings;
+}
+
+} // namespace
+
+std::string side_file(const std::string& output, const std::string& kind) {
+  std::filesystem::path path(output);
+  return path.replace_extension(kind + ".exr").string();
+}
+
+std::string FrameRenderer::output(int frame) const {
+  return substitute_frame(options_.files.output, frame);
+}
+
+std::string FrameRenderer::checkpoint_path(int frame) const {
+  return side_file(output(frame), "checkpoint");
+}
+
+void FrameRenderer::remove_checkpoint(int frame) const {
+  std::error_code ignored; // a checkpoint that stays does no harm
+  std::filesystem::remove(checkpoint_path(frame), ignored);
+}
+
+std::string FrameRenderer::region_text() const {
+  const auto& r = options_.region;
+  return r ? fmt::format("{},{},{},{}", r->x0, r->y0, r->x1, r->y1) : "";
+}
+
+void FrameRenderer::add_metadata(Image& image, const LoadedFrame& loaded,
+                                 const RenderResult& result) const {
+  add_image_metadata(image, loaded.scene, result, loaded.frame, loaded.hash);
+  if (options_.region)
+    image.metadata["vdbeam:region"] = region_text();
+}
+
+std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
+  const std::string path = output(loaded.frame);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    return "is not there";
+  try {
+    if (options_.pass_range) {
+      const FilmFileInfo info = read_film_info(path);
+      const PassRange range = *options_.pass_range;
+      std::vector<int> wanted(static_cast<std::size_t>(range.last - range.first + 1));
+      std::iota(wanted.begin(), wanted.end(), range.first);
+      if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame ||
+          info.passes != wanted)
+        return "is of another scene, frame or pass range";
+      read_film(path, info); // all of it: the header does not tell a truncated file
+      return "";
+    }
+    const Image image = read_image(path);
+    const auto text = [&](const char* name) {
+      const auto found = image.metadata.find(name);
+      return found == image.metadata.end() ? std::string() : found->second;
+    };
+    const auto marker = image.numbers.find("vdbeam:complete");
+    if (image.width != loaded.scene.image.width || image.height != loaded.scene.image.height)
+      return "has another size";
+    if (marker == image.numbers.end() || marker->second != 1)
+      return "is not marked as finished";
+    if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
+      return "is of another scene";
+    const auto frame = image.numbers.find("vdbeam:frame");
+    return frame != image.numbers.end() && frame->second == loaded.frame ? ""
+                                                                         : "is of another frame";
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+}
+
+void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
+  const FrameFiles& files = options_.files;
+  const auto begin = std::chrono::steady_clock::now();
+  ReportContext context;
+  context.frame = loaded.frame;
+  context.scene_hash = loaded.hash;
+  context.output = output(loaded.frame);
+  context.reference = substitute_frame(files.reference, loaded.frame);
+  const bool complete = result.stopped_by != "stop";
+  if (complete) {
+    add_metadata(result.image, loaded, result);
+    if (!files.preview.empty())
+      write_image(result.image, substitute_frame(files.preview, loaded.frame), {options_.exposure});
+    if (!options_.pass_range) // whose film is written already
+      write_image(result.image, context.output, {options_.exposure});
+    remove_checkpoint(loaded.frame);
+  }
+  result.statistics.write =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!files.report.empty())
+    write_json(report_json(loaded.scene, result, context),
+               substitute_frame(files.report, loaded.frame));
+}
+
+void FrameRenderer::write_black(const LoadedFrame& loaded) const {
+  RenderResult result;
+  result.stopped_by = "missing";
+  Film film(loaded.scene.image.width, loaded.scene.image.height);
+  result.image = film.develop();
+  add_metadata(result.image, loaded, result);
+  write_image(result.image, output(loaded.frame), {options_.exposure});
+  if (!options_.files.preview.empty())
+    write_image(result.image, substitute_frame(options_.files.preview, loaded.frame),
+                {options_.exposure});
+}
+
+bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,
+                                 FarmProgress& farm, std::size_t index) const {
+  const Scene& scene = loaded.scene;
+  const RenderSettings settings = progress_settings(scene, options_.pass_range);
+  Progress progress(title, settings, options_.quiet);
   std::optional<Image> reference;
-  if (!files_.reference.empty())
-    reference = read_reference(substitute_frame(files_.reference, frame), scene.image);
+  if (!options_.files.reference.empty())
+    reference =
+        read_reference(substitute_frame(options_.files.reference, loaded.frame), scene.image);
   progress.start(start_text(scene));
   for (const std::string& note : scene.notes)
     progress.note(note);
   RenderHooks hooks;
-  hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) { progress.pass(record); };
+  hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
+    progress.pass(record);
+    farm.frame_at(index, Progress::fraction(record, settings));
+  };
   hooks.on_note = [&](const std::string& note) { progress.note(note); };
   hooks.stop = &stop_requested();
   hooks.reference = reference ? &*reference : nullptr;
-  hooks.frame = frame;
-  RenderResult result = render(scene, hooks);
-  if (result.passes.empty())
-    throw FrameError(fmt::format("{}: no pass was finished; nothing is written", scene.path));
-  write_files(scene, result, frame);
-  progress.finish(end_text(result, substitute_frame(files_.output, frame)));
+  hooks.frame = loaded.frame;
+  hooks.pass_range = options_.pass_range;
+  hooks.region = options_.region;
+  if (options_.pass_range)
+    hooks.partial = output(loaded.frame);
+  hooks.checkpoint = options_.checkpoint;
+  hooks.checkpoint.path = checkpoint_path(loaded.frame);
+  hooks.snapshot = &snapshot_requested();
+  hooks.on_snapshot = [&](RenderResult& so_far) {
+    const std::string path = side_file(output(loaded.frame), "snapshot");
+    add_image_metadata(so_far.image, scene, so_far, loaded.frame, loaded.hash);
+    so_far.image.numbers.erase("vdbeam:complete");
+    write_exr(so_far.image, path);
+    progress.note(fmt::format("{}: the image after {} passes", path, so_far.passes.back().pass));
+  };
+  RenderResult result = render(scene, loaded.prepared, hooks);
+  const bool complete = result.stopped_by != "stop";
+  if (!result.passes.empty())
+    write_files(loaded, result);
+  progress.finish(complete ? end_text(result, output(loaded.frame))
+                           : stop_text(result, hooks.checkpoint.path));
+  return complete;
 }
 
 } // namespace vdbeam::cli

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "cli/progress.h"
 #include "scene/scene_document.h"
 #include "vdbeam/render.h"
 
+#include <optional>
 #include <string>
 
 namespace vdbeam::cli {
@@ -13,22 +15,55 @@ struct FrameFiles {
   std::string output, preview, report, reference;
 };
 
+/// How frames are rendered and written.
+struct FrameOptions {
+  FrameFiles files;
+  double exposure = 0;
+  bool quiet = false;
+  std::optional<PassRange> pass_range; ///< the output is a partial image of these passes
+  std::optional<PixelRegion> region;
+  CheckpointSettings checkpoint; ///< without its path
+};
+
+/// A frame that is ready to be rendered.
+struct LoadedFrame {
+  int frame = 1;
+  Scene scene;
+  std::string hash; ///< of the scene
+  PreparedScenePtr prepared;
+};
+
+/// "out.0007.exr" gives "out.0007.checkpoint.exr": beside the image, for any kind of output.
+std::string side_file(const std::string& output, const std::string& kind);
+
 /// Renders one frame after the other to files.
 class FrameRenderer {
 public:
-  FrameRenderer(FrameFiles files, double exposure, bool quiet)
-      : files_(std::move(files)), exposure_(exposure), quiet_(quiet) {}
+  explicit FrameRenderer(FrameOptions options) : options_(std::move(options)) {}
 
-  /// Renders, with progress on stderr, until the scene's limit or a signal ends it, and writes what
-  /// there is. Throws InputError and FrameError.
-  void render_frame(const SceneDocument& document, int frame, const std::string& title) const;
+  /// Renders, with progress on stderr, until the scene's limit or a signal ends it. The image is
+  /// written only when it is complete, else a checkpoint. False where a signal ended it. Throws
+  /// InputError and FrameError. `index` is the frame's place in the batch.
+  bool render_frame(const LoadedFrame& loaded, const std::string& title, FarmProgress& farm,
+                    std::size_t index) const;
+
+  /// Writes what stands for a frame whose volume is missing: black, without opacity.
+  void write_black(const LoadedFrame& loaded) const;
+
+  /// Why the frame's image on disk is not the finished one of this scene; empty where it is.
+  std::string why_unfinished(const LoadedFrame& loaded) const;
+
+  /// Removes the frame's checkpoint, which a finished image has outlived.
+  void remove_checkpoint(int frame) const;
 
 private:
-  void write_files(const Scene& scene, RenderResult& result, int frame) const;
+  std::string output(int frame) const;
+  std::string checkpoint_path(int frame) const;
+  std::string region_text() const;
+  void write_files(const LoadedFrame& loaded, RenderResult& result) const;
+  void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 
-  FrameFiles files_;
-  double exposure_;
-  bool quiet_;
+  FrameOptions options_;
 };
 
 } // namespace vdbeam::cli

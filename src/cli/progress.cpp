@@ -16,6 +16,34 @@ constexpr std::chrono::milliseconds redraw_interval{100};
 
 } // namespace
 
+void FarmProgress::frame_at(std::size_t index, double done) {
+  const double percent = 100 * (static_cast<double>(index) + std::clamp(done, 0.0, 1.0)) /
+                         static_cast<double>(frames_);
+  constexpr double step = 0.1; // finer than anybody reads
+  if (format_ == FarmFormat::plain || percent < last_ + step)
+    return;
+  last_ = percent;
+  if (format_ == FarmFormat::openjd)
+    fmt::print("openjd_progress: {:.1f}\n", percent);
+  else
+    fmt::print("ALF_PROGRESS {:.0f}%\n", std::floor(percent));
+  std::fflush(stdout);
+}
+
+void FarmProgress::status(const std::string& text) const {
+  if (format_ != FarmFormat::openjd)
+    return;
+  fmt::print("openjd_status: {}\n", text);
+  std::fflush(stdout);
+}
+
+void FarmProgress::failure(const std::string& text) const {
+  if (format_ != FarmFormat::openjd)
+    return;
+  fmt::print("openjd_fail: {}\n", text);
+  std::fflush(stdout);
+}
+
 Progress::Progress(std::string title, const RenderSettings& settings, bool quiet)
     : title_(std::move(title)), settings_(settings), quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0) {}

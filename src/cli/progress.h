@@ -7,6 +7,27 @@
 
 namespace vdbeam::cli {
 
+/// What a farm engine parses on stdout.
+enum class FarmFormat { plain, openjd, alf };
+
+/// Prints how far a whole batch is, in one engine's words, each line flushed:
+/// `openjd_progress: 42.5` (Open Job Description 2023-09) or `ALF_PROGRESS 42%` (Tractor,
+/// Deadline); nothing for plain.
+class FarmProgress {
+public:
+  FarmProgress(FarmFormat format, std::size_t frames) : format_(format), frames_(frames) {}
+
+  /// `done` of the frame at `index` of the batch, in [0, 1].
+  void frame_at(std::size_t index, double done);
+  void status(const std::string& text) const;
+  void failure(const std::string& text) const;
+
+private:
+  FarmFormat format_;
+  std::size_t frames_;
+  double last_ = -1; ///< percent
+};
+
 /// Tells on stderr how a frame comes along: a bar on a terminal; elsewhere a line at the start, one
 /// at the end, and at most one in ten seconds between them, each flushed.
 class Progress {

@@ -1,5 +1,6 @@
+#include "cli/batch.h"
+#include "cli/batch_values.h"
 #include "cli/commands.h"
-#include "cli/frame_renderer.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
@@ -11,6 +12,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -22,14 +24,15 @@ const char* const examples = R"(Examples:
   vdbeam render cloud.toml -o out.exr --time 60s --preview out.png
   vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12, -5--1
   vdbeam render cloud.toml --target-error 0.001 --set volume.0.extinction=80
+  vdbeam render smoke.toml -f 1-240 -o smoke.####.exr --skip-existing --checkpoint 5m
+  vdbeam render cloud.toml --pass-range 0-31 -o part0.exr
   vdbeam render cloud.toml --reference ref.exr --report report.json)";
 
 struct RenderOptions {
   SceneOptions scene;
-  FrameFiles files;
-  std::string frames;
-  double exposure = 0;
-  bool quiet = false;
+  BatchOptions batch;
+  std::string frames, pass_range, region, checkpoint;
+  bool no_resume = false, overwrite = false;
 };
 
 /// "cloud.toml" gives "cloud.exr"; several frames get a place for their number.
@@ -54,45 +57,115 @@ std::vector<int> choose_frames(const RenderOptions& options, const SceneDocument
                   options.scene.path(), there.empty() ? "1-24" : format_frame_range(there))));
 }
 
+void check_options(const RenderOptions& options) {
+  const FrameOptions& frame = options.batch.frame;
+  const bool exr = output_format(frame.files.output).extension == ".exr";
+  if (!exr && frame.pass_range)
+    throw InputError(one_line("-o " + frame.files.output + ": a partial image must be an .exr"));
+  if (!exr && options.batch.skip_existing)
+    throw InputError(one_line("-o " + frame.files.output +
+                              ": --skip-existing needs an .exr; other files do not tell what "
+                              "they show"));
+  if (frame.region && !frame.files.reference.empty())
+    throw InputError("--reference: excludes --region");
+  if (frame.pass_range && options.batch.missing == MissingFile::black)
+    throw InputError("--missing black: excludes --pass-range");
+}
+
+/// Refuses what is wrong with every frame. What only some of them lack is told when their turn
+/// comes, so that the others are rendered.
+void check_scenes(const RenderOptions& options, const SceneDocument& document,
+                  const std::vector<int>& frames) {
+  std::optional<InputError> first;
+  for (const int frame : frames) {
+    try {
+      document.scene_at(frame, options.batch.missing);
+      return;
+    } catch (const InputError& error) {
+      if (!first)
+        first = error;
+    }
+  }
+  throw *first;
+}
+
 /// Everything that can be known to fail is refused before the first frame costs time.
 void check_before_rendering(const RenderOptions& options, const SceneDocument& document,
                             const std::vector<int>& frames) {
-  check_output_path("-o", options.files.output, frames);
-  output_format(options.files.output);
-  check_output_path("--preview", options.files.preview, frames);
-  if (!options.files.preview.empty())
-    output_format(options.files.preview);
-  check_output_path("--report", options.files.report, frames);
-  for (const int frame : frames)
-    document.scene_at(frame);
+  check_output_path("-o", options.batch.frame.files.output, frames);
+  output_format(options.batch.frame.files.output);
+  check_output_path("--preview", options.batch.frame.files.preview, frames);
+  if (!options.batch.frame.files.preview.empty())
+    output_format(options.batch.frame.files.preview);
+  check_output_path("--report", options.batch.frame.files.report, frames);
+  check_output_path("--summary", options.batch.summary, {frames.front()});
+  check_options(options);
+  check_scenes(options, document, frames);
 }
 
-/// Renders all frames. A failed frame does not stop the others; the first failure's code is
-/// returned.
+/// Renders all frames.
 int run_render(RenderOptions& options) {
   const SceneDocument document = options.scene.open();
   const std::vector<int> frames = choose_frames(options, document);
-  if (options.files.output.empty())
-    options.files.output = default_output(options.scene.path(), frames.size() > 1);
+  FrameOptions& frame = options.batch.frame;
+  if (frame.files.output.empty())
+    frame.files.output = default_output(options.scene.path(), frames.size() > 1);
+  if (!options.pass_range.empty())
+    frame.pass_range = parse_pass_range(options.pass_range);
+  if (!options.region.empty())
+    frame.region = parse_region(options.region);
+  if (!options.checkpoint.empty())
+    frame.checkpoint = parse_checkpoint(options.checkpoint);
+  frame.checkpoint.resume = !options.no_resume;
+  if (options.overwrite)
+    options.batch.skip_existing = false;
   check_before_rendering(options, document, frames);
   handle_signals();
-  const FrameRenderer renderer(options.files, options.exposure, options.quiet);
-  int code = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const std::string title =
-        frames.size() == 1 ? "" : fmt::format("frame {} ({}/{})", frames[i], i + 1, frames.size());
-    try {
-      renderer.render_frame(document, frames[i], title);
-    } catch (const Error& error) {
-      if (frames.size() == 1)
-        throw;
-      fmt::print(stderr, "{}: {}\n", title, error.what());
-      code = code == 0 ? static_cast<int>(error.code()) : code;
-    }
-    if (stop_requested())
-      return signal_exit_code();
-  }
-  return code;
+  return Batch(document, options.scene.path(), frames, options.batch).run();
+}
+
+template <class E>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, E& target,
+                        const std::map<std::string, E>& choices, const std::string& description) {
+  std::string words;
+  for (const auto& [word, value] : choices)
+    words += (words.empty() ? "" : "|") + word;
+  return app
+      .add_option_function<std::string>(
+          name, [&target, choices](const std::string& word) { target = choices.at(word); },
+          description)
+      ->check(CLI::IsMember(choices))
+      ->option_text(words);
+}
+
+void add_batch_options(CLI::App& app, RenderOptions& options) {
+  BatchOptions& batch = options.batch;
+  app.add_option("--pass-range", options.pass_range,
+                 "Render these passes, from 0, into a partial EXR for vdbeam merge")
+      ->option_text("A-B");
+  app.add_option("--region", options.region,
+                 "Render only the pixels from x0,y0 up to but without x1,y1")
+      ->option_text("X0,Y0,X1,Y1");
+  app.add_option("--checkpoint", options.checkpoint,
+                 "Save the passes so far every so often: 300s, 5m, or a number of passes")
+      ->option_text("T|N");
+  app.add_flag("--no-resume", options.no_resume, "Do not go on from a checkpoint");
+  auto* skip = app.add_flag("--skip-existing", batch.skip_existing,
+                            "Leave frames alone whose finished image of this scene is there");
+  app.add_flag("--overwrite", options.overwrite, "Render all frames, whatever --skip-existing says")
+      ->needs(skip);
+  add_choice<bool>(app, "--on-error", batch.stop_on_error, {{"continue", false}, {"stop", true}},
+                   "What a failed frame does to the others; default: continue");
+  add_choice<MissingFile>(
+      app, "--missing", batch.missing,
+      {{"error", MissingFile::error}, {"black", MissingFile::black}, {"hold", MissingFile::hold}},
+      "A frame without its volume fails, is black, or shows the one before");
+  app.add_option("--summary", batch.summary, "Write what became of the frames as JSON")
+      ->option_text("FILE.json");
+  add_choice<FarmFormat>(
+      app, "--progress", batch.farm,
+      {{"plain", FarmFormat::plain}, {"openjd", FarmFormat::openjd}, {"alf", FarmFormat::alf}},
+      "Progress on stdout as farm engines parse it");
 }
 
 } // namespace
@@ -100,21 +173,23 @@ int run_render(RenderOptions& options) {
 CommandRun add_render(CLI::App& app) {
   const auto options = std::make_shared<RenderOptions>();
   options->scene.declare(app);
-  app.add_option("-o,--output", options->files.output,
+  app.add_option("-o,--output", options->batch.frame.files.output,
                  "Image to write: .exr or .png; default: the scene's name, .exr, here")
       ->option_text("FILE");
   app.add_option("-f,--frames", options->frames, "Frames: 7, 1-24, 1-100x2, 1,5,9-12")
       ->option_text("RANGE");
-  app.add_option("--preview", options->files.preview, "Also write an 8-bit sRGB picture")
+  app.add_option("--preview", options->batch.frame.files.preview,
+                 "Also write an 8-bit sRGB picture")
       ->option_text("FILE.png");
-  app.add_option("--exposure", options->exposure, "Stops that brighten the preview")
+  app.add_option("--exposure", options->batch.frame.exposure, "Stops that brighten the preview")
       ->option_text("STOPS");
-  app.add_option("--reference", options->files.reference,
+  app.add_option("--reference", options->batch.frame.files.reference,
                  "The true image: errors against it go to the report")
       ->option_text("FILE.exr");
-  app.add_option("--report", options->files.report, "Write a JSON report")
+  app.add_option("--report", options->batch.frame.files.report, "Write a JSON report")
       ->option_text("FILE.json");
-  app.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  app.add_flag("-q,--quiet", options->batch.frame.quiet, "Say nothing but errors");
+  add_batch_options(app, *options);
   app.footer(examples);
   return [options] { return run_render(*options); };
 }

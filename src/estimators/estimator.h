@@ -1,9 +1,11 @@
 #pragma once
 
 #include "estimators/pass_image.h"
+#include "estimators/pixel_window.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 
+#include <atomic>
 #include <memory>
 
 namespace vdbeam {
@@ -14,7 +16,8 @@ class Estimator {
 public:
   virtual ~Estimator() = default;
 
-  /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`.
+  /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`. Where the
+  /// input's `stop` became true meanwhile, the image is unfinished and must be dropped.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 };
 
@@ -23,6 +26,11 @@ struct EstimatorInput {
   const World& world;
   const Camera& camera;
   std::uint64_t frame = 1;
+  /// Pixels that are wanted; empty: all. Others may stay black.
+  PixelWindow window = {};
+  const std::atomic<bool>* stop = nullptr; ///< becomes true when the pass is to be abandoned
+
+  bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 
 /// The table of estimators: what `render.estimator` names.

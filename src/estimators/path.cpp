@@ -116,7 +116,7 @@ void PathEstimator::turn(State& state, const PhaseFunction& phase, Rng& rng) con
 /// The walk after the first scattering, until it leaves or ends.
 void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
   const World& world = input_.world;
-  while (true) {
+  while (!input_.stopped()) {
     const Collision hit = next_scattering(world.medium, state.ray, state.throughput, rng);
     if (hit.volume == nullptr) {
       (state.bounces == 1 ? out.direct : out.indirect) += escape(state);
@@ -166,7 +166,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const RngKey key{input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
   image.resize(camera.width(), camera.height());
   tbb::enumerable_thread_specific<DepthProfile> profiles;
-  for_each_tile(camera.width(), camera.height(), [&](int x0, int y0, int x1, int y1) {
+  for_each_tile(input_, [&](int x0, int y0, int x1, int y1) {
     DepthProfile& profile = profiles.local();
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {

@@ -96,6 +96,7 @@ PhotonPassSettings PhotonStage::pass_settings(std::uint64_t pass) const {
   if (common_albedo_ && settings.store == PhotonStore::fluence)
     settings.factor = world.medium.volumes[0].albedo;
   settings.key = {world.settings.seed, input_.frame, pass};
+  settings.stop = input_.stop;
   return settings;
 }
 
@@ -138,6 +139,8 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   PhotonPass photons = trace_photons(world, pass_settings(static_cast<std::uint64_t>(pass)));
   statistics.trace +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (input_.stopped())
+    photons = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += paths_;
   map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii(pass),
                           world.settings.kernel_shape);

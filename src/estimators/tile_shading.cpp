@@ -34,7 +34,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
                                            stage.sampled_lights(), stage.direct_samples(), rng);
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;
-  for_each_tile(camera.width(), camera.height(), [&](int x0, int y0, int, int) {
+  for_each_tile(input, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
     const Clock::time_point start = Clock::now();
     scratch.rays.prepare(world, camera, key, x0, y0);

@@ -137,6 +137,31 @@ void Film::merge(const Film& other) {
   invalid_values_ += other.invalid_values_;
 }
 
+std::vector<FilmPlane> Film::planes() {
+  std::vector<FilmPlane> planes;
+  const auto add = [&](const std::string& name, CompensatedSums& sums, std::size_t stride,
+                       std::size_t channel) {
+    planes.push_back({name + ".sum", sums.high_data() + channel, stride});
+    planes.push_back({name + ".rest", sums.low_data() + channel, stride});
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string channel(1, "RGB"[c]);
+    add("direct." + channel, direct_, 3, c);
+    add("indirect." + channel, indirect_, 3, c);
+    add("background." + channel, background_, 3, c);
+    planes.push_back({"squares." + channel, squares_.data() + c, 3});
+  }
+  add("opacity", opacity_, 1, 0);
+  add("depth", depth_, 1, 0);
+  planes.push_back({"depth_passes", depth_passes_.data(), 1});
+  return planes;
+}
+
+void Film::set_counts(int passes, std::uint64_t invalid_values) {
+  passes_ = passes;
+  invalid_values_ = invalid_values;
+}
+
 Image Film::develop() const {
   Image image;
   image.width = width_;

@@ -4,6 +4,8 @@
 #include "vdbeam/image.h"
 
 #include <cstdint>
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace vdbeam {
@@ -20,10 +22,20 @@ public:
   void merge(std::size_t i, const CompensatedSums& other);
   double high(std::size_t i) const { return high_[i]; }
   float low(std::size_t i) const { return low_[i]; }
+  double* high_data() { return high_.data(); }
+  float* low_data() { return low_.data(); }
 
 private:
   std::vector<double> high_;
   std::vector<float> low_;
+};
+
+/// Numbers of a film, one per pixel: `values` is the first pixel's, `stride` numbers lie between
+/// two pixels.
+struct FilmPlane {
+  std::string name; ///< "direct.R.sum", "depth.rest", ...
+  std::variant<double*, float*, std::uint32_t*> values;
+  std::size_t stride;
 };
 
 /// The mean of passes. It holds 160 bytes per pixel (1.3 GB at 3840 x 2160) whatever the number of
@@ -40,10 +52,17 @@ public:
   /// Adds the passes of another film of the same size (std::invalid_argument).
   void merge(const Film& other);
 
+  int width() const { return width_; }
+  int height() const { return height_; }
   int passes() const { return passes_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
   static constexpr std::size_t bytes_per_pixel() { return 160; }
+
+  /// Everything that a film holds per pixel, always in the same order: with these and the two
+  /// counts stored and put back, it goes on bit for bit.
+  std::vector<FilmPlane> planes();
+  void set_counts(int passes, std::uint64_t invalid_values);
 
   /// R, G, B: direct + indirect + background; A: the mean opacity; and the AOVs volume.* (direct +
   /// indirect), volume_direct.*, volume_indirect.* (half), volume_opacity and volume_Z (float).

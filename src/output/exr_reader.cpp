@@ -1,3 +1,4 @@
+#include "output/exr_stream.h"
 #include "output/image_readers.h"
 #include "vdbeam/error.h"
 
@@ -21,19 +22,7 @@
 #include <fstream>
 
 namespace vdbeam {
-namespace {
 
-using Box = Imath::Box2i;
-
-std::int64_t box_width(const Box& box) {
-  return std::int64_t{box.max.x} - box.min.x + 1;
-}
-std::int64_t box_height(const Box& box) {
-  return std::int64_t{box.max.y} - box.min.y + 1;
-}
-
-/// Throws where an attribute of the first header is longer than the file: OpenEXR would allocate
-/// the memory before it finds the file too short.
 void check_attribute_sizes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::uint64_t file_size = std::filesystem::file_size(path);
@@ -65,6 +54,17 @@ void copy_attributes(const Imf::Header& header, Image& image) {
     else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute))
       image.matrices[it.name()].assign(matrix->value().getValue(), matrix->value().getValue() + 16);
   }
+}
+
+namespace {
+
+using Box = Imath::Box2i;
+
+std::int64_t box_width(const Box& box) {
+  return std::int64_t{box.max.x} - box.min.x + 1;
+}
+std::int64_t box_height(const Box& box) {
+  return std::int64_t{box.max.y} - box.min.y + 1;
 }
 
 void check_size(const Box& box, std::size_t channels, const char* window, const std::string& path) {

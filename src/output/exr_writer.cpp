@@ -1,4 +1,4 @@
-#include "output/atomic_file.h"
+#include "output/exr_stream.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
@@ -21,19 +21,6 @@
 namespace vdbeam {
 namespace {
 
-class AtomicStream : public Imf::OStream {
-public:
-  explicit AtomicStream(AtomicFile& file) : OStream(file.path().c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    file_.write(bytes, static_cast<std::size_t>(count));
-  }
-  std::uint64_t tellp() override { return file_.position(); }
-  void seekp(std::uint64_t position) override { file_.seek(position); }
-
-private:
-  AtomicFile& file_;
-};
-
 void check_image(const Image& image, const std::string& path) {
   const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
   if (image.width <= 0 || image.height <= 0 || image.channels.empty())
@@ -53,7 +40,16 @@ bool fits_half(const ImageChannel& channel) {
   return true;
 }
 
-void add_attributes(const Image& image, const std::string& path, Imf::Header& header) {
+} // namespace
+
+Imf::Header exr_header(const Image& image, const std::string& path) {
+  const Imath::Box2i data({image.x, image.y},
+                          {image.x + image.width - 1, image.y + image.height - 1});
+  const Imath::Box2i display =
+      image.full_width > 0 ? Imath::Box2i({0, 0}, {image.full_width - 1, image.full_height - 1})
+                           : data;
+  Imf::Header header(display, data);
+  header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709, D65
   for (const auto& [name, text] : image.metadata)
     header.insert(name, Imf::StringAttribute(text));
@@ -72,7 +68,10 @@ void add_attributes(const Image& image, const std::string& path, Imf::Header& he
       matrix[i / 4][i % 4] = values[static_cast<std::size_t>(i)];
     header.insert(name, Imf::M44fAttribute(matrix));
   }
+  return header;
 }
+
+namespace {
 
 /// A channel as the file stores it. `halves` stays empty for a float channel.
 struct StoredChannel {
@@ -90,27 +89,24 @@ StoredChannel store_channel(const ImageChannel& channel) {
   return stored;
 }
 
-Imf::Slice make_slice(const StoredChannel& channel, int width) {
+Imf::Slice make_slice(const StoredChannel& channel, const Imath::Box2i& window) {
   // OpenEXR only reads from the slices of an output file, yet asks for char*.
   const bool is_half = !channel.halves.empty();
-  const void* base = is_half ? static_cast<const void*>(channel.halves.data())
+  const void* data = is_half ? static_cast<const void*>(channel.halves.data())
                              : static_cast<const void*>(channel.source->data.data());
   const std::size_t size = is_half ? sizeof(half) : sizeof(float);
-  return Imf::Slice(is_half ? Imf::HALF : Imf::FLOAT, static_cast<char*>(const_cast<void*>(base)),
-                    size, size * static_cast<std::size_t>(width));
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  return Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, data, window, size, size * width);
 }
 
 void write_channels(const Image& image, AtomicFile& file) {
-  Imf::Header header(image.width, image.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
-  add_attributes(image, file.path(), header);
-
+  Imf::Header header = exr_header(image, file.path());
   std::vector<StoredChannel> stored(image.channels.size());
   tbb::parallel_for(std::size_t{0}, stored.size(),
                     [&](std::size_t i) { stored[i] = store_channel(image.channels[i]); });
   Imf::FrameBuffer pixels;
   for (const StoredChannel& channel : stored) {
-    const Imf::Slice slice = make_slice(channel, image.width);
+    const Imf::Slice slice = make_slice(channel, header.dataWindow());
     header.channels().insert(channel.source->name, Imf::Channel(slice.type));
     pixels.insert(channel.source->name, slice);
   }

@@ -130,7 +130,11 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
 RenderPlan make_plan(const Scene& scene) {
   std::vector<VolumeFacts> facts;
   for (const VolumeSettings& volume : scene.volumes) {
-    VolumeFacts fact;
+    VolumeFacts fact{true, 0};
+    if (!volume.present) {
+      facts.push_back(fact);
+      continue;
+    }
     for (const GridSummary& grid : summarize_vdb(volume.file))
       if (grid.name == volume.density)
         fact = {grid.active_voxels == 0, grid.active_voxels};

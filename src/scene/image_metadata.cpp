@@ -69,6 +69,8 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:estimator"] = enum_name(scene.render.estimator);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   image.numbers["vdbeam:frame"] = frame;
+  if (result.stopped_by != "stop")
+    image.numbers["vdbeam:complete"] = 1; // what --skip-existing looks for
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   if (!result.passes.empty()) {
     const PassRecord& last = result.passes.back();

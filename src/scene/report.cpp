@@ -2,6 +2,7 @@
 
 #include "output/atomic_file.h"
 #include "scene/scene_keys.h"
+#include "scene/threads.h"
 #include "scene/versions.h"
 
 #include <cmath>
@@ -56,24 +57,18 @@ Json passes_json(const RenderResult& result) {
 
 Json seconds_json(const RenderResult& result) {
   const RenderStatistics& s = result.statistics;
-  return {{"read", s.read},
-          {"build", s.build},
-          {"trace", s.trace},
-          {"order", s.order},
-          {"radii", s.radii},
-          {"query", s.query},
-          {"profile", s.profile},
-          {"direct", s.direct},
-          {"path", s.path},
-          {"write", s.write},
-          {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
+  return {
+      {"read", s.read},     {"prepare", s.prepare},
+      {"build", s.build},   {"trace", s.trace},
+      {"order", s.order},   {"radii", s.radii},
+      {"query", s.query},   {"profile", s.profile},
+      {"direct", s.direct}, {"path", s.path},
+      {"write", s.write},   {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
 }
 
 Json machine_json(const Scene& scene) {
   const int cores = tbb::info::default_concurrency();
-  return {{"cpu", cpu_model()},
-          {"cores", cores},
-          {"threads", scene.render.threads > 0 ? scene.render.threads : cores}};
+  return {{"cpu", cpu_model()}, {"cores", cores}, {"threads", thread_count(scene.render)}};
 }
 
 } // namespace
@@ -135,6 +130,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"lookups", statistics.lookups},
                       {"camera_rays", statistics.camera_rays}};
   report["stopped_by"] = result.stopped_by;
+  report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);
   return report;
 }

@@ -117,9 +117,9 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
     apply_override(root_, entry);
 }
 
-Scene SceneDocument::scene_at(int frame) const {
-  Scene scene = SceneReader(path_, folder_, frame).read(root_);
-  scene.notes = notes_;
+Scene SceneDocument::scene_at(int frame, MissingFile missing) const {
+  Scene scene = SceneReader(path_, folder_, frame, missing).read(root_);
+  scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
   constexpr int usual_passes = 64;
   if (!scene.render.passes && !scene.render.time && !scene.render.target_error)
     scene.render.passes = usual_passes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scene/overrides.h"
+#include "scene/scene_reader.h"
 #include "vdbeam/scene.h"
 
 #include <filesystem>
@@ -18,7 +19,7 @@ public:
   SceneDocument(const std::string& path, const std::vector<Override>& overrides);
 
   /// Throws InputError as load_scene.
-  Scene scene_at(int frame) const;
+  Scene scene_at(int frame, MissingFile missing = MissingFile::error) const;
 
   /// Where a path holds a frame number's place.
   bool has_frame_pattern() const;

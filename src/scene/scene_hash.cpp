@@ -27,23 +27,40 @@ void add(ContentHash& hash, const KeyValue& value) {
       hash.add_number(std::bit_cast<std::uint64_t>(x + 0.0)); // -0 is 0
 }
 
-} // namespace
+bool is_stop_rule(const SceneKey& key) {
+  return key.section == SceneSection::render &&
+         (key.name == "passes" || key.name == "time" || key.name == "target_error");
+}
 
-std::string scene_hash(const Scene& scene) {
+std::string hash_scene(const Scene& scene, bool with_stop_rule) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {
-    if (!key.get || !key.changes_picture)
+    if (!key.get || !key.changes_picture || (!with_stop_rule && is_stop_rule(key)))
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
       add(hash, key_path(key, i));
       const KeyValue value = key.get(scene, i);
-      if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
+      const bool absent =
+          key.section == SceneSection::volume && !scene.volumes[i].present; // and so is its file
+      if (absent)
+        hash.add_number(0);
+      else if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
         hash.add_number(hash_file(std::get<std::string>(value)));
       else
         add(hash, value);
     }
   }
   return fmt::format("{:016x}", hash.value());
+}
+
+} // namespace
+
+std::string scene_hash(const Scene& scene) {
+  return hash_scene(scene, true);
+}
+
+std::string pass_hash(const Scene& scene) {
+  return hash_scene(scene, false);
 }
 
 } // namespace vdbeam

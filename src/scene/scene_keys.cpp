@@ -157,7 +157,7 @@ std::vector<std::string> key_names(SceneSection section) {
     if (key.section == section)
       names.push_back(key.name);
   if (section == SceneSection::volume)
-    names.emplace_back("phase");
+    names.insert(names.end(), {"phase", "time"});
   return names;
 }
 

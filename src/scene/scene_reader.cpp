@@ -1,5 +1,6 @@
 #include "scene/scene_reader.h"
 
+#include "scene/animation.h"
 #include "scene/frame_range.h"
 #include "scene/text.h"
 #include "scene/toml_value.h"
@@ -114,12 +115,19 @@ void SceneReader::read_list(SceneSection section, const toml::node& node) {
 
 void SceneReader::read_table(SceneSection section, std::size_t index, const toml::table& table) {
   placement_.clear();
+  if (section == SceneSection::volume) {
+    time_.reset();
+    if (const toml::node* node = table.get("time"))
+      time_ = read_volume_time(*node, fmt::format("volume.{}.time", index), frame_);
+  }
   for (const Child& child : children_of(table)) {
     const SceneKey* key = find_key(section, child.name);
     if (key)
       read_key(*key, index, *child.node);
     else if (section == SceneSection::volume && child.name == "phase")
       read_phase(index, *child.node);
+    else if (section == SceneSection::volume && child.name == "time")
+      continue; // read before, since the file depends on it
     else
       fail_unknown(section, index, child.name, *child.node);
   }
@@ -146,33 +154,64 @@ void SceneReader::read_phase(std::size_t index, const toml::node& node) {
 
 void SceneReader::read_key(const SceneKey& key, std::size_t index, const toml::node& node) {
   const std::string path = key_path(key, index);
-  KeyValue value = read_key_value(key, path, node);
+  KeyValue value = read_value_at(key, path, node, frame_);
   locations_[path] = location_of(node);
   if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
-    value = resolve_file(std::get<std::string>(value), path, node);
+    value = resolve_file(key, index, std::get<std::string>(value), node);
   if (key.set)
     key.set(scene_, index, value);
   else
     placement_[key.name] = std::get<std::vector<double>>(value);
 }
 
-std::string SceneReader::resolve_file(const std::string& text, const std::string& key,
-                                      const toml::node& node) {
+std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
+                                      const std::string& text, const toml::node& node) {
   namespace fs = std::filesystem;
   // A path typed in a shell is relative to where it was typed.
-  const fs::path pattern = is_override(node) ? fs::path(text) : folder_ / text;
-  std::string file = substitute_frame(pattern.string(), frame_);
+  const std::string pattern = (is_override(node) ? fs::path(text) : folder_ / text).string();
+  int number = frame_;
+  if (key.section == SceneSection::volume && time_ && has_frame_pattern(pattern)) {
+    const auto mapped = time_->file_frame(frame_, frames_on_disk(pattern));
+    if (!mapped) {
+      scene_.volumes[index].present = false;
+      return pattern;
+    }
+    number = *mapped;
+  }
+  std::string file = substitute_frame(pattern, number);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_directory(status))
     return file;
-  std::string hint;
+  const std::string path = key_path(key, index);
   if (fs::is_directory(status))
-    hint = ", which is a folder";
-  else if (const auto frames = frames_on_disk(pattern.string()); !frames.empty())
-    hint = "; there are frames " + format_frame_range(frames);
-  throw InputError(
-      one_line(fmt::format("{}: {}: there is no file {}{}", location_of(node), key, file, hint)));
+    throw InputError(one_line(fmt::format("{}: {}: there is no file {}, which is a folder",
+                                          location_of(node), path, file)));
+  if (key.section == SceneSection::volume && missing_ == MissingFile::black &&
+      has_frame_pattern(pattern)) {
+    scene_.black = true;
+    scene_.volumes[index].present = false;
+    return file;
+  }
+  return resolve_missing(path, pattern, number, node);
+}
+
+/// What stands for a file that is not there.
+std::string SceneReader::resolve_missing(const std::string& key, const std::string& pattern,
+                                         int number, const toml::node& node) {
+  const std::string file = substitute_frame(pattern, number);
+  const std::vector<int> frames = frames_on_disk(pattern);
+  if (missing_ != MissingFile::hold || frames.empty())
+    throw InputError(one_line(
+        fmt::format("{}: {}: there is no file {}{}", location_of(node), key, file,
+                    frames.empty() ? "" : "; there are frames " + format_frame_range(frames))));
+  int held = frames.front();
+  for (const int frame : frames)
+    if (frame <= number)
+      held = frame;
+  scene_.notes.push_back(
+      one_line(fmt::format("{}: there is no file {}; frame {} is shown", key, file, held)));
+  return substitute_frame(pattern, held);
 }
 
 void SceneReader::check_required(SceneSection section, std::size_t index,

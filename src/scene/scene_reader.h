@@ -2,6 +2,7 @@
 
 #include "scene/scene_keys.h"
 #include "scene/validate.h"
+#include "scene/volume_time.h"
 
 #include <filesystem>
 #include <map>
@@ -10,12 +11,17 @@
 
 namespace vdbeam {
 
+/// What becomes of a frame for which a file of a sequence is not there: it fails, it is black, or
+/// it shows the nearest earlier file (the first where there is none).
+enum class MissingFile { error, black, hold };
+
 /// Turns the tree of a scene file into a scene, for one frame.
 class SceneReader {
 public:
   /// `folder` is what relative paths of the file are relative to.
-  SceneReader(std::string path, std::filesystem::path folder, int frame)
-      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame) {}
+  SceneReader(std::string path, std::filesystem::path folder, int frame,
+              MissingFile missing = MissingFile::error)
+      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame), missing_(missing) {}
 
   /// Throws InputError with file and line.
   Scene read(const toml::table& root);
@@ -29,7 +35,10 @@ private:
   void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
   void check_types(SceneSection section, std::size_t index, const toml::table& table) const;
   void place_volume(std::size_t index);
-  std::string resolve_file(const std::string& text, const std::string& key, const toml::node& node);
+  std::string resolve_file(const SceneKey& key, std::size_t index, const std::string& text,
+                           const toml::node& node);
+  std::string resolve_missing(const std::string& key, const std::string& pattern, int number,
+                              const toml::node& node);
   std::string locate(const std::string& key) const;
   [[noreturn]] void fail_unknown(SceneSection section, std::size_t index, const std::string& name,
                                  const toml::node& node) const;
@@ -37,6 +46,8 @@ private:
   std::string path_;
   std::filesystem::path folder_;
   int frame_;
+  MissingFile missing_;
+  std::optional<VolumeTime> time_; ///< of the volume that is being read
   Scene scene_;
   std::map<std::string, std::string> locations_;         ///< of the keys that were read
   std::map<std::string, std::vector<double>> placement_; ///< translate, rotate, scale

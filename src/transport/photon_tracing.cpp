@@ -50,7 +50,7 @@ public:
     if (!(max_component(flux) > 0))
       return;
     Ray ray = photon.ray;
-    for (int bounces = 0;; ++bounces) {
+    for (int bounces = 0; !stopped(); ++bounces) {
       if (settings_.max_bounces && bounces >= *settings_.max_bounces)
         return;
       const bool storable = bounces > 0 || !settings_.skip_first_flight[light];
@@ -67,6 +67,10 @@ public:
   std::uint64_t collisions = 0;
 
 private:
+  bool stopped() const {
+    return settings_.stop && settings_.stop->load(std::memory_order_relaxed);
+  }
+
   /// To the next real collision, storing on the way.
   Collision fly(const Ray& ray, Rgb& flux, bool storable, Rng& rng) {
     const Medium& medium = world_.medium;

@@ -3,6 +3,8 @@
 #include "photonmap/photon.h"
 #include "transport/world.h"
 
+#include <atomic>
+
 namespace vdbeam {
 
 /// What a photon pass needs to know.
@@ -16,6 +18,8 @@ struct PhotonPassSettings {
   bool directions = true; ///< false: no phase function needs them
   Rgb factor{1, 1, 1};    ///< stored powers are multiplied by it
   RngKey key;
+  /// Becomes true when the result is not wanted any more: it comes soon, and is incomplete.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 struct PhotonPass {

@@ -172,7 +172,8 @@ World build_world(const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<DensityGrid> grids;
   for (const VolumeSettings& volume : scene.volumes)
-    grids.push_back(read_density_grid(volume.file, volume.density));
+    grids.push_back(volume.present ? read_density_grid(volume.file, volume.density)
+                                   : DensityGrid{});
   const double seconds_read = seconds_since(start);
   World world = build_world(scene, std::move(grids));
   world.seconds_read = seconds_read;

@@ -1,0 +1,181 @@
+#include "cli/batch.h"
+
+#include "cli/signals.h"
+#include "scene/frame_range.h"
+#include "scene/threads.h"
+#include "vdbeam/error.h"
+#include "vdbeam/scene_file.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+namespace vdbeam::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Ends the program although a frame is still being read, which may take longer than a farm waits.
+/// Reading leaves nothing behind.
+[[noreturn]] void leave_now(int code) {
+  std::fflush(nullptr);
+  std::_Exit(code);
+}
+
+} // namespace
+
+Batch::Batch(const SceneDocument& document, const std::string& scene, std::vector<int> frames,
+             BatchOptions options)
+    : document_(document), frames_(std::move(frames)), options_(std::move(options)),
+      renderer_(options_.frame), farm_(options_.farm, frames_.size()) {
+  summary_.scene = scene;
+  summary_.frames = frames_;
+}
+
+std::string Batch::title(std::size_t index) const {
+  return frames_.size() == 1
+             ? ""
+             : fmt::format("frame {} ({}/{})", frames_[index], index + 1, frames_.size());
+}
+
+void Batch::say(const std::string& line) const {
+  if (options_.frame.quiet)
+    return;
+  fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+}
+
+Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
+  Loaded loaded;
+  loaded.frame.frame = frame;
+  loaded.frame.prepared = previous;
+  try {
+    loaded.frame.scene = document_.scene_at(frame, options_.missing);
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                              static_cast<std::size_t>(thread_count(loaded.frame.scene.render)));
+    loaded.frame.hash = scene_hash(loaded.frame.scene);
+    if (options_.skip_existing) {
+      loaded.note = renderer_.why_unfinished(loaded.frame);
+      loaded.skip = loaded.note.empty();
+    }
+    if (!loaded.skip && !loaded.frame.scene.black)
+      loaded.frame.prepared = prepare_scene(loaded.frame.scene, previous);
+  } catch (...) {
+    loaded.error = std::current_exception();
+  }
+  return loaded;
+}
+
+/// Reads on another thread: one thread beside a frame that is being rendered, all of them `alone`.
+std::future<Batch::Loaded> Batch::load_aside(int frame, const PreparedScenePtr& previous,
+                                             bool alone) const {
+  const auto task = std::make_shared<std::packaged_task<Loaded()>>(
+      [this, frame, previous] { return load(frame, previous); });
+  std::future<Loaded> future = task->get_future();
+  tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, 0);
+  arena.enqueue([task] { (*task)(); });
+  return future;
+}
+
+Batch::Loaded Batch::wait_for(std::future<Loaded>& future) const {
+  while (future.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
+    if (stop_requested()) {
+      say("interrupted while a volume was read");
+      leave_now(signal_exit_code());
+    }
+  return future.get();
+}
+
+int Batch::run() {
+  std::future<Loaded> next = load_aside(frames_[0], nullptr, true);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const Loaded loaded = wait_for(next);
+    if (i + 1 < frames_.size())
+      next = load_aside(frames_[i + 1], loaded.frame.prepared, false);
+    const bool go_on = process(i, loaded);
+    if (go_on && !stop_requested())
+      continue;
+    const int code = finish();
+    if (next.valid() && next.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+      leave_now(code);
+    return code;
+  }
+  return finish();
+}
+
+void Batch::fail(std::size_t index, const Error& error, FrameOutcome& outcome) {
+  outcome.status = "failed";
+  outcome.reason = error.what();
+  farm_.failure(error.what());
+  if (frames_.size() > 1)
+    fmt::print(stderr, "{}: {}\n", title(index), error.what());
+}
+
+/// Renders or skips one frame. False where the batch ends with it.
+bool Batch::process(std::size_t index, const Loaded& loaded) {
+  const auto start = Clock::now();
+  const std::string name = title(index), colon = name.empty() ? "" : ": ";
+  FrameOutcome outcome;
+  outcome.frame = frames_[index];
+  outcome.output = substitute_frame(options_.frame.files.output, outcome.frame);
+  outcome.status = "done";
+  farm_.status(name.empty() ? outcome.output : name);
+  try {
+    if (loaded.error)
+      std::rethrow_exception(loaded.error);
+    if (loaded.skip) {
+      outcome.status = "skipped";
+      outcome.reason = "its finished image is there";
+      renderer_.remove_checkpoint(outcome.frame);
+      say(fmt::format("{}{}{}: {}", name, colon, outcome.output, outcome.reason));
+    } else if (loaded.frame.scene.black) {
+      outcome.reason = "a volume's file is missing; the image is black";
+      renderer_.write_black(loaded.frame);
+      say(fmt::format("{}{}{}: {}", name, colon, outcome.output, outcome.reason));
+    } else {
+      if (!loaded.note.empty() && loaded.note != "is not there")
+        say(fmt::format("{}{}rendered again, since {} {}", name, colon, outcome.output,
+                        loaded.note));
+      if (!renderer_.render_frame(loaded.frame, name, farm_, index))
+        outcome.status = "interrupted";
+    }
+  } catch (const Error& error) {
+    fail(index, error, outcome);
+    if (frames_.size() == 1) {
+      summary_.outcomes.push_back(outcome);
+      if (!options_.summary.empty())
+        summary_.write(options_.summary);
+      throw;
+    }
+  } catch (const std::bad_alloc&) {
+    fail(index, FrameError("not enough memory; a lower --resolution or fewer photons need less"),
+         outcome);
+  }
+  outcome.seconds = seconds_since(start);
+  summary_.outcomes.push_back(outcome);
+  if (outcome.status != "interrupted")
+    farm_.frame_at(index, 1);
+  return !(options_.stop_on_error && outcome.status == "failed");
+}
+
+int Batch::finish() {
+  if (frames_.size() > 1)
+    say(summary_.text());
+  if (!options_.summary.empty())
+    summary_.write(options_.summary);
+  if (stop_requested() && summary_.outcomes.size() < frames_.size())
+    return signal_exit_code();
+  if (!summary_.with_status("interrupted").empty())
+    return signal_exit_code();
+  return summary_.with_status("failed").empty() ? 0 : static_cast<int>(ExitCode::frame_failed);
+}
+
+} // namespace vdbeam::cli

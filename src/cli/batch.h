@@ -1,0 +1,56 @@
+#pragma once
+
+#include "cli/batch_summary.h"
+#include "cli/frame_renderer.h"
+
+#include <future>
+
+namespace vdbeam::cli {
+
+struct BatchOptions {
+  FrameOptions frame;
+  bool skip_existing = false; ///< leave frames alone whose finished image is there
+  bool stop_on_error = false;
+  MissingFile missing = MissingFile::error;
+  std::string summary; ///< path of a JSON file, or empty
+  FarmFormat farm = FarmFormat::plain;
+};
+
+/// Renders frames one after the other. While one is rendered, the next is read: at most two are in
+/// memory.
+class Batch {
+public:
+  Batch(const SceneDocument& document, const std::string& scene, std::vector<int> frames,
+        BatchOptions options);
+
+  /// Returns the exit code. A failed frame does not stop the others unless asked to; a signal ends
+  /// the batch. With a single frame its error is thrown.
+  int run();
+
+private:
+  /// A frame that was read, or why it need not or cannot be rendered.
+  struct Loaded {
+    LoadedFrame frame;
+    bool skip = false;
+    std::string note; ///< why an image that is there is rendered again
+    std::exception_ptr error;
+  };
+
+  Loaded load(int frame, const PreparedScenePtr& previous) const;
+  std::future<Loaded> load_aside(int frame, const PreparedScenePtr& previous, bool alone) const;
+  Loaded wait_for(std::future<Loaded>& future) const;
+  bool process(std::size_t index, const Loaded& loaded);
+  void fail(std::size_t index, const Error& error, FrameOutcome& outcome);
+  std::string title(std::size_t index) const;
+  void say(const std::string& line) const;
+  int finish();
+
+  const SceneDocument& document_;
+  std::vector<int> frames_;
+  BatchOptions options_;
+  FrameRenderer renderer_;
+  FarmProgress farm_;
+  BatchSummary summary_;
+};
+
+} // namespace vdbeam::cli

@@ -1,0 +1,70 @@
+#include "cli/commands.h"
+#include "cli/output_paths.h"
+#include "output/output_formats.h"
+#include "vdbeam/error.h"
+#include "vdbeam/render.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+namespace vdbeam::cli {
+namespace {
+
+struct MergeOptions {
+  std::vector<std::string> partials;
+  std::string output, preview;
+  double exposure = 0;
+  MergeSettings settings;
+  bool quiet = false;
+};
+
+int run_merge(const MergeOptions& options) {
+  check_output_path("-o", options.output, {1});
+  output_format(options.output);
+  check_output_path("--partial", options.settings.partial, {1});
+  check_output_path("--preview", options.preview, {1});
+  if (options.settings.passes && *options.settings.passes < 1)
+    throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
+  const Image image = merge_partials(options.partials, options.settings);
+  if (!options.preview.empty())
+    write_image(image, options.preview, {options.exposure});
+  write_image(image, options.output, {options.exposure});
+  if (!options.quiet)
+    fmt::print(stderr, "{}: {} passes of {} files\n", options.output,
+               image.numbers.at("vdbeam:passes"), options.partials.size());
+  return 0;
+}
+
+} // namespace
+
+CommandRun add_merge(CLI::App& app) {
+  const auto options = std::make_shared<MergeOptions>();
+  app.add_option("partials", options->partials, "Partial images (vdbeam render --pass-range)")
+      ->required()
+      ->option_text("PARTIAL...");
+  app.add_option("-o,--output", options->output, "Image to write: .exr or .png")
+      ->required()
+      ->option_text("FILE");
+  app.add_option("--passes", options->settings.passes,
+                 "Passes that must be there: 0 to N - 1; default: from 0 to the last there is")
+      ->option_text("N");
+  app.add_flag("--allow-gaps", options->settings.allow_gaps, "Join also where passes are missing");
+  app.add_option("--partial", options->settings.partial,
+                 "Also write a partial image of all passes, for merging in a tree")
+      ->option_text("FILE.exr");
+  app.add_option("--preview", options->preview, "Also write an 8-bit sRGB picture")
+      ->option_text("FILE.png");
+  app.add_option("--exposure", options->exposure, "Stops that brighten the preview")
+      ->option_text("STOPS");
+  app.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  app.footer(R"(The image is bit for bit that of an undivided render of the same passes.
+
+Examples:
+  vdbeam render cloud.toml --pass-range 0-31 -o a.exr
+  vdbeam render cloud.toml --pass-range 32-63 -o b.exr
+  vdbeam merge -o cloud.exr --passes 64 a.exr b.exr)");
+  return [options] { return run_merge(*options); };
+}
+
+} // namespace vdbeam::cli

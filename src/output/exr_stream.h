@@ -1,0 +1,36 @@
+#pragma once
+
+#include "output/atomic_file.h"
+#include "vdbeam/image.h"
+
+#include <ImfHeader.h>
+#include <ImfIO.h>
+
+namespace vdbeam {
+
+/// OpenEXR's way into an AtomicFile.
+class AtomicStream : public Imf::OStream {
+public:
+  explicit AtomicStream(AtomicFile& file) : OStream(file.path().c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    file_.write(bytes, static_cast<std::size_t>(count));
+  }
+  std::uint64_t tellp() override { return file_.position(); }
+  void seekp(std::uint64_t position) override { file_.seek(position); }
+
+private:
+  AtomicFile& file_;
+};
+
+/// A ZIP-compressed header with the image's windows and attributes, without channels. Throws
+/// FrameError for attributes that cannot be stored; `path` is for its message.
+Imf::Header exr_header(const Image& image, const std::string& path);
+
+/// The other way: text, numbers and matrices of a header into the image's maps.
+void copy_attributes(const Imf::Header& header, Image& image);
+
+/// Refuses a header whose attributes are longer than the file: OpenEXR would allocate the memory
+/// before it finds the file too short. Throws InputError.
+void check_attribute_sizes(const std::string& path);
+
+} // namespace vdbeam

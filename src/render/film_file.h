@@ -1,0 +1,33 @@
+#pragma once
+
+#include "film/film.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// What a film on disk belongs to.
+struct FilmFileInfo {
+  Image header;          ///< windows and attributes of the picture, without channels
+  std::string pass_hash; ///< of the scene (vdbeam::pass_hash)
+  int frame = 1;
+  std::vector<int> passes; ///< sorted; which passes the film holds
+  std::uint64_t invalid_values = 0;
+  double seconds = 0; ///< spent on rendering them
+
+  /// Same scene, frame and pixels: the passes may be added.
+  bool joins(const FilmFileInfo& other) const;
+};
+
+/// Writes the film as an EXR that is complete or not there: R, G, B and A for viewers, and the
+/// film's planes under "film.", a double as two 32-bit integers. Throws FrameError.
+void write_film(const FilmFileInfo& info, Film& film, const std::string& path);
+
+/// The header of such a file. Throws InputError for any other, also a damaged one.
+FilmFileInfo read_film_info(const std::string& path);
+
+/// The film itself, bit for bit as it was written. Throws InputError.
+Film read_film(const std::string& path, const FilmFileInfo& info);
+
+} // namespace vdbeam

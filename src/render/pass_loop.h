@@ -1,0 +1,51 @@
+#pragma once
+
+#include "estimators/estimator.h"
+#include "render/film_file.h"
+
+#include <chrono>
+
+namespace vdbeam {
+
+/// The frame's passes, from the first to whatever ends it, with everything that may interrupt them:
+/// signals, checkpoints, snapshots.
+class PassLoop {
+public:
+  PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWindow& window,
+           RenderResult& result);
+
+  void run(Estimator& estimator);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  bool finished();
+  bool stop(const char* reason);
+  void resume();
+  void record();
+  void compare(PassRecord& record);
+  void serve_requests();
+  void write_checkpoint();
+  void develop();
+  FilmFileInfo file_info() const;
+  bool stop_requested() const { return hooks_.stop && *hooks_.stop; }
+  void note(const std::string& line);
+  double seconds() const;
+  int next_pass() const { return first_pass_ + film_.passes(); }
+
+  const Scene& scene_;
+  const RenderHooks& hooks_;
+  PixelWindow window_;
+  bool whole_;
+  RenderResult& result_;
+  Film film_;
+  int first_pass_ = 0;
+  Clock::time_point start_;
+  double earlier_seconds_ = 0; ///< of the passes that came from a checkpoint
+  std::uint64_t photons_before_ = 0;
+  Clock::time_point last_checkpoint_;
+  int last_checkpoint_passes_ = 0;
+  std::string pass_hash_; ///< empty where no film goes to disk
+};
+
+} // namespace vdbeam

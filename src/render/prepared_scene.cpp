@@ -1,0 +1,105 @@
+#include "render/prepared_scene.h"
+
+#include "scene/scene_keys.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <chrono>
+
+namespace vdbeam {
+namespace {
+
+/// Tells one state of a file from another.
+std::string file_identity(const std::string& path) {
+  struct stat status {};
+  if (path.empty() || stat(path.c_str(), &status) != 0)
+    return path;
+  return fmt::format("{}|{}|{}|{}.{:09}", path, status.st_ino, status.st_size,
+                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
+/// Every value that a world is made from. Sizes and cameras are not among them, but for the way up,
+/// about which skies turn.
+std::string world_settings(const Scene& scene) {
+  std::string text;
+  for (const SceneKey& key : scene_keys()) {
+    const bool up = key.section == SceneSection::camera && key.name == "up";
+    if (!key.get || key.section == SceneSection::image ||
+        (key.section == SceneSection::camera && !up))
+      continue;
+    for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
+      const std::string value = key.format(key.get(scene, i));
+      text += key_path(key, i) + "=" + value + ";";
+      if (key.kind == KeyKind::file)
+        text += file_identity(std::get<std::string>(key.get(scene, i))) + ";";
+    }
+  }
+  for (const VolumeSettings& volume : scene.volumes)
+    text += volume.present ? "+" : "-";
+  return text;
+}
+
+/// The grid from the last frame, or nothing where it is another one.
+const ReadVolume* find_read(const PreparedScenePtr& previous, const std::string& identity) {
+  if (previous)
+    for (const ReadVolume& volume : previous->volumes)
+      if (!identity.empty() && volume.identity == identity)
+        return &volume;
+  return nullptr;
+}
+
+DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                      ReadVolume& read) {
+  if (!volume.present)
+    return {};
+  read.identity = file_identity(volume.file) + "|" + volume.density;
+  if (const ReadVolume* known = find_read(previous, read.identity)) {
+    DensityGrid grid = known->facts;
+    if (known->index >= 0)
+      grid.field = previous->world->medium.volumes[static_cast<std::size_t>(known->index)].field;
+    return grid;
+  }
+  return read_density_grid(volume.file, volume.density);
+}
+
+void keep_facts(const DensityGrid& grid, ReadVolume& read) {
+  read.facts.index_to_world = grid.index_to_world;
+  read.facts.repairs = grid.repairs;
+  read.facts.active_voxels = grid.active_voxels;
+  read.facts.notes = grid.notes;
+}
+
+} // namespace
+
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
+  const auto start = std::chrono::steady_clock::now();
+  auto prepared = std::make_shared<PreparedScene>();
+  prepared->settings = world_settings(scene);
+  if (previous && previous->settings == prepared->settings) {
+    prepared->world = previous->world;
+    prepared->volumes = previous->volumes;
+    return prepared;
+  }
+  std::vector<DensityGrid> grids;
+  int kept = 0;
+  for (const VolumeSettings& volume : scene.volumes) {
+    ReadVolume read;
+    grids.push_back(take_grid(volume, previous, read));
+    keep_facts(grids.back(), read);
+    // As build_world leaves volumes out.
+    const bool empty = grids.back().field.empty() ||
+                       !(volume.extinction * max_component(volume.extinction_scale) > 0);
+    read.index = empty ? -1 : kept++;
+    if (empty && !grids.back().field.empty())
+      read.identity.clear(); // its field is not kept
+    prepared->volumes.push_back(std::move(read));
+  }
+  prepared->seconds_read =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  prepared->world = std::make_shared<const World>(build_world(scene, std::move(grids)));
+  prepared->seconds_build = prepared->world->seconds_build;
+  return prepared;
+}
+
+} // namespace vdbeam

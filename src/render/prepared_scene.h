@@ -1,0 +1,27 @@
+#pragma once
+
+#include "transport/world.h"
+#include "vdbeam/render.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// One volume of a scene as it was read, so that the next frame need not read it again.
+struct ReadVolume {
+  std::string identity; ///< file, its size and time of change, grid; empty: nothing was read
+  DensityGrid facts;    ///< all but the field
+  int index = -1;       ///< where the medium holds its field; -1: it is empty
+};
+
+class PreparedScene {
+public:
+  std::shared_ptr<const World> world;
+  std::vector<ReadVolume> volumes;
+  std::string settings; ///< everything but the volumes' contents that the world is made from
+  double seconds_read = 0, seconds_build = 0;
+};
+
+} // namespace vdbeam
