@@ -3,6 +3,8 @@
 #include "cli/batch_summary.h"
 #include "cli/frame_renderer.h"
 
+#include "vdbeam/error.h"
+
 #include <future>
 
 namespace vdbeam::cli {

@@ -34,7 +34,7 @@ void visit_slices(Film& film, const Imath::Box2i& window, const Visit& visit) {
     return Imf::Slice::Make(type, first, window, stride, stride * width);
   };
   for (const FilmPlane& plane : film.planes()) {
-    const std::string name = "film." + plane.name;
+    const std::string name = fmt::format("film.{}", plane.name);
     if (const auto* doubles = std::get_if<double*>(&plane.values)) {
       const char* first = reinterpret_cast<const char*>(*doubles);
       visit(name + ".low", slice(Imf::UINT, first, 8 * plane.stride));
@@ -78,7 +78,7 @@ std::uint64_t parse_count(const std::string& text, const std::string& path) {
 /// Film planes and the picture that viewers show.
 void write_planes(const FilmFileInfo& info, Film& film, AtomicFile& file) {
   Image header = info.header;
-  header.metadata["vdbeam:film"] = film_format;
+  header.metadata.insert_or_assign("vdbeam:film", std::string(film_format));
   header.metadata["vdbeam:passHash"] = info.pass_hash;
   header.metadata["vdbeam:passSet"] = format_frame_range(info.passes);
   header.metadata["vdbeam:invalidValues"] = std::to_string(info.invalid_values);

@@ -1,0 +1,174 @@
+#include "cli_fixture.h"
+#include "vdbeam/image_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbeam {
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+
+class BatchCommand : public test::CliTest {
+protected:
+  /// A scene of frames 1 to 3 and 5, all the same volume.
+  void write_sequence() {
+    for (const char* name : {"c.0001.vdb", "c.0002.vdb", "c.0003.vdb", "c.0005.vdb"})
+      std::filesystem::copy_file(cloud_vdb, folder_ / name);
+    write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
+  }
+  ProgramResult render_frames(const std::string& frames, const Names& more = {}) {
+    Names arguments{"s.toml", "-f",         frames,      "--passes",    "1",
+                    "-o",     "o.####.exr", "--summary", "summary.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return render(arguments);
+  }
+  Json summary() const { return Json::parse(read("summary.json")); }
+  std::vector<float> pixels(const std::string& name) const {
+    return read_image(file(name)).find("R")->data;
+  }
+};
+using test::ProgramResult;
+
+TEST_F(BatchCommand, SkipsFinishedFramesAndNoOthers) {
+  write_sequence();
+  ASSERT_EQ(render_frames("1-3").code, 0);
+  const std::string second = read("o.0002.exr");
+  write("o.0001.exr", read("o.0001.exr").substr(0, 4000)); // truncated
+  write("o.0003.exr", read("o.0002.exr"));                 // another frame
+  const auto again = render_frames("1-3,5", {"--skip-existing"});
+  EXPECT_EQ(again.code, 0) << again.error;
+  EXPECT_EQ(summary()["skipped"], Json::array({2}));
+  EXPECT_EQ(summary()["done"], Json::array({1, 3, 5}));
+  EXPECT_EQ(read("o.0002.exr"), second);
+  EXPECT_EQ(read_image(file("o.0001.exr")).width, 32);
+  // Another scene, and when asked to.
+  render_frames("1-3", {"--skip-existing", "--seed", "9"});
+  EXPECT_EQ(summary()["done"], Json::array({1, 2, 3}));
+  render_frames("1-3", {"--skip-existing", "--seed", "9", "--overwrite"});
+  EXPECT_EQ(summary()["done"], Json::array({1, 2, 3}));
+  render_frames("1-3", {"--skip-existing", "--seed", "9"});
+  EXPECT_EQ(summary()["skipped"], Json::array({1, 2, 3}));
+}
+
+TEST_F(BatchCommand, TellsWhatFailedAndGoesOn) {
+  write_sequence();
+  write("c.0002.vdb", "not a volume");
+  const auto result = render_frames("1-5", {"--progress", "openjd"});
+  EXPECT_EQ(result.code, 3);
+  EXPECT_EQ(summary()["done"], Json::array({1, 3, 5}));
+  EXPECT_EQ(summary()["failed"], Json::array({2, 4}));
+  EXPECT_NE(summary()["frames"][3]["reason"].get<std::string>().find("there is no file"),
+            std::string::npos);
+  EXPECT_NE(result.error.find("5 frames: 3 done (1,3,5), 2 failed (2,4)"), std::string::npos)
+      << result.error;
+  EXPECT_NE(result.out.find("openjd_fail: "), std::string::npos);
+  EXPECT_NE(result.out.find("openjd_progress: 100.0\n"), std::string::npos);
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(line.starts_with("openjd_")) << line;
+}
+
+TEST_F(BatchCommand, StopsAtTheFirstFailureWhenAsked) {
+  write_sequence();
+  write("c.0002.vdb", "not a volume");
+  EXPECT_EQ(render_frames("1-3", {"--on-error", "stop"}).code, 3);
+  EXPECT_TRUE(exists("o.0001.exr"));
+  EXPECT_FALSE(exists("o.0003.exr"));
+}
+
+TEST_F(BatchCommand, MissingFramesAreHeldOrBlack) {
+  write_sequence();
+  ASSERT_EQ(render_frames("3-4", {"--missing", "hold"}).code, 0);
+  EXPECT_NE(read("stderr.txt").find("frame 3 is shown"), std::string::npos);
+  const std::vector<float> held = pixels("o.0004.exr");
+  EXPECT_GT(*std::max_element(held.begin(), held.end()), 0.1f);
+  ASSERT_EQ(render_frames("4-5", {"--missing", "black"}).code, 0);
+  EXPECT_EQ(pixels("o.0004.exr"), std::vector<float>(32 * 18, 0.f));
+  const auto again = render_frames("4-5", {"--missing", "black", "--skip-existing"});
+  EXPECT_EQ(summary()["skipped"], Json::array({4, 5})) << again.error;
+}
+
+TEST_F(BatchCommand, AlfProgress) {
+  write_sequence();
+  const auto result = render_frames("1-2", {"--progress", "alf", "--threads", "1"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out, "ALF_PROGRESS 50%\nALF_PROGRESS 100%\n");
+}
+
+TEST_F(BatchCommand, PartialImagesMerge) {
+  const Names scene{cloud, "--passes", "3", "-q"};
+  const auto with = [&](Names more) {
+    more.insert(more.begin(), scene.begin(), scene.end());
+    return render(more).code;
+  };
+  ASSERT_EQ(with({"-o", "whole.exr"}), 0);
+  ASSERT_EQ(with({"-o", "a.exr", "--pass-range", "0-1"}), 0);
+  ASSERT_EQ(with({"-o", "b.exr", "--pass-range", "2"}), 0);
+  EXPECT_EQ(run({"merge", "-o", "m.exr", "--passes", "3", "b.exr", "a.exr"}).code, 0);
+  for (const char* channel : {"R", "A", "volume_Z"})
+    EXPECT_EQ(read_image(file("m.exr")).find(channel)->data,
+              read_image(file("whole.exr")).find(channel)->data);
+  // The merged image is the finished one of this scene.
+  ASSERT_EQ(with({"-o", "m.exr", "--skip-existing", "--summary", "summary.json"}), 0);
+  EXPECT_EQ(summary()["skipped"], Json::array({1}));
+  EXPECT_EQ(run({"merge", "-o", "n.exr", "b.exr"}).code, 2);
+  EXPECT_FALSE(exists("n.exr"));
+  ASSERT_EQ(
+      with({"-o", "a.exr", "--pass-range", "0-1", "--skip-existing", "--summary", "summary.json"}),
+      0);
+  EXPECT_EQ(summary()["skipped"], Json::array({1}));
+}
+
+TEST_F(BatchCommand, BadValuesAreRefused) {
+  for (const Names& option : std::vector<Names>{{"--pass-range", "3-1"},
+                                                {"--pass-range", "a"},
+                                                {"--region", "0,0,40,1"},
+                                                {"--region", "1,2,3"},
+                                                {"--checkpoint", "0"},
+                                                {"--checkpoint", "soon"},
+                                                {"--on-error", "panic"},
+                                                {"--overwrite"}}) {
+    Names arguments{cloud, "-o", "a.exr", "--passes", "1"};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    const auto result = render(arguments);
+    EXPECT_EQ(result.code, 2) << option[0] << result.error;
+    EXPECT_FALSE(exists("a.exr"));
+  }
+}
+
+TEST_F(BatchCommand, ASignalLeavesACheckpointThatTheNextRunFinishes) {
+  const Names scene{"render",       cloud,   "--passes", "60",
+                    "--resolution", "64x36", "--set",    "render.photons=20000",
+                    "-o",           "a.exr"};
+  ASSERT_EQ(run(scene).code, 0);
+  const std::vector<float> whole = pixels("a.exr");
+  std::filesystem::remove(folder_ / "a.exr");
+  const pid_t child = start(scene);
+  wait_for_output();
+  kill(child, SIGTERM);
+  const auto stopped = finish(child);
+  ASSERT_EQ(stopped.code, 143) << stopped.error;
+  EXPECT_EQ(files(), Names{"a.checkpoint.exr"});
+  const auto resumed = run(scene);
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_NE(resumed.error.find("goes on after"), std::string::npos) << resumed.error;
+  EXPECT_EQ(files(), Names{"a.exr"});
+  EXPECT_EQ(pixels("a.exr"), whole);
+}
+
+TEST_F(BatchCommand, SnapshotOnUserSignal) {
+  const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
+                             "render.photons=2000", "-o", "a.exr"});
+  wait_for_output();
+  kill(child, SIGUSR1);
+  for (int i = 0; i < 500 && !exists("a.snapshot.exr"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(files(), Names{"a.snapshot.exr"});
+  EXPECT_EQ(read_image(file("a.snapshot.exr")).width, 32);
+  kill(child, SIGTERM);
+  EXPECT_EQ(finish(child).code, 143);
+}
+
+} // namespace
+} // namespace vdbeam

@@ -1,0 +1,238 @@
+#include "render/film_file.h"
+#include "support/temp_folder.h"
+#include "vdbeam/error.h"
+#include "vdbeam/image_file.h"
+#include "vdbeam/scene_file.h"
+
+#include <cstring>
+
+namespace vdbeam {
+namespace {
+
+/// The sample cloud, small and quick.
+Scene small_cloud(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"image.width=40", "image.height=23", "render.photons=1500",
+                                     "render.passes=6"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", 1, overrides);
+}
+
+/// Channels, names and values, bit for bit.
+void expect_same_pixels(const Image& a, const Image& b) {
+  ASSERT_EQ(a.width, b.width);
+  ASSERT_EQ(a.height, b.height);
+  ASSERT_EQ(a.channels.size(), b.channels.size());
+  for (std::size_t c = 0; c < a.channels.size(); ++c) {
+    EXPECT_EQ(a.channels[c].name, b.channels[c].name);
+    ASSERT_EQ(a.channels[c].data.size(), b.channels[c].data.size());
+    EXPECT_EQ(std::memcmp(a.channels[c].data.data(), b.channels[c].data.data(),
+                          a.channels[c].data.size() * sizeof(float)),
+              0)
+        << a.channels[c].name;
+  }
+}
+
+class Partial : public ::testing::Test {
+protected:
+  std::string render_range(int first, int last, const Scene& scene = small_cloud()) {
+    RenderHooks hooks;
+    hooks.pass_range = PassRange{first, last};
+    hooks.partial = folder_.file(std::to_string(first) + ".exr");
+    render(scene, hooks);
+    return hooks.partial;
+  }
+  std::string error_of(const std::vector<std::string>& paths, const MergeSettings& settings = {}) {
+    try {
+      merge_partials(paths, settings);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(Partial, MergesToTheUndividedImage) {
+  const Image whole = render(small_cloud()).image;
+  const std::string a = render_range(0, 0), b = render_range(1, 3), c = render_range(4, 5);
+  expect_same_pixels(merge_partials({c, a, b}), whole);
+  // In a tree: (b + c) + a.
+  const MergeSettings inner{true, std::nullopt, folder_.file("bc.exr")};
+  merge_partials({b, c}, inner);
+  expect_same_pixels(merge_partials({a, inner.partial}, {false, 6, ""}), whole);
+}
+
+TEST_F(Partial, OpensInAViewer) {
+  const Image image = read_image(render_range(0, 1));
+  for (const char* name : {"R", "G", "B", "A"})
+    ASSERT_TRUE(image.find(name)) << name;
+  const Image rendered = render(small_cloud({"render.passes=2"})).image;
+  EXPECT_EQ(image.find("R")->data, rendered.find("R")->data);
+}
+
+TEST_F(Partial, FilmComesBackBitForBit) {
+  const std::string path = render_range(0, 3);
+  const FilmFileInfo info = read_film_info(path);
+  Film film = read_film(path, info);
+  write_film(info, film, folder_.file("again.exr"));
+  Film again = read_film(folder_.file("again.exr"), read_film_info(folder_.file("again.exr")));
+  EXPECT_EQ(again.passes(), 4);
+  EXPECT_EQ(again.mrse_estimate(), film.mrse_estimate());
+  EXPECT_TRUE(again.mrse_estimate() > 0);
+  expect_same_pixels(again.develop(), film.develop());
+}
+
+TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
+  const std::string a = render_range(0, 1), b = render_range(1, 2), d = render_range(4, 4);
+  EXPECT_NE(error_of({a, b}).find("passes 1 are there twice"), std::string::npos);
+  EXPECT_NE(error_of({a, d}).find("passes 2-3 are missing"), std::string::npos);
+  EXPECT_NE(error_of({b}).find("passes 0 are missing"), std::string::npos);
+  EXPECT_NE(error_of({a}, {false, 6, ""}).find("passes 2-5 are missing"), std::string::npos);
+  EXPECT_NE(error_of({a}, {false, 1, ""}).find("passes 1 are more than"), std::string::npos);
+  EXPECT_TRUE(error_of({a, d}, {true, std::nullopt, ""}).empty());
+  const std::string other = render_range(2, 3, small_cloud({"render.seed=9"}));
+  EXPECT_NE(error_of({a, other}).find("the scenes differ"), std::string::npos);
+  const std::string smaller = render_range(3, 3, small_cloud({"image.width=39"}));
+  EXPECT_NE(error_of({a, smaller}).find("the scenes differ"), std::string::npos);
+  // Only the stop rule differs: they are passes of one picture.
+  const std::string longer = render_range(2, 3, small_cloud({"render.passes=64"}));
+  EXPECT_TRUE(error_of({a, longer}).empty());
+}
+
+TEST_F(Partial, DamagedAndForeignFilesAreRefusedInOneLine) {
+  const std::string path = render_range(0, 0), bytes = test::read_bytes(path);
+  const std::string broken = folder_.file("broken.exr");
+  for (const double share : {0.0, 0.01, 0.3, 0.9, 0.999}) {
+    test::write_bytes(broken, bytes.substr(0, static_cast<std::size_t>(
+                                                  share * static_cast<double>(bytes.size()))));
+    const std::string error = error_of({broken});
+    EXPECT_FALSE(error.empty()) << share;
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+  write_exr(render(small_cloud({"render.passes=1"})).image, broken);
+  EXPECT_NE(error_of({broken}).find("not a partial image"), std::string::npos);
+  EXPECT_FALSE(error_of({folder_.file("absent.exr")}).empty());
+}
+
+TEST(Region, PixelsAreThoseOfTheWholeImage) {
+  for (const char* estimator : {"beam", "march", "path"}) {
+    const Scene scene =
+        small_cloud({std::string("render.estimator=") + estimator, "render.passes=2"});
+    const Image whole = render(scene).image;
+    RenderHooks hooks;
+    hooks.region = PixelRegion{9, 5, 31, 19};
+    const Image part = render(scene, hooks).image;
+    ASSERT_EQ(part.width, 22);
+    ASSERT_EQ(part.height, 14);
+    for (const char* name : {"R", "volume_indirect.G", "volume_Z"})
+      for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x)
+          ASSERT_EQ(part.find(name)->data[static_cast<std::size_t>(y * part.width + x)],
+                    whole.find(name)->data[static_cast<std::size_t>((y + 5) * 40 + x + 9)])
+              << estimator << " " << name << " " << x << " " << y;
+  }
+}
+
+TEST(Region, IsADataWindowInTheFile) {
+  const test::TempFolder folder;
+  RenderHooks hooks;
+  hooks.region = PixelRegion{9, 5, 31, 19};
+  const Image part = render(small_cloud({"render.passes=1"}), hooks).image;
+  write_exr(part, folder.file("a.exr"));
+  const Image read = read_image(folder.file("a.exr"));
+  ASSERT_EQ(read.width, 40);
+  ASSERT_EQ(read.height, 23);
+  EXPECT_EQ(read.find("A")->data[4 * 40 + 20], 0);
+  EXPECT_EQ(read.find("volume_opacity")->data[12 * 40 + 20],
+            part.find("volume_opacity")->data[7 * 22 + 11]);
+  hooks.region = PixelRegion{9, 5, 41, 19};
+  EXPECT_THROW(render(small_cloud(), hooks), InputError);
+}
+
+/// Ends a render after some passes, as a signal does.
+struct Stopper {
+  explicit Stopper(int passes) : passes_(passes) {}
+  RenderHooks hooks(const std::string& checkpoint) {
+    RenderHooks hooks;
+    hooks.stop = &stop_;
+    hooks.on_pass = [this](const PassRecord& record, const RenderStatistics&) {
+      stop_ = record.pass >= passes_;
+    };
+    hooks.checkpoint.path = checkpoint;
+    return hooks;
+  }
+
+private:
+  int passes_;
+  std::atomic<bool> stop_{false};
+};
+
+TEST(Checkpoint, ResumesBitForBit) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("c.exr");
+  const RenderResult whole = render(small_cloud());
+  for (const int passes : {2, 5}) {
+    Stopper stopper(passes);
+    const RenderResult stopped = render(small_cloud(), stopper.hooks(path));
+    EXPECT_EQ(stopped.stopped_by, "stop");
+    EXPECT_EQ(read_film_info(path).passes.size(), static_cast<std::size_t>(passes));
+  }
+  RenderHooks hooks;
+  hooks.checkpoint.path = path;
+  const RenderResult resumed = render(small_cloud(), hooks);
+  EXPECT_EQ(resumed.resumed_passes, 5);
+  EXPECT_EQ(resumed.passes.back().pass, 6);
+  EXPECT_EQ(resumed.passes.back().error_estimate, whole.passes.back().error_estimate);
+  expect_same_pixels(resumed.image, whole.image);
+}
+
+TEST(Checkpoint, IsWrittenAtIntervalsOfPassesAndOfSeconds) {
+  const test::TempFolder folder;
+  for (const bool by_time : {false, true}) {
+    RenderHooks hooks;
+    hooks.checkpoint.path = folder.file("c.exr");
+    hooks.checkpoint.passes = by_time ? 0 : 4;
+    hooks.checkpoint.seconds = by_time ? 1e-9 : 0;
+    hooks.checkpoint.resume = false;
+    render(small_cloud(), hooks);
+    EXPECT_EQ(read_film_info(hooks.checkpoint.path).passes.size(), by_time ? 6u : 4u);
+  }
+}
+
+TEST(Checkpoint, OfAnotherSceneOrBrokenIsNotUsed) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("c.exr");
+  Stopper stopper(2);
+  render(small_cloud({"render.seed=9"}), stopper.hooks(path));
+  RenderHooks hooks;
+  hooks.checkpoint.path = path;
+  const RenderResult whole = render(small_cloud()), other = render(small_cloud(), hooks);
+  EXPECT_EQ(other.resumed_passes, 0);
+  ASSERT_FALSE(other.notes.empty());
+  EXPECT_NE(other.notes.back().find("another scene"), std::string::npos);
+  expect_same_pixels(other.image, whole.image);
+  test::write_bytes(path, test::read_bytes(path).substr(0, 5000));
+  const RenderResult broken = render(small_cloud(), hooks);
+  EXPECT_EQ(broken.resumed_passes, 0);
+  expect_same_pixels(broken.image, whole.image);
+}
+
+TEST(PreparedScene, IsTakenOverWhereNothingChanged) {
+  const Scene scene = small_cloud();
+  const PreparedScenePtr first = prepare_scene(scene);
+  Scene moved = scene;
+  moved.camera.position.x += 0.5;
+  const PreparedScenePtr second = prepare_scene(moved, first);
+  EXPECT_EQ(render(moved, second).statistics.read, 0);
+  expect_same_pixels(render(moved, second).image, render(moved).image);
+  // A light that changes needs a new world, but not a new volume.
+  Scene lit = moved;
+  lit.lights[0].irradiance = Rgb(1);
+  lit.volumes[0].extinction *= 2;
+  const PreparedScenePtr third = prepare_scene(lit, second);
+  expect_same_pixels(render(lit, third).image, render(lit).image);
+}
+
+} // namespace
+} // namespace vdbeam
