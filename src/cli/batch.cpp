@@ -80,7 +80,8 @@ std::future<Batch::Loaded> Batch::load_aside(int frame, const PreparedScenePtr& 
   const auto task = std::make_shared<std::packaged_task<Loaded()>>(
       [this, frame, previous] { return load(frame, previous); });
   std::future<Loaded> future = task->get_future();
-  tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, 0);
+  // Of all threads one waits here, and has no part in reading.
+  tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, alone ? 1 : 0);
   arena.enqueue([task] { (*task)(); });
   return future;
 }
@@ -111,59 +112,69 @@ int Batch::run() {
   return finish();
 }
 
-void Batch::fail(std::size_t index, const Error& error, FrameOutcome& outcome) {
+void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& outcome) {
   outcome.status = "failed";
   outcome.reason = error.what();
-  farm_.failure(error.what());
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    outcome.reason = "not enough memory; a lower --resolution or fewer photons need less";
+  else if (!dynamic_cast<const Error*>(&error))
+    outcome.reason = fmt::format("internal error: {}", error.what());
+  farm_.failure(outcome.reason);
+  farm_.frame_at(index, 1);
+  summary_.outcomes.push_back(outcome);
   if (frames_.size() > 1)
-    fmt::print(stderr, "{}: {}\n", title(index), error.what());
+    fmt::print(stderr, "{}: {}\n", title(index), outcome.reason);
 }
 
-/// Renders or skips one frame. False where the batch ends with it.
+/// Renders or skips one frame.
+void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome) {
+  const std::string name = title(index);
+  const auto tell = [&](const std::string& text) {
+    say(fmt::format("{}{}{}: {}", name, name.empty() ? "" : ": ", outcome.output, text));
+  };
+  if (loaded.error)
+    std::rethrow_exception(loaded.error);
+  outcome.status = "done";
+  if (loaded.skip) {
+    outcome.status = "skipped";
+    outcome.reason = "its finished image is there";
+    renderer_.remove_checkpoint(outcome.frame);
+    return tell(outcome.reason);
+  }
+  if (loaded.frame.scene.black) {
+    outcome.reason = "a volume's file is missing; the image is black";
+    renderer_.write_black(loaded.frame);
+    return tell(outcome.reason);
+  }
+  if (!loaded.note.empty() && loaded.note != "is not there")
+    tell("rendered again: " + loaded.note);
+  if (!renderer_.render_frame(loaded.frame, name, farm_, index))
+    outcome.status = "interrupted";
+}
+
+/// One frame and what became of it. False where the batch ends with it.
 bool Batch::process(std::size_t index, const Loaded& loaded) {
   const auto start = Clock::now();
-  const std::string name = title(index), colon = name.empty() ? "" : ": ";
   FrameOutcome outcome;
   outcome.frame = frames_[index];
   outcome.output = substitute_frame(options_.frame.files.output, outcome.frame);
-  outcome.status = "done";
-  farm_.status(name.empty() ? outcome.output : name);
+  farm_.status(frames_.size() == 1 ? outcome.output : title(index));
   try {
-    if (loaded.error)
-      std::rethrow_exception(loaded.error);
-    if (loaded.skip) {
-      outcome.status = "skipped";
-      outcome.reason = "its finished image is there";
-      renderer_.remove_checkpoint(outcome.frame);
-      say(fmt::format("{}{}{}: {}", name, colon, outcome.output, outcome.reason));
-    } else if (loaded.frame.scene.black) {
-      outcome.reason = "a volume's file is missing; the image is black";
-      renderer_.write_black(loaded.frame);
-      say(fmt::format("{}{}{}: {}", name, colon, outcome.output, outcome.reason));
-    } else {
-      if (!loaded.note.empty() && loaded.note != "is not there")
-        say(fmt::format("{}{}rendered again, since {} {}", name, colon, outcome.output,
-                        loaded.note));
-      if (!renderer_.render_frame(loaded.frame, name, farm_, index))
-        outcome.status = "interrupted";
-    }
-  } catch (const Error& error) {
+    handle(index, loaded, outcome);
+  } catch (const std::exception& error) {
+    outcome.seconds = seconds_since(start);
     fail(index, error, outcome);
-    if (frames_.size() == 1) {
-      summary_.outcomes.push_back(outcome);
-      if (!options_.summary.empty())
-        summary_.write(options_.summary);
+    if (frames_.size() == 1) { // the program has its own way to tell it
+      finish();
       throw;
     }
-  } catch (const std::bad_alloc&) {
-    fail(index, FrameError("not enough memory; a lower --resolution or fewer photons need less"),
-         outcome);
+    return !options_.stop_on_error;
   }
   outcome.seconds = seconds_since(start);
   summary_.outcomes.push_back(outcome);
   if (outcome.status != "interrupted")
     farm_.frame_at(index, 1);
-  return !(options_.stop_on_error && outcome.status == "failed");
+  return true;
 }
 
 int Batch::finish() {

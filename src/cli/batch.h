@@ -3,8 +3,7 @@
 #include "cli/batch_summary.h"
 #include "cli/frame_renderer.h"
 
-#include "vdbeam/error.h"
-
+#include <exception>
 #include <future>
 
 namespace vdbeam::cli {
@@ -41,8 +40,9 @@ private:
   Loaded load(int frame, const PreparedScenePtr& previous) const;
   std::future<Loaded> load_aside(int frame, const PreparedScenePtr& previous, bool alone) const;
   Loaded wait_for(std::future<Loaded>& future) const;
+  void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);
-  void fail(std::size_t index, const Error& error, FrameOutcome& outcome);
+  void fail(std::size_t index, const std::exception& error, FrameOutcome& outcome);
   std::string title(std::size_t index) const;
   void say(const std::string& line) const;
   int finish();

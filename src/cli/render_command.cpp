@@ -150,10 +150,10 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
                  "Save the passes so far every so often: 300s, 5m, or a number of passes")
       ->option_text("T|N");
   app.add_flag("--no-resume", options.no_resume, "Do not go on from a checkpoint");
-  auto* skip = app.add_flag("--skip-existing", batch.skip_existing,
-                            "Leave frames alone whose finished image of this scene is there");
-  app.add_flag("--overwrite", options.overwrite, "Render all frames, whatever --skip-existing says")
-      ->needs(skip);
+  app.add_flag("--skip-existing", batch.skip_existing,
+               "Leave frames alone whose finished image of this scene is there");
+  app.add_flag("--overwrite", options.overwrite,
+               "Render all frames, whatever --skip-existing says");
   add_choice<bool>(app, "--on-error", batch.stop_on_error, {{"continue", false}, {"stop", true}},
                    "What a failed frame does to the others; default: continue");
   add_choice<MissingFile>(

@@ -127,6 +127,8 @@ FilmFileInfo parse_info(const Imf::InputFile& file, const std::string& path) {
   FilmFileInfo info;
   Image& header = info.header;
   copy_attributes(file.header(), header);
+  for (const char* of_every_file : {"pixelAspectRatio", "screenWindowWidth"})
+    header.numbers.erase(of_every_file);
   const auto text = [&](const char* name) {
     const auto found = header.metadata.find(name);
     return found == header.metadata.end() ? std::string() : found->second;

@@ -8,6 +8,7 @@ namespace {
 
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
+using test::ProgramResult;
 
 class BatchCommand : public test::CliTest {
 protected:
@@ -28,7 +29,6 @@ protected:
     return read_image(file(name)).find("R")->data;
   }
 };
-using test::ProgramResult;
 
 TEST_F(BatchCommand, SkipsFinishedFramesAndNoOthers) {
   write_sequence();
@@ -127,8 +127,7 @@ TEST_F(BatchCommand, BadValuesAreRefused) {
                                                 {"--region", "1,2,3"},
                                                 {"--checkpoint", "0"},
                                                 {"--checkpoint", "soon"},
-                                                {"--on-error", "panic"},
-                                                {"--overwrite"}}) {
+                                                {"--on-error", "panic"}}) {
     Names arguments{cloud, "-o", "a.exr", "--passes", "1"};
     arguments.insert(arguments.end(), option.begin(), option.end());
     const auto result = render(arguments);

@@ -169,7 +169,7 @@ TEST_P(Interrupt, WritesTheImageSoFar) {
 /// One pass of these takes minutes or hours: it is abandoned.
 TEST_P(Interrupt, EndsWithinSecondsInsideAPass) {
   using Words = std::vector<std::string>;
-  const Words endless_paths{"--estimator", "path", "--set", "volume.0.extinction=1e6", "--set",
+  const Words endless_paths{"--estimator",      "path", "--set", "volume.0.extinction=1e6", "--set",
                             "volume.0.albedo=1"};
   const Words many_photons{"--set", "render.photons=1000", "--set", "render.keep=1e-6"};
   for (const Words& options : {endless_paths, many_photons}) {
