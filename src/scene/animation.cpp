@@ -44,8 +44,10 @@ struct Curve {
     if (!smooth)
       return values[i] + t * (values[next] - values[i]);
     const double s = 1 - t;
-    return s * s * (1 + 2 * t) * values[i] + t * t * (3 - 2 * t) * values[next] +
-           width * t * s * (s * slope(i) - t * slope(next));
+    const double value = s * s * (1 + 2 * t) * values[i] + t * t * (3 - 2 * t) * values[next] +
+                         width * t * s * (s * slope(i) - t * slope(next));
+    const auto [low, high] = std::minmax(values[i], values[next]);
+    return std::clamp(value, low, high); // rounding must not leave a key's range
   }
 };
 

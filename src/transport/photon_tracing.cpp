@@ -67,9 +67,7 @@ public:
   std::uint64_t collisions = 0;
 
 private:
-  bool stopped() const {
-    return settings_.stop && settings_.stop->load(std::memory_order_relaxed);
-  }
+  bool stopped() const { return settings_.stop && settings_.stop->load(std::memory_order_relaxed); }
 
   /// To the next real collision, storing on the way.
   Collision fly(const Ray& ray, Rgb& flux, bool storable, Rng& rng) {
@@ -133,6 +131,8 @@ PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings)
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, chunks, 1),
                     [&](const tbb::blocked_range<std::uint64_t>& range) {
                       for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
+                        if (settings.stop && settings.stop->load(std::memory_order_relaxed))
+                          return;
                         const std::uint64_t end = std::min(paths, (chunk + 1) * paths_per_chunk);
                         std::size_t light = 0;
                         for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {

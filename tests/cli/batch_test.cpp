@@ -137,14 +137,16 @@ TEST_F(BatchCommand, BadValuesAreRefused) {
 }
 
 TEST_F(BatchCommand, ASignalLeavesACheckpointThatTheNextRunFinishes) {
-  const Names scene{"render",       cloud,   "--passes", "60",
-                    "--resolution", "64x36", "--set",    "render.photons=20000",
-                    "-o",           "a.exr"};
+  const Names scene{"render", cloud,   "--passes",     "100",   "--set", "render.photons=2000",
+                    "-o",     "a.exr", "--resolution", "32x18", "-f",    "1"};
   ASSERT_EQ(run(scene).code, 0);
   const std::vector<float> whole = pixels("a.exr");
   std::filesystem::remove(folder_ / "a.exr");
-  const pid_t child = start(scene);
-  wait_for_output();
+  Names with_checkpoint = scene;
+  with_checkpoint.insert(with_checkpoint.end(), {"--checkpoint", "1"});
+  const pid_t child = start(with_checkpoint);
+  for (int i = 0; i < 2000 && !exists("a.checkpoint.exr"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(child, SIGTERM);
   const auto stopped = finish(child);
   ASSERT_EQ(stopped.code, 143) << stopped.error;

@@ -2,6 +2,7 @@
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
+#include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
 
 #include <cstring>
@@ -86,7 +87,7 @@ TEST_F(Partial, FilmComesBackBitForBit) {
 TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
   const std::string a = render_range(0, 1), b = render_range(1, 2), d = render_range(4, 4);
   EXPECT_NE(error_of({a, b}).find("passes 1 are there twice"), std::string::npos);
-  EXPECT_NE(error_of({a, d}).find("passes 2-3 are missing"), std::string::npos);
+  EXPECT_NE(error_of({a, d}).find("passes 2,3 are missing"), std::string::npos);
   EXPECT_NE(error_of({b}).find("passes 0 are missing"), std::string::npos);
   EXPECT_NE(error_of({a}, {false, 6, ""}).find("passes 2-5 are missing"), std::string::npos);
   EXPECT_NE(error_of({a}, {false, 1, ""}).find("passes 1 are more than"), std::string::npos);
