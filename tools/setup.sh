@@ -16,6 +16,11 @@ packages=(
   # tools
   python3 python3-numpy python3-matplotlib
 )
+# Daemons, 13 MB, for the test of tests/farm that runs jobs on a real Slurm; without them it is
+# skipped. Only where they are asked for: Debian starts munged when it is installed.
+if [[ ${VDBEAM_SETUP_SLURM:-} == 1 ]]; then
+  packages+=(munge slurmctld slurmd slurm-client)
+fi
 
 if [[ ${1:-} == --list ]]; then
   echo "${packages[*]}"

@@ -5,13 +5,14 @@
 namespace vdbeam::cli {
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 6> table{{
+  static constexpr std::array<Command, 7> table{{
       {"render", "Render a scene or a VDB to EXR", add_render},
       {"info", "Show what VDB files hold, what would be rendered, what looks wrong", add_info},
       {"init", "Write a commented scene file for a VDB", add_init},
       {"plan", "Show which stages a scene needs, which are left out and why", add_plan},
       {"compare", "Measure the error of an image against a reference", add_compare},
       {"merge", "Join partial images of one frame, bit for bit", add_merge},
+      {"farm", "Write a job file for a render farm", add_farm},
   }};
   return table;
 }

@@ -82,4 +82,16 @@ SceneDocument SceneOptions::open() const {
   return SceneDocument(path_, overrides);
 }
 
+std::vector<std::string> SceneOptions::words() const {
+  std::vector<std::string> words;
+  for (const Shorthand& shorthand : shorthands_)
+    if (!shorthand.value.empty())
+      words.push_back(shorthand.option + "=" + shorthand.value);
+  if (!resolution_.empty())
+    words.push_back("--resolution=" + resolution_);
+  for (const std::string& text : sets_)
+    words.push_back("--set=" + text);
+  return words;
+}
+
 } // namespace vdbeam::cli

@@ -17,6 +17,9 @@ public:
   const std::string& path() const { return path_; }
   /// Reads the scene with everything the command line changes. Throws InputError.
   SceneDocument open() const;
+  /// The words of a command line that change the scene in the same way; the scene is not among
+  /// them.
+  std::vector<std::string> words() const;
 
 private:
   void declare_shorthand(CLI::App& app, const std::string& option, const std::string& key,

@@ -1,6 +1,8 @@
 #include "cli/signals.h"
 
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 
 namespace vdbeam::cli {
 namespace {
@@ -8,20 +10,34 @@ namespace {
 std::atomic<bool> stop{false};
 std::atomic<bool> snapshot{false};
 std::atomic<int> received{0};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+std::atomic<std::int64_t> received_at{0}; ///< milliseconds
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+              std::atomic<std::int64_t>::is_always_lock_free);
+
+/// A queue may signal every process of a job, and a script of the job pass the signal on: two so
+/// close to each other are one.
+constexpr std::int64_t same_signal = 100;
+
+std::int64_t milliseconds_now() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
+}
 
 extern "C" void on_signal(int number) {
   if (number == SIGUSR1) {
     snapshot = true;
     return;
   }
+  const std::int64_t now = milliseconds_now();
   int none = 0;
-  if (!received.compare_exchange_strong(none, number)) {
+  if (received.compare_exchange_strong(none, number)) {
+    received_at = now;
+    stop = true;
+  } else if (now - received_at > same_signal) {
     std::signal(number, SIG_DFL);
     std::raise(number);
-    return;
   }
-  stop = true;
 }
 
 } // namespace

@@ -1,0 +1,223 @@
+#include "cli/commands.h"
+#include "cli/output_paths.h"
+#include "cli/scene_options.h"
+#include "farm/engines.h"
+#include "output/atomic_file.h"
+#include "output/output_formats.h"
+#include "scene/frame_range.h"
+#include "scene/text.h"
+#include "scene/toml_value.h"
+#include "vdbeam/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+namespace vdbeam::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const examples = R"(Examples:
+  vdbeam farm slurm smoke.toml -f 1-100 -o out/smoke.####.exr --job smoke.sbatch && sbatch smoke.sbatch
+  vdbeam farm slurm smoke.toml -f 1-100 -o out/smoke.####.exr --passes 64 --splits 4 --job s.sh && bash s.sh
+  vdbeam farm openjd smoke.toml -f 1-100 -o out/smoke.####.exr --chunk 5 --job smoke.json
+docs/farm.md says more, also for OpenCue, Deadline and HTCondor.)";
+
+/// Tasks of an array that Slurm takes unless its administrator allows more (MaxArraySize).
+constexpr int usual_array_limit = 1000;
+
+struct FarmOptions {
+  SceneOptions scene;
+  FarmJob job;
+  std::string frames, time_limit, checkpoint = "300s";
+  std::vector<std::string> also;
+  std::uint64_t memory_mib = 0;
+};
+
+double read_duration(const std::string& option, const std::string& text) {
+  const auto seconds = parse_duration(text);
+  if (!seconds || *seconds <= 0)
+    throw InputError(
+        one_line(fmt::format("{} {}: must look like 300s, 5m or 1h30m", option, text)));
+  return *seconds;
+}
+
+std::vector<int> read_frames(const std::string& text) {
+  try {
+    return parse_frame_range(text);
+  } catch (const InputError& error) {
+    throw InputError(one_line(fmt::format("--frames: {}", error.what())));
+  }
+}
+
+std::string absolute(const std::string& path) {
+  return path.empty() ? "" : fs::absolute(path).lexically_normal().string();
+}
+
+/// The scene's name with nothing in it that a queueing system or a shell gives a meaning to.
+std::string job_name(const std::string& scene) {
+  std::string name = fs::path(scene).stem().string().substr(0, 60);
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) { return c > 127 || (!std::isalnum(c) && c != '.' && c != '-'); }, '_');
+  return name.empty() ? "vdbeam" : name;
+}
+
+/// Memory for the frame that needs most, of the first, the middle and the last one. What such a
+/// frame lacks is told when its turn comes, as `vdbeam render` does; only where all of them lack
+/// something is it an error now.
+void plan_memory(FarmJob& job, const SceneDocument& document) {
+  job.memory_mib = job.merge_memory_mib = 0;
+  std::exception_ptr first_error;
+  for (const std::size_t i : {std::size_t{0}, job.frames.size() / 2, job.frames.size() - 1}) {
+    try {
+      const Scene scene = document.scene_at(job.frames[i]);
+      const RenderPlan plan = make_plan(scene);
+      job.memory_mib = std::max(job.memory_mib, task_memory_mib(plan));
+      job.merge_memory_mib = std::max(job.merge_memory_mib, merge_memory_mib(plan));
+    } catch (const Error&) {
+      if (!first_error)
+        first_error = std::current_exception();
+    }
+  }
+  if (job.memory_mib == 0)
+    std::rethrow_exception(first_error);
+}
+
+/// The first of the frames that has everything it needs. Throws InputError where none has.
+Scene first_scene(const SceneDocument& document, const std::vector<int>& frames) {
+  for (const int frame : frames) {
+    try {
+      return document.scene_at(frame);
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  return document.scene_at(frames.front());
+}
+
+FarmJob make_job(const FarmOptions& options) {
+  FarmJob job = options.job;
+  const SceneDocument document = options.scene.open();
+  job.frames = read_frames(options.frames);
+  check_output_path("-o", job.output, job.frames);
+  output_format(job.output);
+  job.name = job_name(options.scene.path());
+  job.folder = fs::current_path().string();
+  job.scene = absolute(options.scene.path());
+  job.output = absolute(job.output);
+  job.logs = job.logs.empty() ? fs::path(job.output).parent_path().string() : absolute(job.logs);
+  job.job_file = absolute(job.job_file);
+  job.options = options.scene.words();
+  job.options.insert(job.options.end(), options.also.begin(), options.also.end());
+  const RenderSettings render = first_scene(document, job.frames).render;
+  job.passes = render.passes.value_or(0);
+  if (job.splits > 1 && (!render.passes || render.time || render.target_error))
+    throw InputError("--splits: a frame can be cut in parts where its end is a number of passes "
+                     "and nothing else; say e.g. --passes 64");
+  if (render.threads > 0)
+    job.threads = render.threads;
+  job.checkpoint = read_duration("--checkpoint", options.checkpoint);
+  if (!options.time_limit.empty())
+    job.time_limit = read_duration("--time-limit", options.time_limit);
+  job.memory_mib = job.merge_memory_mib = options.memory_mib;
+  if (options.memory_mib == 0)
+    plan_memory(job, document);
+  return job;
+}
+
+int run_farm(const FarmOptions& options, const FarmEngine& engine) {
+  const FarmJob job = make_job(options);
+  const std::string text = engine.write(job);
+  if (job.job_file.empty()) {
+    fmt::print("{}", text);
+  } else {
+    AtomicFile file(job.job_file);
+    file.write(text.data(), text.size());
+    file.commit();
+  }
+  const int tasks = task_count(job);
+  fmt::print(stderr, "{} frames in {} tasks{}, each of {} threads and {} MiB; submit with: {}\n",
+             job.frames.size(), tasks * job.splits,
+             job.splits > 1 ? fmt::format(" and {} merges", tasks) : "", job.threads,
+             job.memory_mib, engine.how_to_submit(job));
+  if (tasks > usual_array_limit)
+    fmt::print(stderr,
+               "note: Slurm takes arrays of {} tasks unless MaxArraySize was raised; --chunk {} "
+               "makes few enough\n",
+               usual_array_limit,
+               (static_cast<int>(job.frames.size()) + usual_array_limit - 1) / usual_array_limit);
+  return 0;
+}
+
+void declare(CLI::App& app, FarmOptions& options) {
+  options.scene.declare(app);
+  FarmJob& job = options.job;
+  app.add_option("-f,--frames", options.frames, "Frames: 7, 1-24, 1-100x2, 1,5,9-12")
+      ->required()
+      ->option_text("RANGE");
+  app.add_option("-o,--output", job.output, "Images that the tasks write")
+      ->required()
+      ->option_text("FILE");
+  app.add_option("--job", job.job_file, "Job file to write; default: standard output")
+      ->option_text("FILE");
+  app.add_option("--chunk", job.chunk, "Frames of one task; default 1")
+      ->check(CLI::Range(1, 1'000'000))
+      ->option_text("N");
+  app.add_option("--splits", job.splits, "Parts of a frame, by passes, merged when all are there")
+      ->check(CLI::Range(1, 1000))
+      ->option_text("N");
+  app.add_option("--running", job.running, "Tasks that may run at once; default: no limit")
+      ->check(CLI::Range(1, 1'000'000))
+      ->option_text("N");
+  app.add_option("--time-limit", options.time_limit, "Time of one task, e.g. 2h")->option_text("T");
+  app.add_option("--memory", options.memory_mib, "Memory of one task; default: from the plan")
+      ->option_text("MIB");
+  app.add_option("--checkpoint", options.checkpoint, "Time between checkpoints; default 300s")
+      ->option_text("T");
+  app.add_option("--logs", job.logs, "Folder of the tasks' logs; default: that of the images")
+      ->check(CLI::ExistingDirectory)
+      ->option_text("FOLDER");
+  app.add_option("--also", options.also,
+                 "One more option of vdbeam render, e.g. --also=--missing=hold")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->option_text("OPTION");
+  app.add_option("--program", job.program, "vdbeam on the farm's machines; default: vdbeam")
+      ->option_text("PATH");
+  app.footer(examples);
+}
+
+} // namespace
+
+CommandRun add_farm(CLI::App& app) {
+  app.require_subcommand(1);
+  struct Choice {
+    const FarmEngine* engine;
+    CLI::App* command;
+    FarmOptions options;
+  };
+  const auto choices = std::make_shared<std::vector<std::unique_ptr<Choice>>>();
+  for (const FarmEngine& engine : farm_engines()) {
+    choices->push_back(std::make_unique<Choice>());
+    Choice& choice = *choices->back();
+    choice.engine = &engine;
+    choice.command = app.add_subcommand(engine.name, engine.description);
+    declare(*choice.command, choice.options);
+  }
+  app.footer(examples);
+  return [choices] {
+    for (const auto& choice : *choices)
+      if (choice->command->parsed())
+        return run_farm(choice->options, *choice->engine);
+    return static_cast<int>(ExitCode::internal_error);
+  };
+}
+
+} // namespace vdbeam::cli
