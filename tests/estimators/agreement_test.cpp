@@ -83,6 +83,14 @@ MemoryScene overlap() {
   return scene;
 }
 
+/// Grey throughout, but no albedo that all volumes share: one channel, albedo in the rays' weights.
+MemoryScene grey_overlap() {
+  MemoryScene scene = overlap();
+  scene.scene.volumes[0].albedo = Rgb(0.95f);
+  scene.scene.volumes[1].albedo = Rgb(0.5f);
+  return scene;
+}
+
 MemoryScene chromatic() {
   MemoryScene scene = overlap();
   scene.scene.volumes[0].extinction_scale = {1, 0.5f, 0.2f};
@@ -153,6 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                          testing::Values(Case{"lamps", lamps},
                                          Case{"lamp_inside", lamp_inside, 0.04},
                                          Case{"sun_and_sky", sun_and_sky}, Case{"overlap", overlap},
+                                         Case{"grey_overlap", grey_overlap},
                                          Case{"chromatic", chromatic}),
                          case_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, SingleBounce,
