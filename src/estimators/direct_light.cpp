@@ -1,6 +1,9 @@
 #include "estimators/direct_light.h"
 
 #include "transport/distance_sampling.h"
+#include "transport/equi_angular.h"
+
+#include <optional>
 
 namespace vdbeam {
 
@@ -32,6 +35,80 @@ Rgb scattered_light(const World& world, const Light& light, const PhaseFunction&
   return sum;
 }
 
+/// Single scattering along one camera ray.
+class RayLighting {
+public:
+  RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
+              const std::vector<bool>& sampled, Rng& rng)
+      : world_(world), ray_(ray), distances_(world.medium, ray, profile), rng_(rng) {
+    for (std::size_t l = 0; l < world.lights.size(); ++l) {
+      if (!sampled[l])
+        continue;
+      const Light& light = world.lights[l];
+      std::optional<EquiAngular> near;
+      if (light.position() != nullptr && profile.front() < profile.back())
+        near.emplace(ray, *light.position(), profile.front(), profile.back());
+      if (near && !near->useful())
+        near.reset();
+      lights_.push_back({&light, near});
+    }
+  }
+
+  /// All lights at a distance drawn by what scatters.
+  Rgb by_medium(float u) {
+    const bool chromatic = world_.medium.chromatic;
+    const int c = chromatic ? std::min(2, static_cast<int>(rng_.uniform() * 3)) : 0;
+    Rgb sum;
+    if (!(distances_.opacity(c) > 0))
+      return sum;
+    const ScatterPoint point = distances_.sample(u, c);
+    for (const SampledLight& light : lights_) {
+      const float other = light.near ? light.near->pdf(point.t) : 0;
+      sum += scattered(point, *light.light) * (point.pdf / (point.pdf + other));
+    }
+    return sum;
+  }
+
+  /// Each light that stands in or near the medium, at a distance drawn by its 1 / r^2.
+  Rgb by_nearness(float u) {
+    Rgb sum;
+    for (const SampledLight& light : lights_) {
+      if (!light.near)
+        continue;
+      const ScatterPoint point = distances_.at(light.near->sample(u));
+      const float other = light.near->pdf(point.t);
+      if (point.pdf > 0)
+        sum += scattered(point, *light.light) * (point.pdf / (point.pdf + other));
+    }
+    return sum;
+  }
+
+private:
+  struct SampledLight {
+    const Light* light;
+    std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
+  };
+
+  /// Balance heuristic (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
+  Rgb scattered(const ScatterPoint& point, const Light& light) {
+    const Medium& medium = world_.medium;
+    Rgb sum;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+      const Rgb& weight = (*point.weights)[v];
+      if (max_component(weight) > 0)
+        sum += weight * scattered_light(world_, light, medium.phases[medium.volumes[v].group],
+                                        point.position, ray_.direction, rng_);
+    }
+    return sum;
+  }
+
+  const World& world_;
+  const Ray& ray_;
+  DistanceSampler distances_;
+  Rng& rng_;
+  std::vector<SampledLight> lights_;
+};
+
 } // namespace
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
@@ -39,26 +116,13 @@ Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
-  const Medium& medium = world.medium;
-  DistanceSampler distances(medium, ray, profile);
+  RayLighting lighting(world, ray, profile, sampled, rng);
+  const float share = 1 / static_cast<float>(samples);
   for (int i = 0; i < samples; ++i) {
-    const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(samples);
-    const int c = medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
-    if (!(distances.opacity(c) > 0))
-      continue;
-    const ScatterPoint point = distances.sample(u, c);
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
-      const Rgb& weight = (*point.weights)[v];
-      if (!(max_component(weight) > 0))
-        continue;
-      for (std::size_t l = 0; l < world.lights.size(); ++l)
-        if (sampled[l])
-          sum += weight * scattered_light(world, world.lights[l],
-                                          medium.phases[medium.volumes[v].group], point.position,
-                                          ray.direction, rng);
-    }
+    sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
+    sum += lighting.by_nearness((static_cast<float>(i) + rng.uniform()) * share);
   }
-  return sum / static_cast<float>(samples);
+  return sum * share;
 }
 
 } // namespace vdbeam

@@ -45,6 +45,8 @@ public:
   /// True where only sample_incident can find the light.
   virtual bool is_delta() const = 0;
   virtual LightType type() const = 0;
+  /// Where a local light stands, in render space; null for lights at infinity.
+  virtual const Vec3d* position() const { return nullptr; }
   /// False where scattered rays that escape find the light as well as shadow rays would (a constant
   /// sky), so that the path tracer need not spend any. Never false for a delta light.
   virtual bool wants_shadow_rays() const { return true; }

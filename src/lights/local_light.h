@@ -15,6 +15,7 @@ public:
   Rgb escaped_radiance(const Vec3f&) const override { return {}; }
   EmittedPhoton emit(double place, Rng& rng) const override;
   bool is_delta() const override { return true; }
+  const Vec3d* position() const override { return &position_; }
 
 protected:
   /// Photons leave within `emission_cone`, which must hold every direction in which the light both

@@ -21,15 +21,23 @@ ScatterPoint DistanceSampler::sample(float u, int c) {
   const float a = channel_tau(low, c), b = channel_tau(low + 1, c);
   const float fraction = b > a ? std::clamp((tau - a) / (b - a), 0.0f, 1.0f) : 0.5f;
   const float t = profile_.t(low) + fraction * (profile_.t(low + 1) - profile_.t(low));
-  weigh(low, t);
-  return {t, ray_.at(t), &weights_};
+  return weigh(low, t);
+}
+
+ScatterPoint DistanceSampler::at(float t) {
+  std::size_t low = 0, high = profile_.knots() - 1;
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (profile_.t(middle) <= t ? low : high) = middle;
+  }
+  return weigh(low, t);
 }
 
 /// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in
 /// t, so the optical depth from the knot to t is known exactly. The density of the
 /// draw is sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over
 /// the channels (balance heuristic).
-void DistanceSampler::weigh(std::size_t knot, float t) {
+ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
   Rgb tau, linear_tau, linear_sigma;
   for (std::size_t v = 0; v < weights_.size(); ++v) {
@@ -49,6 +57,7 @@ void DistanceSampler::weigh(std::size_t knot, float t) {
   for (Rgb& weight : weights_)
     for (int c = 0; c < 3; ++c)
       weight[c] = pdf > 0 ? weight[c] * std::exp(-tau[c]) / pdf : 0;
+  return {t, pdf, ray_.at(t), &weights_};
 }
 
 } // namespace vdbeam

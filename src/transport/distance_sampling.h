@@ -7,6 +7,7 @@ namespace vdbeam {
 /// A scattering point drawn along a ray.
 struct ScatterPoint {
   float t = 0;
+  float pdf = 0; ///< density of t, over the channels' choice too
   Vec3f position;
   /// Per volume: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws is the
   /// integral of sigma_s Tr along the ray.
@@ -30,9 +31,13 @@ public:
   /// medium is chromatic and is 0 otherwise. Requires opacity(c) > 0.
   ScatterPoint sample(float u, int c);
 
+  /// The point at distance t, inside the profile, with the weights and the density that `sample`
+  /// would give it: to combine it with other ways to draw.
+  ScatterPoint at(float t);
+
 private:
   float channel_tau(std::size_t knot, int c) const;
-  void weigh(std::size_t knot, float t);
+  ScatterPoint weigh(std::size_t knot, float t);
 
   const Medium& medium_;
   const Ray& ray_;

@@ -127,7 +127,7 @@ MemoryScene probe(DensityField field, const Vec3<int>& cells,
                   const PhotonFurnace& furnace_settings) {
   MemoryScene scene = furnace(std::move(field), cells, furnace_settings.depth);
   scene.scene.volumes[0].phase = test::henyey_greenstein(furnace_settings.g);
-  scene.look({0, 0, 200}, {0, 0, 0}, 0.01, 4, 4);
+  scene.look({0, 0, 2000}, {0, 0, 0}, 0.001, 4, 4);
   RenderSettings& render = scene.scene.render;
   render.photons = 20000;
   render.keep = std::min(1.0, 3 / furnace_settings.depth);
