@@ -173,6 +173,17 @@ INSTANTIATE_TEST_SUITE_P(Kinds, BeamFurnace,
                                          PhotonFurnace{10, 0, 0.02, KernelShape::constant},
                                          PhotonFurnace{100, 0, 0.06}));
 
+// A thousand mean free paths: few photons, each of a long path. The kernel must not be wide beside
+// the skin that a camera sees, or perspective would tilt its support out of it.
+TEST(BeamFurnaceKernels, OpticalDepthOfAThousand) {
+  MemoryScene scene = probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, {1000, 0, 0.1});
+  scene.scene.render.photons = 10000;
+  scene.scene.render.keep = 0.02;
+  const test::PassMeans means = test::render_passes(scene, EstimatorType::beam, 40);
+  expect_one(means);
+  EXPECT_LT(means.total[0].error(), 0.1);
+}
+
 TEST(BeamFurnaceKernels, FourthOrder) {
   MemoryScene scene =
       probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, {10, 0, 0.05, KernelShape::fourth_order});
