@@ -124,10 +124,10 @@ void single_rays(benchmark::State& state) {
           weights[static_cast<std::size_t>(k)] =
               tile.weights[p.offset + static_cast<std::size_t>(16 * k + r % 16)];
         PhotonMap::RayProfile profile;
-        profile.ray = {tile.reference - tile.axis_w * tile.camera_distance,
+        profile.ray = {tile.reference - tile.axis_w * static_cast<float>(tile.camera_distance),
                        tile.axis_u * tile.du[r] + tile.axis_v * tile.dv[r] +
                            tile.axis_w * tile.dw[r]};
-        profile.t_begin = p.t_begin;
+        profile.t_begin = static_cast<float>(p.t_begin);
         profile.step = p.step;
         profile.knots = p.knots;
         profile.weights = weights.data();

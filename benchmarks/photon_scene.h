@@ -128,8 +128,9 @@ inline std::vector<BeamTile> camera_tiles(const NoisyBall& ball, int width, int 
                    static_cast<std::size_t>(sub * knots) * 16};
         float tau = 0;
         for (int k = 0; k < knots; ++k) {
-          const float sigma = ball.at(Vec3f{0, 0, distance} +
-                                      d * (profile.t_begin + static_cast<float>(k) * profile.step));
+          const float sigma =
+              ball.at(Vec3f{0, 0, distance} + d * (static_cast<float>(profile.t_begin) +
+                                                   static_cast<float>(k) * profile.step));
           tau += sigma * profile.step;
           tile.weights[profile.offset + static_cast<std::size_t>(k * 16 + lane)] =
               tau < 14 ? std::exp(-tau) * sigma : 0;

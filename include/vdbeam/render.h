@@ -28,8 +28,13 @@ struct RenderStatistics {
   double prepare = 0; ///< majorants, lights
   double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0,
          path = 0, write = 0;
-  std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, lookups = 0,
-                camera_rays = 0;
+  std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, camera_rays = 0;
+  std::uint64_t lookups = 0;        ///< rays or points gathered from the photon map
+  std::uint64_t depth_profiles = 0; ///< camera rays whose optical depth was integrated
+  std::uint64_t shadow_rays = 0;    ///< of camera rays' single scattering
+  std::uint64_t camera_walks = 0;   ///< random walks from camera rays (path)
+  std::uint64_t neighbourhoods = 0; ///< photons whose radius follows their neighbours'
+  std::uint64_t directions = 0;     ///< photons stored with their direction
   std::uint64_t peak_memory = 0; ///< bytes, whole process
   std::size_t bytes_per_photon = 0;
 };

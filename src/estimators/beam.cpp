@@ -19,10 +19,12 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
     scratch.statistics.contributions += stage_.map().query(scratch.tile).contributions;
     const float* radiance = scratch.tile.radiance.data();
     for (int i = 0; i < TileRays::count; ++i)
-      if (scratch.rays[i].inside)
+      if (scratch.rays[i].inside) {
+        scratch.statistics.lookups += scratch.rays[i].profile.empty() ? 0 : 1;
         image.indirect[scratch.rays[i].pixel] =
             channels == 1 ? Rgb(radiance[i])
                           : Rgb(radiance[i], radiance[256 + i], radiance[512 + i]);
+      }
   });
 }
 

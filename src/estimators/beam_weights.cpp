@@ -16,7 +16,7 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
   tile.axis_u = Vec3f(u);
   tile.axis_v = Vec3f(v);
   tile.axis_w = Vec3f(w);
-  tile.camera_distance = static_cast<float>(distance);
+  tile.camera_distance = distance;
   for (int i = 0; i < TileRays::count; ++i) {
     tile.du[i] = static_cast<float>(dot(rays[i].direction, u));
     tile.dv[i] = static_cast<float>(dot(rays[i].direction, v));
@@ -70,11 +70,11 @@ public:
     profile.step = static_cast<float>((range.end - range.begin) / range.intervals);
     if (settings_.store == PhotonStore::fluence) {
       profile.knots = range.intervals + 1;
-      profile.t_begin = static_cast<float>(range.begin);
+      profile.t_begin = range.begin;
     } else {
       // A knot in the middle of each interval, and one of weight 0 before and after.
       profile.knots = range.intervals + 2;
-      profile.t_begin = static_cast<float>(range.begin - 0.5 * profile.step);
+      profile.t_begin = range.begin - 0.5 * static_cast<double>(profile.step);
     }
     profile.offset = tile_.weights.size();
     tile_.weights.resize(profile.offset + static_cast<std::size_t>(profile.knots) * 16 * groups_ *

@@ -11,16 +11,19 @@ namespace {
 
 /// Radiance that one light scatters at a point into the ray, per unit of weight.
 Rgb scattered_light(const World& world, const Light& light, const PhaseFunction& phase,
-                    const Vec3f& point, const Vec3f& direction, Rng& rng) {
+                    const Vec3f& point, const Vec3f& direction, Rng& rng,
+                    std::uint64_t& shadow_rays) {
   Rgb sum;
   const float u = rng.uniform(), v = rng.uniform();
   const IncidentSample sample = light.sample_incident(point, u, v);
   if (max_component(sample.value) > 0) {
     const float p = phase.evaluate(dot(direction, sample.wi));
     const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    if (p * mis > 0)
+    if (p * mis > 0) {
+      ++shadow_rays;
       sum += sample.value * (p * mis) *
              exact_transmittance(world.medium, {point, sample.wi}, sample.distance);
+    }
   }
   if (light.is_delta())
     return sum;
@@ -30,6 +33,7 @@ Rgb scattered_light(const World& world, const Light& light, const PhaseFunction&
   if (max_component(radiance) > 0) {
     const float p = phase.evaluate(dot(direction, wi));
     const float mis = p / (p + light.incident_pdf(point, wi));
+    ++shadow_rays;
     sum += radiance * mis * exact_transmittance(world.medium, {point, wi}, infinity);
   }
   return sum;
@@ -39,8 +43,9 @@ Rgb scattered_light(const World& world, const Light& light, const PhaseFunction&
 class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
-              const std::vector<bool>& sampled, Rng& rng)
-      : world_(world), ray_(ray), distances_(world.medium, ray, profile), rng_(rng) {
+              const std::vector<bool>& sampled, Rng& rng, std::uint64_t& shadow_rays)
+      : world_(world), ray_(ray), distances_(world.medium, ray, profile), rng_(rng),
+        shadow_rays_(shadow_rays) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampled[l])
         continue;
@@ -97,7 +102,7 @@ private:
       const Rgb& weight = (*point.weights)[v];
       if (max_component(weight) > 0)
         sum += weight * scattered_light(world_, light, medium.phases[medium.volumes[v].group],
-                                        point.position, ray_.direction, rng_);
+                                        point.position, ray_.direction, rng_, shadow_rays_);
     }
     return sum;
   }
@@ -106,17 +111,19 @@ private:
   const Ray& ray_;
   DistanceSampler distances_;
   Rng& rng_;
+  std::uint64_t& shadow_rays_;
   std::vector<SampledLight> lights_;
 };
 
 } // namespace
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
-                 const std::vector<bool>& sampled, int samples, Rng& rng) {
+                 const std::vector<bool>& sampled, int samples, Rng& rng,
+                 std::uint64_t& shadow_rays) {
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
-  RayLighting lighting(world, ray, profile, sampled, rng);
+  RayLighting lighting(world, ray, profile, sampled, rng, shadow_rays);
   const float share = 1 / static_cast<float>(samples);
   for (int i = 0; i < samples; ++i) {
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);

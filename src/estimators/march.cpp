@@ -18,7 +18,7 @@ public:
     reach_ = world.settings.store == PhotonStore::scatter ? 4 * stage.map().mean_radius() : 0;
   }
 
-  Rgb march(const TileRays::PixelRay& ray, Rng& rng, QueryCounts& counts) {
+  Rgb march(const TileRays::PixelRay& ray, Rng& rng, RenderStatistics& counts) {
     const Medium& medium = world_.medium;
     const float begin =
         std::max(static_cast<float>(-ray.camera.shift), ray.profile.front() - reach_);
@@ -38,6 +38,7 @@ public:
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
         const QueryCounts c = stage_.map().query_point(
             ray.camera.ray.at(t), ray.camera.ray.direction, medium.phases, gathered_.data());
+        ++counts.lookups;
         counts.contributions += c.contributions;
         sum += weigh(before, after, step);
       }
@@ -84,15 +85,13 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
   shade_tiles(input_, stage_, pass, image, statistics,
               [&](TileScratch& scratch, const RngKey& key) {
                 RayMarcher marcher(input_.world, stage_);
-                QueryCounts counts;
                 for (int i = 0; i < TileRays::count; ++i) {
                   const TileRays::PixelRay& ray = scratch.rays[i];
                   if (!ray.inside || ray.profile.empty())
                     continue;
                   Rng rng(key, RngStage::march, ray.pixel);
-                  image.indirect[ray.pixel] = marcher.march(ray, rng, counts);
+                  image.indirect[ray.pixel] = marcher.march(ray, rng, scratch.statistics);
                 }
-                scratch.statistics.contributions += counts.contributions;
               });
 }
 

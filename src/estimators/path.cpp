@@ -23,12 +23,20 @@ constexpr float roulette_below = 0.1f;
 PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
   for (std::size_t i = 0; i < input_.world.lights.size(); ++i)
     shadow_rays_.push_back(input_.world.lights[i].wants_shadow_rays());
+  for (const Volume& volume : input_.world.medium.volumes)
+    scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
   const int samples = input_.world.settings.direct_samples;
   direct_samples_ = samples > 0 ? samples : 4;
 }
 
 struct PathEstimator::Outputs {
   Rgb direct, indirect;
+};
+
+/// What a thread keeps from pixel to pixel.
+struct PathEstimator::Scratch {
+  DepthProfile profile;
+  RenderStatistics counts;
 };
 
 struct PathEstimator::State {
@@ -116,6 +124,7 @@ void PathEstimator::turn(State& state, const PhaseFunction& phase, Rng& rng) con
 /// The walk after the first scattering, until it leaves or ends.
 void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
   const World& world = input_.world;
+  LengthRoulette length;
   while (!input_.stopped()) {
     const Collision hit = next_scattering(world.medium, state.ray, state.throughput, rng);
     if (hit.volume == nullptr) {
@@ -125,7 +134,8 @@ void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
     if (world.settings.max_bounces && state.bounces >= *world.settings.max_bounces)
       return;
     state.throughput *= hit.volume->albedo;
-    if (!survive_roulette(roulette_below, state.throughput, rng))
+    if (!survive_roulette(roulette_below, state.throughput, rng) ||
+        !length.survive(state.throughput, rng))
       return;
     const PhaseFunction& phase = world.medium.phases[hit.volume->group];
     state.ray.origin = state.scatter_point = state.ray.at(hit.t);
@@ -136,17 +146,21 @@ void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
 /// rest by walks from points drawn from it.
-void PathEstimator::trace(const CameraRay& camera, DepthProfile& profile, std::size_t pixel,
+void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, std::size_t pixel,
                           const RngKey& key, PassImage& image) const {
   const World& world = input_.world;
+  DepthProfile& profile = scratch.profile;
   Rng rng(key, RngStage::path, pixel);
   profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
                 static_cast<float>(world.settings.cutoff));
   shade_profile(world, camera, profile, pixel, image);
-  if (profile.empty() || (world.settings.max_bounces && *world.settings.max_bounces < 1))
+  scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
+  if (profile.empty() || !scatters_ ||
+      (world.settings.max_bounces && *world.settings.max_bounces < 1))
     return;
   Outputs out;
-  out.direct = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_, rng);
+  out.direct = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_, rng,
+                            scratch.counts.shadow_rays);
   DistanceSampler distances(world.medium, camera.ray, profile);
   const float share = 1 / static_cast<float>(splits_);
   Outputs walks;
@@ -158,6 +172,7 @@ void PathEstimator::trace(const CameraRay& camera, DepthProfile& profile, std::s
   }
   image.direct[pixel] = out.direct + walks.direct * share;
   image.indirect[pixel] = walks.indirect * share;
+  scratch.counts.camera_walks += static_cast<std::uint64_t>(splits_);
 }
 
 void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
@@ -165,18 +180,23 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const Camera& camera = input_.camera;
   const RngKey key{input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
   image.resize(camera.width(), camera.height());
-  tbb::enumerable_thread_specific<DepthProfile> profiles;
+  tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, [&](int x0, int y0, int x1, int y1) {
-    DepthProfile& profile = profiles.local();
+    Scratch& scratch = scratches.local();
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
         Rng jitter(key, RngStage::camera, pixel);
         const double px = x + static_cast<double>(jitter.uniform());
         const double py = y + static_cast<double>(jitter.uniform());
-        trace(camera_ray(input_.world, camera, px, py), profile, pixel, key, image);
+        trace(camera_ray(input_.world, camera, px, py), scratch, pixel, key, image);
       }
   });
+  for (const Scratch& scratch : scratches) {
+    statistics.depth_profiles += scratch.counts.depth_profiles;
+    statistics.shadow_rays += scratch.counts.shadow_rays;
+    statistics.camera_walks += scratch.counts.camera_walks;
+  }
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
   statistics.path +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

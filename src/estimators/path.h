@@ -20,8 +20,9 @@ public:
 private:
   struct Outputs;
   struct State;
+  struct Scratch;
 
-  void trace(const CameraRay& camera, DepthProfile& profile, std::size_t pixel, const RngKey& key,
+  void trace(const CameraRay& camera, Scratch& scratch, std::size_t pixel, const RngKey& key,
              PassImage& image) const;
   void scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
                      Outputs& out) const;
@@ -32,6 +33,7 @@ private:
 
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
+  bool scatters_ = false;         ///< some light may be scattered at all
   int direct_samples_ = 1;        ///< shadow-ray samples per camera ray
   int splits_ = 4;                ///< walks per camera ray
 };

@@ -15,6 +15,9 @@ constexpr double kept_per_path = 4;
 constexpr double paths_per_hit = 2;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 2e6;
+/// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
+/// few.
+constexpr double most_paths_per_photon = 16;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 
@@ -62,7 +65,7 @@ void PhotonStage::choose_lights() {
   for (const Volume& volume : world.medium.volumes)
     scatters = scatters || max_component(volume.albedo) > 0;
   const bool single_bounce = world.settings.max_bounces && *world.settings.max_bounces <= 1;
-  needs_map_ = scatters && world.lights.size() > 0 && !world.medium.empty() &&
+  needs_map_ = scatters && world.lights.size() > 0 && may_see_medium(world, input_.camera) &&
                (!single_bounce || photons_for_first_flight);
 }
 
@@ -77,7 +80,8 @@ void PhotonStage::choose_counts() {
   const double collisions = std::max(1e-3, trace_photons(input_.world, pilot).mean_collisions);
   keep_ = settings.keep > 0 ? settings.keep : std::min(1.0, kept_per_path / collisions);
   const double stored_per_path = collisions * keep_;
-  double paths = static_cast<double>(settings.photons.value_or(0)) / stored_per_path;
+  double paths = static_cast<double>(settings.photons.value_or(0)) *
+                 std::min(1 / stored_per_path, most_paths_per_photon);
   if (!settings.photons)
     paths = std::min(std::max(fewest_paths, paths_per_hit * count_hits(input_)),
                      most_photons / stored_per_path);
@@ -116,6 +120,10 @@ RadiusSettings PhotonStage::radii(int pass) const {
   radii.neighbours = static_cast<float>(neighbours_);
   radii.scale = radius_scale(pass, settings.alpha);
   radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
+  // Kernels as wide as the medium would lose most of its light outside.
+  radii.max_radius = 0.5f * input_.world.region.radius;
+  if (settings.kernel == KernelRadius::fixed)
+    radii.max_radius = infinity;
   if (settings.max_radius > 0)
     radii.max_radius = static_cast<float>(settings.max_radius) * scale;
   // The share is that of a positive kernel; a kernel of fourth order, whose rim is negative, would
@@ -145,6 +153,10 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii(pass),
                           world.settings.kernel_shape);
   statistics.photons_stored += map_.size();
+  if (world.settings.kernel == KernelRadius::adaptive)
+    statistics.neighbourhoods += map_.size();
+  if (map_.has_directions())
+    statistics.directions += map_.size();
   if (map_.size() > 0)
     statistics.bytes_per_photon = map_.bytes() / map_.size();
   statistics.order += map_.times().order;

@@ -8,7 +8,9 @@ void shade_profile(const World& world, const CameraRay& camera, const DepthProfi
   if (!profile.empty()) {
     const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
     tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
-    const float opacity = 1 - mean_component(tr);
+    // Not 1 - tr, which has no digits left where the medium is thin.
+    const float opacity =
+        -mean_component(Rgb(std::expm1(-tau.x), std::expm1(-tau.y), std::expm1(-tau.z)));
     image.opacity[pixel] = opacity;
     image.depth[pixel] =
         static_cast<float>((profile.opacity_depth() + camera.shift * opacity) / world.space.scale);

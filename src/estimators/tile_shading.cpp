@@ -27,11 +27,13 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height());
   const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
-  const auto shade_ray = [&](const TileRays::PixelRay& ray) {
+  const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
+    counts.depth_profiles += ray.profile.empty() ? 0 : 1;
     shade_profile(world, ray.camera, ray.profile, ray.pixel, image);
     Rng rng(key, RngStage::direct, ray.pixel);
-    image.direct[ray.pixel] = direct_light(world, ray.camera.ray, ray.profile,
-                                           stage.sampled_lights(), stage.direct_samples(), rng);
+    image.direct[ray.pixel] =
+        direct_light(world, ray.camera.ray, ray.profile, stage.sampled_lights(),
+                     stage.direct_samples(), rng, counts.shadow_rays);
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, [&](int x0, int y0, int, int) {
@@ -41,7 +43,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
     const Clock::time_point profiled = Clock::now();
     for (int i = 0; i < TileRays::count; ++i)
       if (scratch.rays[i].inside)
-        shade_ray(scratch.rays[i]);
+        shade_ray(scratch.rays[i], scratch.statistics);
     const Clock::time_point shaded = Clock::now();
     if (stage.map().size() > 0)
       gather(scratch, key);
@@ -56,6 +58,9 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
     statistics.direct += scratch.statistics.direct / threads;
     statistics.query += scratch.statistics.query / threads;
     statistics.contributions += scratch.statistics.contributions;
+    statistics.lookups += scratch.statistics.lookups;
+    statistics.depth_profiles += scratch.statistics.depth_profiles;
+    statistics.shadow_rays += scratch.statistics.shadow_rays;
   }
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
 }

@@ -19,7 +19,7 @@ struct BeamTile {
 
   Vec3f reference;                   ///< render space
   Vec3f axis_u, axis_v, axis_w;      ///< orthonormal; w is the central direction
-  float camera_distance = 0;         ///< from the rays' origin to `reference`
+  double camera_distance = 0;        ///< from the rays' origin to `reference`
   alignas(64) float du[ray_count]{}; ///< unit directions in the tile's frame
   alignas(64) float dv[ray_count]{};
   alignas(64) float dw[ray_count]{};
@@ -29,7 +29,7 @@ struct BeamTile {
   /// W(t) = Tr(0, t) * sigma_s(t), for each group of volumes that share a phase function and, where
   /// the extinction is chromatic, each channel.
   struct Profile {
-    float t_begin = 0;
+    double t_begin = 0; ///< double, so that a far camera costs the knots no precision
     float step = 1;
     int knots = 0;                   ///< 0: this sub-tile sees nothing
     std::size_t offset = 0;          ///< into `weights` of [(group * weight_channels + c)][knot][16]

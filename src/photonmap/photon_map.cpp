@@ -126,6 +126,9 @@ std::size_t PhotonMap::bytes() const {
 int PhotonMap::channels() const {
   return data_->blocks.channels();
 }
+bool PhotonMap::has_directions() const {
+  return data_->blocks.has_directions();
+}
 MapTimes PhotonMap::times() const {
   return data_->times;
 }

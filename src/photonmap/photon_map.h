@@ -50,6 +50,7 @@ public:
   std::size_t size() const;
   std::size_t bytes() const;
   int channels() const;
+  bool has_directions() const;
   MapTimes times() const;
   std::size_t dropped() const; ///< photons left out
   Boxf bounds() const;         ///< of all spheres

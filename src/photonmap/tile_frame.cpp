@@ -245,7 +245,7 @@ void make_tile_frame(const BeamTile& tile, float mean_radius, float reach, bool 
       frame.axes[i][j] = axes[i][j];
   for (int j = 0; j < 3; ++j)
     frame.reference[j] = tile.reference[j];
-  frame.camera_distance = tile.camera_distance;
+  frame.camera_distance = static_cast<float>(tile.camera_distance);
   frame.margin = 1e-6f * reach;
   TangentBox all;
   double nearest = 1e30, farthest = -1e30;

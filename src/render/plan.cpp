@@ -3,6 +3,8 @@
 #include "film/film.h"
 #include "volume/vdb_reader.h"
 
+#include <limits>
+
 namespace vdbeam {
 
 namespace {
@@ -13,7 +15,7 @@ bool is_grey(const Rgb& c) {
 
 /// What of the scene decides the stages.
 struct Needs {
-  bool medium = false, scatters = false, photons = false, first_flight = false;
+  bool medium = false, visible = false, scatters = false, photons = false, first_flight = false;
   bool shadow_rays = false, anisotropic = false, chromatic = false, coloured = false;
   bool environment = false, several_bounces = true;
 };
@@ -34,6 +36,7 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
     if (volumes[i].empty || !(volume.extinction > 0))
       continue;
     needs.medium = true;
+    needs.visible = needs.visible || volumes[i].in_view;
     needs.scatters = needs.scatters || max_component(volume.albedo) > 0;
     needs.anisotropic = needs.anisotropic || volume.phase.type == PhaseType::rayleigh ||
                         volume.phase.type == PhaseType::mie || volume.phase.g != 0 ||
@@ -49,7 +52,9 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
                         : environment                    ? light.radiance
                                                          : light.intensity;
     needs.coloured = needs.coloured || !is_grey(colour) || !light.image.empty();
-    if (left_to_photons(light, scene.render))
+    const bool escaping_rays = environment && light.image.empty();
+    if (scene.render.estimator == EstimatorType::path ? escaping_rays
+                                                      : left_to_photons(light, scene.render))
       needs.first_flight = true;
     else
       needs.shadow_rays = true;
@@ -57,11 +62,18 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
   needs.coloured = needs.coloured || needs.chromatic;
   const bool photon_estimator = scene.render.estimator != EstimatorType::path;
   const bool bounces = !scene.render.max_bounces || *scene.render.max_bounces > 0;
-  needs.scatters = needs.scatters && needs.medium && !scene.lights.empty() && bounces;
+  needs.scatters = needs.scatters && needs.visible && !scene.lights.empty() && bounces;
   needs.photons =
       photon_estimator && needs.scatters && (needs.several_bounces || needs.first_flight);
   needs.shadow_rays = needs.shadow_rays && needs.scatters;
   return needs;
+}
+
+/// The largest number stands for whatever does not fit in 64 bits.
+std::uint64_t photon_memory(std::uint64_t photons, bool coloured) {
+  const std::uint64_t bytes = coloured ? 110 : 90;
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  return photons > most / bytes ? most : photons * bytes;
 }
 
 std::string first_reason(std::initializer_list<std::pair<bool, const char*>> reasons) {
@@ -82,7 +94,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
     plan.stages.push_back({name, needed, reason});
   };
   const char* const no_medium = "no volume has any density";
-  const char* const no_scattering = "nothing scatters: albedo 0, no light, or no bounces";
+  const char* const out_of_view = "the camera sees no medium";
+  const char* const no_scattering = needs.medium && !needs.visible
+                                        ? out_of_view
+                                        : "nothing scatters: albedo 0, no light, or no bounces";
   add("read", !scene.volumes.empty(), scene.volumes.empty() ? "no volumes" : "density grids only");
   add("majorants", needs.medium, needs.medium ? "the medium is not empty" : no_medium);
   add("surfaces", false, "no surfaces in the scene");
@@ -101,8 +116,8 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       first_reason({{!needs.photons, "no photons"}, {!needs.coloured, "all colours are grey"}}));
   add("spectral tracking", needs.scatters && needs.chromatic,
       needs.chromatic ? "extinction differs between channels" : "extinction is grey");
-  add("depth profiles", !path && needs.medium,
-      first_reason({{!needs.medium, no_medium}, {path, "the path estimator needs none"}}));
+  add("depth profiles", needs.visible,
+      first_reason({{!needs.medium, no_medium}, {!needs.visible, out_of_view}}));
   add("shadow rays", needs.shadow_rays,
       first_reason({{!needs.scatters, no_scattering},
                     {!needs.shadow_rays, "every light is left to photons or to escaping rays"}}));
@@ -112,8 +127,8 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   add("march", needs.photons && render.estimator == EstimatorType::march,
       first_reason({{!needs.photons, "no photons"},
                     {render.estimator != EstimatorType::march, "another estimator"}}));
-  add("paths", path && needs.medium,
-      first_reason({{!path, "another estimator"}, {!needs.medium, no_medium}}));
+  add("paths", path && needs.scatters,
+      first_reason({{!path, "another estimator"}, {!needs.scatters, no_scattering}}));
   add("environment", needs.environment,
       needs.environment ? "a light surrounds the scene" : "no environment light");
 
@@ -121,10 +136,18 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   for (const VolumeFacts& volume : volumes)
     plan.volume_bytes += volume.active_voxels * bytes_per_voxel;
   if (needs.photons)
-    plan.photon_bytes = render.photons.value_or(400000) * (needs.coloured ? 110 : 90);
-  plan.film_bytes =
-      static_cast<std::uint64_t>(scene.image.width) * scene.image.height * Film::bytes_per_pixel();
+    plan.photon_bytes = photon_memory(render.photons.value_or(400000), needs.coloured);
+  plan.film_bytes = film_memory(scene.image, scene.image.width, scene.image.height);
   return plan;
+}
+
+std::uint64_t film_memory(const ImageSettings& image, int width, int height) {
+  const auto pixels = [](int w, int h) {
+    return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
+  };
+  constexpr std::uint64_t pass = 44, developed = 60;
+  return pass * pixels(image.width, image.height) +
+         (Film::bytes_per_pixel() + developed) * pixels(width, height);
 }
 
 RenderPlan make_plan(const Scene& scene) {

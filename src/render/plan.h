@@ -8,10 +8,15 @@ namespace vdbeam {
 struct VolumeFacts {
   bool empty = false;
   std::uint64_t active_voxels = 0;
+  bool in_view = true; ///< false where no camera ray can meet it
 };
 
 /// The stages that the scene needs, each with the reason why it runs or is left out, and estimates
 /// of the memory that they take. A pure function of its arguments.
 RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes);
+
+/// Bytes of a pass over the picture, and of the film and the picture developed from it where only
+/// `width` x `height` pixels are wanted.
+std::uint64_t film_memory(const ImageSettings& image, int width, int height);
 
 } // namespace vdbeam

@@ -1,6 +1,9 @@
 #include "vdbeam/render.h"
 
+#include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
+#include "render/limit_notes.h"
+#include "render/memory_check.h"
 #include "render/pass_loop.h"
 #include "render/plan.h"
 #include "render/prepared_scene.h"
@@ -52,19 +55,25 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
   RenderResult result;
-  const World& world = *prepared->world;
-  for (const std::string& line : world.notes) {
+  const auto note = [&](const std::string& line) {
     result.notes.push_back(line);
     if (hooks.on_note)
       hooks.on_note(line);
-  }
+  };
+  const World& world = *prepared->world;
+  for (const std::string& line : world.notes)
+    note(line);
   result.statistics.read = prepared->seconds_read;
   result.statistics.prepare = prepared->seconds_build;
   std::vector<VolumeFacts> facts;
-  for (const std::uint64_t voxels : world.active_voxels)
-    facts.push_back({voxels == 0, voxels});
-  result.plan = plan_stages(scene, facts);
   const Camera camera(scene.camera, scene.image, world.space);
+  for (const std::uint64_t voxels : world.active_voxels)
+    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera)});
+  result.plan = plan_stages(scene, facts);
+  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height());
+  check_memory(scene, result.plan, granted_memory());
+  for (const std::string& line : limit_notes(scene, world, result.plan))
+    note(line);
   const EstimatorInput input{world, camera, static_cast<std::uint64_t>(hooks.frame), window,
                              hooks.stop};
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);

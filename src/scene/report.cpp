@@ -128,7 +128,12 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"photons_stored", statistics.photons_stored},
                       {"contributions", statistics.contributions},
                       {"lookups", statistics.lookups},
-                      {"camera_rays", statistics.camera_rays}};
+                      {"camera_rays", statistics.camera_rays},
+                      {"depth_profiles", statistics.depth_profiles},
+                      {"shadow_rays", statistics.shadow_rays},
+                      {"camera_walks", statistics.camera_walks},
+                      {"neighbourhoods", statistics.neighbourhoods},
+                      {"directions", statistics.directions}};
   report["stopped_by"] = result.stopped_by;
   report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);

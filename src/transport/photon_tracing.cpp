@@ -50,11 +50,12 @@ public:
     if (!(max_component(flux) > 0))
       return;
     Ray ray = photon.ray;
+    LengthRoulette length;
     for (int bounces = 0; !stopped(); ++bounces) {
       if (settings_.max_bounces && bounces >= *settings_.max_bounces)
         return;
       const bool storable = bounces > 0 || !settings_.skip_first_flight[light];
-      const Collision hit = fly(ray, flux, storable, rng);
+      const Collision hit = fly(ray, flux, storable, length, rng);
       if (hit.volume == nullptr || !survive_scattering(hit.volume->albedo, flux, rng))
         return;
       const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
@@ -70,7 +71,7 @@ private:
   bool stopped() const { return settings_.stop && settings_.stop->load(std::memory_order_relaxed); }
 
   /// To the next real collision, storing on the way.
-  Collision fly(const Ray& ray, Rgb& flux, bool storable, Rng& rng) {
+  Collision fly(const Ray& ray, Rgb& flux, bool storable, LengthRoulette& length, Rng& rng) {
     const Medium& medium = world_.medium;
     float t_begin = 0, t_end = infinity;
     medium.clip(ray, t_begin, t_end);
@@ -84,6 +85,8 @@ private:
       if (storable && settings_.store == PhotonStore::fluence)
         store(ray, hit.t, flux / total_majorant(ray, hit), rng);
       const bool real = collide_really(hit, medium.chromatic, flux, rng);
+      if (!length.survive(flux, rng))
+        return {};
       if (!real)
         continue;
       if (storable && settings_.store == PhotonStore::scatter)

@@ -51,6 +51,30 @@ inline bool survive_roulette(float threshold, Rgb& weight, Rng& rng) {
   return true;
 }
 
+/// Russian roulette on the length of a path that absorption does not end. In a deep, conservative
+/// medium the chance to be still under way after n collisions falls as 1 / sqrt(n) only, so the
+/// mean work grows with the optical depth. From `first` collisions on a path goes on with the
+/// chance 1 / sqrt(2) whenever its length has doubled: the work per doubling and the second moment
+/// of what it brings back stay constant both.
+class LengthRoulette {
+public:
+  /// Counts one collision. False where the path ends.
+  bool survive(Rgb& weight, Rng& rng) {
+    if (++collisions_ < next_)
+      return true;
+    next_ *= 2;
+    if (rng.uniform() >= chance)
+      return false;
+    weight *= 1 / chance;
+    return true;
+  }
+
+private:
+  static constexpr std::uint64_t first = 4096;
+  static constexpr float chance = 0.70710678f;
+  std::uint64_t collisions_ = 0, next_ = first;
+};
+
 /// The next real collision along the ray; volume is null where the ray leaves the medium first.
 inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
   if (medium.empty())

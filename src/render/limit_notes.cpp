@@ -1,0 +1,60 @@
+#include "render/limit_notes.h"
+
+#include <fmt/format.h>
+
+namespace vdbeam {
+
+namespace {
+
+/// Mean free paths across the medium from which on photons are too few in the skin that is seen.
+constexpr double deepest_for_photons = 5000;
+/// From here on a mean free path is not much longer than single precision resolves.
+constexpr double deepest_for_positions = 2e6;
+/// Mean cosine of a lobe from which on few photons come from where it looks.
+constexpr double narrowest_lobe = 0.98;
+
+double deepest(const World& world) {
+  double depth = 0;
+  for (const Volume& volume : world.medium.volumes)
+    depth = std::max(depth, static_cast<double>(volume.extinction * volume.field.maximum()));
+  return depth * 2 * static_cast<double>(world.region.radius);
+}
+
+double narrowest(const World& world) {
+  double g = 0;
+  for (const PhaseFunction& phase : world.medium.phases)
+    for (int i = 0; i < phase.lobe_count(); ++i)
+      g = std::max(g, std::abs(static_cast<double>(phase.lobe(i).g)));
+  return g;
+}
+
+} // namespace
+
+std::vector<std::string> limit_notes(const Scene& scene, const World& world,
+                                     const RenderPlan& plan) {
+  std::vector<std::string> notes;
+  const double depth = deepest(world);
+  if (depth > deepest_for_positions)
+    notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: its lit skin is "
+                                "thinner than single precision resolves",
+                                depth));
+  if (!plan.needs("photons"))
+    return notes;
+  if (depth > deepest_for_photons)
+    notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: few photons lie "
+                                "in the skin that is seen, so parts may be dark or noisy; "
+                                "render.estimator = \"path\" has no such limit",
+                                depth));
+  if (narrowest(world) > narrowest_lobe)
+    notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
+                                "from where it looks; render.estimator = \"path\" has less noise",
+                                narrowest(world)));
+  const double across = 2 * static_cast<double>(world.region.radius) / world.space.scale;
+  if (scene.render.kernel == KernelRadius::fixed && scene.render.radius > 0.5 * across)
+    notes.push_back(fmt::format("render.radius = {:.3g} is wide for a medium {:.3g} across: the "
+                                "kernels lose light outside of it; {:.3g} would be fine",
+                                scene.render.radius, across, 0.02 * across));
+  return notes;
+}
+
+} // namespace vdbeam

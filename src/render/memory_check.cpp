@@ -1,0 +1,58 @@
+#include "render/memory_check.h"
+
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+
+namespace vdbeam {
+
+namespace {
+
+/// The map numbers its photons with 32 bits.
+constexpr std::uint64_t most_photons = std::numeric_limits<std::uint32_t>::max();
+
+std::string gigabytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f} GB", static_cast<double>(bytes) * 1e-9);
+}
+
+[[noreturn]] void refuse(const Scene& scene, const std::string& what, std::uint64_t needed,
+                         std::uint64_t granted, const std::string& remedy) {
+  throw InputError(fmt::format("{}: {} would take {} of the {} that this machine grants: {}",
+                               scene.path.empty() ? "scene" : scene.path, what, gigabytes(needed),
+                               gigabytes(granted), remedy));
+}
+
+} // namespace
+
+std::uint64_t granted_memory() {
+  std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  for (const char* name :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream file(name);
+    std::uint64_t limit = 0;
+    if (file >> limit) // a word, "max", where there is none
+      bytes = std::min(bytes, limit);
+  }
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);
+  return bytes;
+}
+
+void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t granted) {
+  const std::uint64_t photons = scene.render.photons.value_or(0);
+  if (plan.needs("photons") && (plan.photon_bytes > granted || photons > most_photons))
+    refuse(scene, fmt::format("render.photons: a map of {} photons", photons), plan.photon_bytes,
+           granted, "ask for fewer photons and more passes, which give the same picture");
+  if (plan.film_bytes > granted)
+    refuse(scene, fmt::format("image: {} x {} pixels", scene.image.width, scene.image.height),
+           plan.film_bytes, granted, "ask for a smaller picture");
+}
+
+} // namespace vdbeam

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "vdbeam/render.h"
+
+namespace vdbeam {
+
+/// Bytes that this machine grants the process: its memory, or less where a control group or a limit
+/// on the address space says so.
+std::uint64_t granted_memory();
+
+/// Throws InputError, with what it would take and a remedy, where the photons of a pass or the
+/// picture need more than `granted` bytes. What is merely large is left to the machine.
+void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t granted);
+
+} // namespace vdbeam

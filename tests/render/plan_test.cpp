@@ -1,0 +1,275 @@
+// The render plan as a value, and counters that prove that what is left out did not run.
+#include "estimators/camera_ray.h"
+#include "estimators/estimator.h"
+#include "render/plan.h"
+#include "support/memory_scene.h"
+#include "transport/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+using Names = std::set<std::string>;
+
+/// What a scene needs and what one pass of it did.
+struct Outcome {
+  Names needed;
+  RenderPlan plan;
+  RenderStatistics statistics;
+  PassImage image;
+};
+
+Outcome run(const MemoryScene& scene) {
+  Outcome result;
+  const World world = scene.world();
+  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+  std::vector<VolumeFacts> facts;
+  for (const std::uint64_t voxels : world.active_voxels)
+    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera)});
+  result.plan = plan_stages(scene.scene, facts);
+  for (const PlanStage& stage : result.plan.stages) {
+    EXPECT_FALSE(stage.reason.empty()) << stage.name;
+    if (stage.needed)
+      result.needed.insert(stage.name);
+  }
+  make_estimator(scene.scene.render.estimator, {world, camera, 1})
+      ->render_pass(0, result.image, result.statistics);
+  return result;
+}
+
+/// Every stage that the plan leaves out has a counter of 0, and every one that it keeps ran.
+void expect_plan_kept(const Outcome& run) {
+  const RenderStatistics& s = run.statistics;
+  const auto expect = [&](const char* stage, std::uint64_t count) {
+    if (run.plan.needs(stage))
+      EXPECT_GT(count, 0u) << stage << " was planned";
+    else
+      EXPECT_EQ(count, 0u) << stage << " was left out";
+  };
+  expect("photons", s.light_paths);
+  expect("map", s.photons_stored);
+  expect("map", s.bytes_per_photon);
+  expect("map", s.lookups);
+  expect("map", s.contributions);
+  expect("neighbours", s.neighbourhoods);
+  expect("photon directions", s.directions);
+  expect("depth profiles", s.depth_profiles);
+  expect("shadow rays", s.shadow_rays);
+  expect("paths", s.camera_walks);
+}
+
+MemoryScene base() {
+  MemoryScene scene;
+  VolumeSettings& volume = scene.add_box(Vec3d(-0.5), Vec3d(0.5));
+  volume.extinction = 2;
+  volume.albedo = Rgb(0.9f);
+  volume.phase = henyey_greenstein(0.5);
+  scene.add_light(LightType::distant);
+  scene.look({0, 0, 3}, {0, 0, 0}, 12, 8, 8);
+  scene.scene.render.photons = 2000;
+  return scene;
+}
+
+TEST(Plan, SunlitVolume) {
+  const Outcome r = run(base());
+  EXPECT_EQ(r.needed, (Names{"read", "majorants", "photons", "map", "neighbours",
+                             "photon directions", "depth profiles", "shadow rays", "beam query"}));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, AbsorptionOnly) {
+  MemoryScene scene = base();
+  scene.scene.volumes[0].albedo = Rgb(0);
+  scene.add_light(LightType::environment);
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "environment"}));
+  expect_plan_kept(r);
+  scene.scene.render.estimator = EstimatorType::path;
+  const Outcome path = run(scene);
+  EXPECT_EQ(path.needed, (Names{"read", "majorants", "depth profiles", "environment"}));
+  expect_plan_kept(path);
+}
+
+TEST(Plan, NoLight) {
+  MemoryScene scene = base();
+  scene.scene.lights.clear();
+  for (const EstimatorType type :
+       {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
+    scene.scene.render.estimator = type;
+    const Outcome r = run(scene);
+    EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles"}));
+    expect_plan_kept(r);
+  }
+}
+
+TEST(Plan, Isotropic) {
+  MemoryScene scene = base();
+  scene.scene.volumes[0].phase = {};
+  const Outcome r = run(scene);
+  EXPECT_FALSE(r.plan.needs("photon directions"));
+  expect_plan_kept(r);
+  EXPECT_LT(r.statistics.bytes_per_photon, run(base()).statistics.bytes_per_photon);
+}
+
+TEST(Plan, SingleBounceOfASun) {
+  MemoryScene scene = base();
+  scene.scene.render.max_bounces = 1;
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "shadow rays"}));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, SingleBounceOfASkyNeedsPhotons) {
+  MemoryScene scene = base();
+  scene.scene.lights.clear();
+  scene.add_light(LightType::environment);
+  scene.scene.render.max_bounces = 1;
+  const Outcome r = run(scene);
+  EXPECT_TRUE(r.plan.needs("photons"));
+  EXPECT_FALSE(r.plan.needs("shadow rays"));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, FixedKernel) {
+  MemoryScene scene = base();
+  scene.scene.render.kernel = KernelRadius::fixed;
+  scene.scene.render.radius = 0.1;
+  const Outcome r = run(scene);
+  EXPECT_TRUE(r.plan.needs("map"));
+  EXPECT_FALSE(r.plan.needs("neighbours"));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, NoEnvironment) {
+  EXPECT_FALSE(run(base()).plan.needs("environment"));
+  MemoryScene scene = base();
+  scene.add_light(LightType::environment);
+  EXPECT_TRUE(run(scene).plan.needs("environment"));
+}
+
+TEST(Plan, NoSurfaces) {
+  EXPECT_FALSE(run(base()).plan.needs("surfaces"));
+}
+
+TEST(Plan, DirectByPhotons) {
+  MemoryScene scene = base();
+  scene.scene.render.direct = DirectLight::photons;
+  const Outcome r = run(scene);
+  EXPECT_FALSE(r.plan.needs("shadow rays"));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, GreyNeedsOneChannel) {
+  const Outcome grey = run(base());
+  EXPECT_FALSE(grey.plan.needs("photon colour"));
+  MemoryScene scene = base();
+  scene.scene.lights[0].irradiance = {1, 2, 3};
+  const Outcome coloured = run(scene);
+  EXPECT_TRUE(coloured.plan.needs("photon colour"));
+  EXPECT_LT(grey.statistics.bytes_per_photon, coloured.statistics.bytes_per_photon);
+  EXPECT_LT(grey.plan.photon_bytes, coloured.plan.photon_bytes);
+}
+
+TEST(Plan, ChromaticExtinction) {
+  EXPECT_FALSE(run(base()).plan.needs("spectral tracking"));
+  MemoryScene scene = base();
+  scene.scene.volumes[0].extinction_scale = {1, 0.5f, 0.25f};
+  EXPECT_TRUE(run(scene).plan.needs("spectral tracking"));
+}
+
+TEST(Plan, EmptyFrame) {
+  MemoryScene scene = base();
+  scene.grids[0].field = {};
+  scene.grids[0].active_voxels = 0;
+  scene.add_light(LightType::environment);
+  for (const EstimatorType type :
+       {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
+    scene.scene.render.estimator = type;
+    const Outcome r = run(scene);
+    EXPECT_EQ(r.needed, (Names{"read", "environment"}));
+    expect_plan_kept(r);
+    EXPECT_EQ(r.image.background[0].x, 1);
+  }
+}
+
+TEST(Plan, ZeroExtinction) {
+  MemoryScene scene = base();
+  scene.scene.volumes[0].extinction = 0;
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.needed, (Names{"read"}));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, NoVolumes) {
+  MemoryScene scene = base();
+  scene.scene.volumes.clear();
+  scene.grids.clear();
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.needed, Names{});
+  expect_plan_kept(r);
+}
+
+TEST(Plan, ThinMedium) {
+  MemoryScene scene = base();
+  scene.scene.volumes[0].extinction = 1e-2;
+  scene.add_light(LightType::environment); // first flights hit more often than second ones
+  expect_plan_kept(run(scene));
+}
+
+TEST(Plan, OpaqueMedium) {
+  MemoryScene scene = base();
+  scene.scene.volumes[0].extinction = 1e4;
+  expect_plan_kept(run(scene));
+}
+
+TEST(Plan, PathEstimator) {
+  MemoryScene scene = base();
+  scene.scene.render.estimator = EstimatorType::path;
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "shadow rays", "paths"}));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, MarchEstimator) {
+  MemoryScene scene = base();
+  scene.scene.render.estimator = EstimatorType::march;
+  const Outcome r = run(scene);
+  EXPECT_TRUE(r.plan.needs("march"));
+  EXPECT_FALSE(r.plan.needs("beam query"));
+  expect_plan_kept(r);
+}
+
+TEST(Plan, CameraThatSeesNoMedium) {
+  MemoryScene scene = base();
+  scene.add_light(LightType::environment);
+  for (const Vec3d& away : {Vec3d{0, 0, 6}, {3, 0, 3}, {-3, 0, 2}, {0, 3, 2.5}, {0.1, -3, 2.5}})
+    for (const EstimatorType type :
+         {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
+      scene.look({0, 0, 3}, away, 12, 8, 8);
+      scene.scene.render.estimator = type;
+      const Outcome r = run(scene);
+      EXPECT_EQ(r.needed, (Names{"read", "majorants", "environment"}));
+      expect_plan_kept(r);
+      EXPECT_EQ(r.image.background[0].x, 1);
+    }
+}
+
+/// Half of the medium beyond the picture's edge is in view all the same.
+TEST(Plan, CameraThatSeesAnEdge) {
+  MemoryScene scene = base();
+  scene.look({0, 0, 3}, {0.75, 0, 0}, 12, 8, 8);
+  expect_plan_kept(run(scene));
+}
+
+TEST(Plan, EstimatesMemory) {
+  const Outcome r = run(base());
+  EXPECT_GT(r.plan.photon_bytes, 2000 * r.statistics.bytes_per_photon / 2);
+  EXPECT_GE(r.plan.film_bytes, 64u * 160);
+}
+
+} // namespace
+} // namespace vdbeam
