@@ -16,8 +16,6 @@ void expect_same_picture(MemoryScene scene, const std::string& what, double bias
   expect_same_mean(beam.total[0], path.total[0], bias * path.total[0].mean());
 }
 
-/// The camera looks past the light: a light in the picture has no finite variance in any method
-/// that samples distances without knowing it.
 TEST(Lights, InsideTheMedium) {
   MemoryScene scene = box_scene(4, 0.9);
   scene.add_light(LightType::point).position = {0.31, 0.33, -0.1};
