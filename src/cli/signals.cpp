@@ -15,8 +15,8 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
               std::atomic<std::int64_t>::is_always_lock_free);
 
 /// A queue may signal every process of a job, and a script of the job pass the signal on: two so
-/// close to each other are one.
-constexpr std::int64_t same_signal = 100;
+/// close to each other are one. On a busy machine some time may pass between them.
+constexpr std::int64_t same_signal = 500;
 
 std::int64_t milliseconds_now() {
   timespec now{};

@@ -1,6 +1,7 @@
 #include "cli_fixture.h"
 #include "vdbeam/image_file.h"
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 namespace vdbeam {
@@ -137,34 +138,35 @@ TEST_F(BatchCommand, BadValuesAreRefused) {
 }
 
 TEST_F(BatchCommand, ASignalLeavesACheckpointThatTheNextRunFinishes) {
-  const Names scene{"render", cloud,   "--passes",     "100",   "--set", "render.photons=2000",
-                    "-o",     "a.exr", "--resolution", "32x18", "-f",    "1"};
-  ASSERT_EQ(run(scene).code, 0);
-  const std::vector<float> whole = pixels("a.exr");
-  std::filesystem::remove(folder_ / "a.exr");
-  Names with_checkpoint = scene;
-  with_checkpoint.insert(with_checkpoint.end(), {"--checkpoint", "1"});
-  const pid_t child = start(with_checkpoint);
-  for (int i = 0; i < 2000 && !exists("a.checkpoint.exr"); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const auto command = [&](int passes, const char* output, const Names& more) {
+    Names words{"render", cloud, "--set",    "render.photons=2000",  "--resolution", "32x18",
+                "-f",     "1",   "--passes", std::to_string(passes), "-o",           output};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const pid_t child = start(command(1'000'000, "a.exr", {"--checkpoint", "1"}));
+  wait_until(child, [&] { return exists("a.checkpoint.exr"); });
   kill(child, SIGTERM);
   const auto stopped = finish(child);
   ASSERT_EQ(stopped.code, 143) << stopped.error;
   EXPECT_EQ(files(), Names{"a.checkpoint.exr"});
-  const auto resumed = run(scene);
+  const std::size_t at = stopped.error.find("interrupted after ");
+  ASSERT_NE(at, std::string::npos) << stopped.error;
+  const int done = std::atoi(stopped.error.c_str() + at + std::strlen("interrupted after "));
+  const auto resumed = run(command(done + 3, "a.exr", {}));
   EXPECT_EQ(resumed.code, 0);
   EXPECT_NE(resumed.error.find("goes on after"), std::string::npos) << resumed.error;
   EXPECT_EQ(files(), Names{"a.exr"});
-  EXPECT_EQ(pixels("a.exr"), whole);
+  ASSERT_EQ(run(command(done + 3, "whole.exr", {})).code, 0);
+  EXPECT_EQ(pixels("a.exr"), pixels("whole.exr"));
 }
 
 TEST_F(BatchCommand, SnapshotOnUserSignal) {
   const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
                              "render.photons=2000", "-o", "a.exr"});
-  wait_for_output();
+  wait_for_output(child);
   kill(child, SIGUSR1);
-  for (int i = 0; i < 500 && !exists("a.snapshot.exr"); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  wait_until(child, [&] { return exists("a.snapshot.exr"); });
   EXPECT_EQ(files(), Names{"a.snapshot.exr"});
   EXPECT_EQ(read_image(file("a.snapshot.exr")).width, 32);
   kill(child, SIGTERM);

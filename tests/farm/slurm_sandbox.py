@@ -131,11 +131,11 @@ class SlurmSandbox:
                     f"--key-file={key}", f"--socket={self.folder}/munge.socket",
                     f"--pid-file={self.folder}/munged.pid", f"--log-file={self.folder}/munged.log",
                     f"--seed-file={self.folder}/munged.seed")
-        self._wait_for(lambda: (self.folder / "munge.socket").exists(), "munged", 10)
+        self._wait_for(lambda: (self.folder / "munge.socket").exists(), "munged", 60)
         self._spawn("slurmctld", "-D", "-c", "-i")
         self._spawn("slurmd", "-D", "-c", "-N", "localhost")
         self._wait_for(lambda: self.output("sinfo", "-h", "-o", "%T") in ("idle", "mixed"),
-                       "slurmctld and slurmd", 20)
+                       "slurmctld and slurmd", 60)
 
     def _wait_for(self, ready, what, seconds):
         end = time.monotonic() + seconds

