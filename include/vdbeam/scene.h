@@ -85,7 +85,7 @@ struct RenderSettings {
   int neighbours = 0;                  ///< adaptive kernel, photons per kernel; 0: automatic
   double min_radius = 0;               ///< world units; 0: automatic
   double max_radius = 0;               ///< world units; 0: automatic
-  double alpha = 0.7;                  ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
+  double alpha = 0.6;                  ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
   double keep = 0;                     ///< share of a path's collisions that are stored; 0: automatic
   std::optional<int> max_bounces;      ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;                ///< transmittance below which a camera ray ends

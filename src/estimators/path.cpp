@@ -5,6 +5,7 @@
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
 #include "transport/distance_sampling.h"
+#include "transport/photon_tracing.h"
 #include "transport/scattering.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -18,6 +19,19 @@ namespace {
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
 
+/// Walks per camera ray: where walks are short, the depth profile that they start from costs more
+/// than they do, so several share it. From the mean length of a few light paths (not followed far:
+/// of long ones it matters only that they are long), never from a clock.
+int choose_splits(const EstimatorInput& input) {
+  PhotonPassSettings pilot;
+  pilot.paths = 256;
+  pilot.skip_first_flight.assign(input.world.lights.size(), true);
+  pilot.max_bounces = std::min(input.world.settings.max_bounces.value_or(16), 16);
+  pilot.key = {input.world.settings.seed, input.frame, ~std::uint64_t(0)};
+  const double collisions = trace_photons(input.world, pilot).mean_collisions;
+  return std::clamp(static_cast<int>(std::lround(24 / (1 + collisions))), 4, 16);
+}
+
 } // namespace
 
 PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
@@ -27,6 +41,7 @@ PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
     scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
   const int samples = input_.world.settings.direct_samples;
   direct_samples_ = samples > 0 ? samples : 4;
+  splits_ = choose_splits(input);
 }
 
 struct PathEstimator::Outputs {

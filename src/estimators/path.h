@@ -35,7 +35,7 @@ private:
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   bool scatters_ = false;         ///< some light may be scattered at all
   int direct_samples_ = 1;        ///< shadow-ray samples per camera ray
-  int splits_ = 4;                ///< walks per camera ray
+  int splits_ = 1;                ///< walks per camera ray
 };
 
 } // namespace vdbeam

@@ -51,16 +51,15 @@ private:
         t_end_ = t_ - 1;
       return;
     }
-    const float near = (d > 0 ? -o : n - o) / d, far = (d > 0 ? n - o : -o) / d;
-    t_ = std::max(t_, near);
-    t_end_ = std::min(t_end_, far);
+    inverse_[a] = 1 / d;
+    t_ = std::max(t_, (d > 0 ? -o : n - o) * inverse_[a]);
+    t_end_ = std::min(t_end_, (d > 0 ? n - o : -o) * inverse_[a]);
   }
 
   void enter(int a) {
     const float position = origin_[a] + t_ * direction_[a];
     cell_[a] = std::clamp(static_cast<int>(position), 0, counts_[a] - 1);
     step_[a] = direction_[a] > 0 ? 1 : -1;
-    inverse_[a] = 1 / direction_[a];
     t_next_[a] = direction_[a] == 0
                      ? infinity
                      : (static_cast<float>(cell_[a] + (step_[a] > 0)) - origin_[a]) * inverse_[a];

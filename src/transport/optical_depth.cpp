@@ -5,15 +5,13 @@
 namespace vdbeam {
 
 Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end) {
-  float t_begin = 0;
-  medium.clip(ray, t_begin, t_end);
   Rgb tau{0, 0, 0};
   for (const Volume& volume : medium.volumes) {
     // The weakest channel decides when nothing is left in any.
     const float weakest =
         std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
     float sum = 0;
-    walk_segments(volume, ray, t_begin, t_end, [&](float, float, float piece) {
+    walk_segments(volume, ray, 0, t_end, [&](float, float, float piece) {
       sum += piece;
       return sum * weakest < opaque_optical_depth;
     });
@@ -25,12 +23,8 @@ Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end) {
 Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng) {
   if (medium.empty())
     return Rgb(1);
-  float t_begin = 0;
-  medium.clip(ray, t_begin, t_end);
-  if (!(t_begin < t_end))
-    return Rgb(1);
   constexpr float roulette_below = 0.1f;
-  MediumTracker tracker(medium, ray, t_begin, t_end);
+  MediumTracker tracker(medium, ray, 0, t_end);
   Rgb weight(1);
   for (Collision hit = tracker.next(rng); hit.t < t_end; hit = tracker.next(rng)) {
     const float ratio = hit.sigma_t / hit.majorant;

@@ -73,11 +73,7 @@ private:
   /// To the next real collision, storing on the way.
   Collision fly(const Ray& ray, Rgb& flux, bool storable, LengthRoulette& length, Rng& rng) {
     const Medium& medium = world_.medium;
-    float t_begin = 0, t_end = infinity;
-    medium.clip(ray, t_begin, t_end);
-    if (!(t_begin < t_end))
-      return {};
-    MediumTracker tracker(medium, ray, t_begin, t_end);
+    MediumTracker tracker(medium, ray, 0, infinity);
     while (true) {
       const Collision hit = tracker.next(rng);
       if (hit.volume == nullptr)

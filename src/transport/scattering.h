@@ -79,11 +79,7 @@ private:
 inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
   if (medium.empty())
     return {};
-  float t_begin = 0, t_end = infinity;
-  medium.clip(ray, t_begin, t_end);
-  if (!(t_begin < t_end))
-    return {};
-  MediumTracker tracker(medium, ray, t_begin, t_end);
+  MediumTracker tracker(medium, ray, 0, infinity);
   while (true) {
     const Collision hit = tracker.next(rng);
     if (hit.volume == nullptr || collide_really(hit, medium.chromatic, weight, rng))

@@ -182,24 +182,24 @@ void prepare_openvdb() {
 }
 
 void write_grid_names(const std::string& path, int descriptor) {
-  openvdb::io::File file(path);
+  auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
   for (const std::string& name : grid_names(file))
     write_all(descriptor, (name + '\n').data(), name.size() + 1);
 }
 
 void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor) {
-  openvdb::io::File file(path);
+  auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files
   if (!file.hasGrid(grid_name))
     throw InputError(missing_grid_message(path, grid_name, grid_names(file)));
   check_kind(path, grid_name, *file.readGridMetadata(grid_name));
-  const openvdb::GridBase::Ptr grid = file.readGrid(grid_name);
-  check_kind(path, grid_name, *grid);
-  if (grid->isType<openvdb::FloatGrid>())
-    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(*grid), descriptor);
+  const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
+  check_kind(path, grid_name, grid);
+  if (grid.isType<openvdb::FloatGrid>())
+    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(grid), descriptor);
   else
-    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(*grid), descriptor);
+    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(grid), descriptor);
 }
 
 } // namespace vdbeam

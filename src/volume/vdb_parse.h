@@ -1,11 +1,20 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 namespace vdbeam {
 
 /// The OpenVDB side of reading. Everything here may hang, crash or throw on a malformed file, and
 /// uses no thread but its own, so that it can run in a forked child process.
+
+/// Makes a value that is never destroyed. Files and grids are such in the child: OpenVDB would
+/// deallocate them through TBB, whose other threads do not exist there and may have left its locks
+/// held.
+template <class T, class... Arguments>
+T& make_immortal(Arguments&&... arguments) {
+  return *new T(std::forward<Arguments>(arguments)...);
+}
 
 /// Registers OpenVDB's grid types; must be called before the fork.
 void prepare_openvdb();

@@ -98,19 +98,19 @@ void summarize_map(const openvdb::math::Transform& transform, GridSummary& summa
 } // namespace
 
 void write_summary(const std::string& path, const std::string& grid_name, int descriptor) {
-  openvdb::io::File file(path);
+  auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
-  const openvdb::GridBase::Ptr grid = file.readGrid(grid_name);
+  const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
   GridSummary summary;
   summary.name = grid_name;
-  summary.saved_as_half = grid->saveFloatAsHalf();
+  summary.saved_as_half = grid.saveFloatAsHalf();
   summary.value_type =
-      summary.saved_as_half && grid->valueType() == "float" ? "half" : grid->valueType();
-  summary.grid_class = openvdb::GridBase::gridClassToMenuName(grid->getGridClass());
+      summary.saved_as_half && grid.valueType() == "float" ? "half" : grid.valueType();
+  summary.grid_class = openvdb::GridBase::gridClassToMenuName(grid.getGridClass());
   summary.index_lower = Vec3<std::int64_t>(0);
   summary.index_upper = Vec3<std::int64_t>(-1);
-  summarize_map(grid->transform(), summary);
-  grid->apply<openvdb::GridTypes>([&summary](const auto& typed) {
+  summarize_map(grid.transform(), summary);
+  grid.apply<openvdb::GridTypes>([&summary](const auto& typed) {
     summarize_tree(typed, summary);
     openvdb::CoordBBox box;
     if (summary.active_voxels > 0 && typed.tree().evalActiveVoxelBoundingBox(box)) {

@@ -1,15 +1,22 @@
 #include "volume/vdb_reader.h"
 
 #include "support/temp_folder.h"
+#include "volume/guarded_process.h"
+#include "volume/vdb_parse.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/LevelSetUtil.h>
+#include <tbb/task_arena.h>
+
+#include <fcntl.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <thread>
 
 namespace vdbeam {
 namespace {
@@ -225,6 +232,36 @@ TEST_F(ReadVolume, notes_a_wrong_voxel_count) {
   const DensityGrid grid = read_density_grid(path, "density");
   ASSERT_EQ(grid.notes.size(), 1u);
   EXPECT_NE(grid.notes[0].find("it may be damaged"), std::string::npos);
+}
+
+/// Whether the thread that calls this has run anything through TBB.
+bool has_entered_tbb() {
+  return tbb::this_task_arena::current_thread_index() != tbb::task_arena::not_initialized;
+}
+
+/// In the forked child TBB may be locked for ever: a grid that was destroyed there hung one read in
+/// hundreds. A thread of its own, since this one has written a grid through TBB.
+TEST_F(ReadVolume, parsing_never_enters_tbb) {
+  const std::string path = make("noise");
+  char entered[] = {1, 1, 1};
+  std::thread reader([&] {
+    const GuardLimits ample{30, 30, std::uint64_t(1) << 30};
+    const MappedFile answer = run_guarded(path, ample, [&](int output) {
+      const Descriptor null(::open("/dev/null", O_WRONLY));
+      entered[0] = has_entered_tbb();
+      write_raw_grid(path, "density", null.get());
+      entered[1] = has_entered_tbb();
+      write_summary(path, "density", null.get());
+      entered[2] = has_entered_tbb();
+      write_all(output, entered, sizeof entered);
+    });
+    ASSERT_EQ(answer.size(), sizeof entered);
+    std::memcpy(entered, answer.data(), sizeof entered);
+  });
+  reader.join();
+  EXPECT_FALSE(entered[0]);
+  EXPECT_FALSE(entered[1]);
+  EXPECT_FALSE(entered[2]);
 }
 
 } // namespace
