@@ -18,6 +18,10 @@ constexpr double most_photons = 2e6;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
+/// Shadow rays per camera ray: in thin media, where single scattering is most of the light, its
+/// noise is most of the error; in thick ones the photons' noise hides it (docs/decisions.md).
+constexpr double direct_per_path = 12;
+constexpr int most_direct_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 
@@ -71,13 +75,16 @@ void PhotonStage::choose_lights() {
 
 void PhotonStage::choose_counts() {
   const RenderSettings& settings = input_.world.settings;
-  direct_samples_ = settings.direct_samples > 0 ? settings.direct_samples : 2;
+  direct_samples_ = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
   neighbours_ = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
   if (!needs_map_)
     return;
   PhotonPassSettings pilot = pass_settings(pilot_pass);
   pilot.paths = pilot_paths;
   const double collisions = std::max(1e-3, trace_photons(input_.world, pilot).mean_collisions);
+  if (settings.direct_samples == 0)
+    direct_samples_ = std::clamp(static_cast<int>(std::lround(direct_per_path / (1 + collisions))),
+                                 1, most_direct_samples);
   keep_ = settings.keep > 0 ? settings.keep : std::min(1.0, kept_per_path / collisions);
   const double stored_per_path = collisions * keep_;
   double paths = static_cast<double>(settings.photons.value_or(0)) *
