@@ -30,6 +30,9 @@ struct Volume {
     return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
   }
   float density(const Vec3f& p) const { return field.sample(local_point(p)); }
+  /// The density at a point of which is known that it lies inside: rounding may have put it beyond
+  /// a face, where a field that ends sharply is 0.
+  float density_inside(const Vec3f& p) const { return field.sample(field.nearest(local_point(p))); }
   /// sigma_t of the strongest channel's majorant at a point; 0 outside.
   float majorant(const Vec3f& p) const;
   /// The ray in units of the field's 8^3 cells.

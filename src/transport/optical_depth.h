@@ -86,12 +86,13 @@ private:
   int left_[3]; ///< cubes to go before the brick ends, per axis
 };
 
-/// Exact optical depth, for the strongest channel, of a piece of the ray that crosses no lattice
-/// plane of the volume.
+/// Exact optical depth, for the strongest channel, of a piece of the ray that lies inside the
+/// volume and crosses none of its lattice planes.
 inline float cube_optical_depth(const Volume& volume, const Ray& ray, float t_a, float t_b) {
   const float middle = 0.5f * (t_a + t_b), half = 0.5f * (t_b - t_a), offset = half * 0.57735027f;
   return volume.extinction * half *
-         (volume.density(ray.at(middle - offset)) + volume.density(ray.at(middle + offset)));
+         (volume.density_inside(ray.at(middle - offset)) +
+          volume.density_inside(ray.at(middle + offset)));
 }
 
 /// Calls visit(t_a, t_b, tau) for consecutive pieces of the ray inside `volume`, tau being the

@@ -2,6 +2,7 @@
 
 #include "math/affine.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +51,8 @@ public:
 
   /// Trilinear sample at local coordinates; 0 outside.
   float sample(const Vec3f& local) const;
+  /// The nearest point for which `sample` reads a cell.
+  Vec3f nearest(const Vec3f& local) const;
 
   /// Tight box of the non-empty cells, in local coordinates, shrunk to where the field is not 0.
   const Boxf& occupied() const { return occupied_; }
@@ -100,6 +103,11 @@ inline float DensityField::sample(const Vec3f& local) const {
                        local.x - static_cast<float>(i), local.y - static_cast<float>(j),
                        local.z - static_cast<float>(k));
   return entry == empty_cell ? 0 : uniform_value(entry);
+}
+
+inline Vec3f DensityField::nearest(const Vec3f& local) const {
+  const auto below = [](float limit) { return std::nextafter(limit, 0.0f); };
+  return min(max(local, Vec3f(0)), Vec3f{below(limit_.x), below(limit_.y), below(limit_.z)});
 }
 
 } // namespace vdbeam
