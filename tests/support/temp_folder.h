@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,10 +15,11 @@ namespace vdbeam::test {
 /// A folder of the test's own, removed at its end.
 class TempFolder {
 public:
-  TempFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("vdbeam_" + std::to_string(getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+  TempFolder() {
+    std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(test.begin(), test.end(), '/', '_'); // of tests with parameters
+    path_ = std::filesystem::temp_directory_path() /
+            ("vdbeam_" + std::to_string(getpid()) + "_" + test);
     std::filesystem::create_directories(path_);
   }
   ~TempFolder() {
