@@ -11,12 +11,19 @@ struct ImageError {
   double mrse = 0;   ///< mean((v - r)^2 / (r + 0.01)^2)
   double relmse = 0; ///< mean((v - r)^2 / (r^2 + 0.01)) without the worst 0.1 % of pixels
   double bias = 0;   ///< mean(v) / mean(r) - 1
-  double flip = 0;   ///< mean FLIP (Andersson et al. 2020) at 67 pixels per degree; only compare_images
+  double flip =
+      0; ///< mean FLIP (Andersson et al. 2020) at 67 pixels per degree; only compare_images
 };
 
 /// rmse, mrse, relmse, bias. Throws InputError where sizes differ or R, G, B are missing.
 ImageError image_error(const Image& image, const Image& reference);
 /// The same and FLIP.
 ImageError compare_images(const Image& image, const Image& reference);
+/// Temporal error of two frames that follow each other: the error of their difference, which is
+/// what the eye sees as flicker, mean((dv - dr)^2 / (r + 0.01)^2) with dv = after - before, dr the
+/// references' difference and r their mean. Frames with independent noise of mrse e have 2 e.
+/// Throws InputError like image_error.
+double temporal_error(const Image& before, const Image& after, const Image& reference_before,
+                      const Image& reference_after);
 
 } // namespace vdbeam

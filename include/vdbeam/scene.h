@@ -68,6 +68,8 @@ struct LightSettings {
 enum class EstimatorType { beam, march, path };
 enum class PhotonStore { fluence, scatter };
 enum class KernelRadius { adaptive, fixed };
+/// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
+enum class SeedPolicy { per_frame, correlated };
 enum class KernelShape { constant, epanechnikov, biweight, fourth_order };
 
 struct RenderSettings {
@@ -91,6 +93,7 @@ struct RenderSettings {
   double cutoff = 1e-6;                ///< transmittance below which a camera ray ends
   double step = 1;                     ///< march: step length in voxels
   std::uint64_t seed = 1;
+  SeedPolicy seeds = SeedPolicy::correlated;
   int threads = 0;                     ///< 0: all that the machine grants
 };
 

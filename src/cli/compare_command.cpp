@@ -1,4 +1,6 @@
 #include "cli/commands.h"
+#include "scene/frame_range.h"
+#include "scene/toml_value.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"
@@ -7,35 +9,135 @@
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace vdbeam::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct CompareOptions {
-  std::string image, reference;
+  std::string image, reference, frames;
   bool json = false;
 };
 
-int run_compare(const CompareOptions& options) {
-  const Image image = read_image(options.image), reference = read_image(options.reference);
-  ImageError error;
+/// A frame and its reference.
+struct Pair {
+  Image image, reference;
+};
+
+/// What is wrong with a pair is told with the files' names.
+template <class F>
+auto naming(const std::string& image, const std::string& reference, F&& compare) {
   try {
-    error = compare_images(image, reference);
+    return compare();
   } catch (const InputError& problem) {
-    throw InputError(
-        fmt::format("{} and {}: {}", options.image, options.reference, problem.what()));
+    throw InputError(fmt::format("{} and {}: {}", image, reference, problem.what()));
   }
-  if (options.json) {
-    const nlohmann::ordered_json json{{"image", options.image}, {"reference", options.reference},
-                                      {"rmse", error.rmse},     {"mrse", error.mrse},
-                                      {"relmse", error.relmse}, {"bias", error.bias},
-                                      {"flip", error.flip}};
-    using Handler = nlohmann::ordered_json::error_handler_t;
-    fmt::print("{}\n", json.dump(2, ' ', false, Handler::replace));
-    return 0;
-  }
+}
+
+void add_error(Json& json, const ImageError& error) {
+  json["rmse"] = error.rmse;
+  json["mrse"] = error.mrse;
+  json["relmse"] = error.relmse;
+  json["bias"] = error.bias;
+  json["flip"] = error.flip;
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void print_error(const ImageError& error) {
   fmt::print("RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\nFLIP    {:.6g}\n",
              error.rmse, error.mrse, error.relmse, 100 * error.bias, error.flip);
+}
+
+int compare_stills(const CompareOptions& options) {
+  const Image image = read_image(options.image), reference = read_image(options.reference);
+  const ImageError error =
+      naming(options.image, options.reference, [&] { return compare_images(image, reference); });
+  if (!options.json) {
+    print_error(error);
+    return 0;
+  }
+  Json json{{"image", options.image}, {"reference", options.reference}};
+  add_error(json, error);
+  print_json(json);
+  return 0;
+}
+
+/// Means over the frames, and how the frames' errors change from one to the next.
+class SequenceErrors {
+public:
+  explicit SequenceErrors(const CompareOptions& options) : options_(options) {}
+
+  void add(int frame) {
+    const std::string image = substitute_frame(options_.image, frame);
+    const std::string reference = substitute_frame(options_.reference, frame);
+    Pair pair{read_image(image), read_image(reference)};
+    const ImageError error =
+        naming(image, reference, [&] { return compare_images(pair.image, pair.reference); });
+    Json entry{{"frame", frame}};
+    add_error(entry, error);
+    if (last_) {
+      const double temporal = naming(image, reference, [&] {
+        return temporal_error(last_->image, pair.image, last_->reference, pair.reference);
+      });
+      entry["temporal"] = temporal;
+      temporal_ += temporal;
+    }
+    frames_.push_back(std::move(entry));
+    sum_.rmse += error.rmse;
+    sum_.mrse += error.mrse;
+    sum_.relmse += error.relmse;
+    sum_.bias += error.bias;
+    sum_.flip += error.flip;
+    last_ = std::move(pair);
+  }
+
+  void print() const {
+    const double count = static_cast<double>(frames_.size());
+    const ImageError mean{sum_.rmse / count, sum_.mrse / count, sum_.relmse / count,
+                          sum_.bias / count, sum_.flip / count};
+    const double temporal = temporal_ / (count - 1);
+    if (!options_.json) {
+      fmt::print("means of {} frames:\n", frames_.size());
+      print_error(mean);
+      fmt::print("temporal error    {:.6g}\n", temporal);
+      return;
+    }
+    Json json{{"image", options_.image}, {"reference", options_.reference}};
+    add_error(json, mean);
+    json["temporal"] = temporal;
+    json["frames"] = frames_;
+    print_json(json);
+  }
+
+private:
+  const CompareOptions& options_;
+  Json frames_ = Json::array();
+  ImageError sum_;
+  double temporal_ = 0;
+  std::optional<Pair> last_;
+};
+
+int compare_sequences(const CompareOptions& options) {
+  std::vector<int> frames;
+  try {
+    frames = parse_frame_range(options.frames);
+  } catch (const InputError& error) {
+    throw InputError(one_line(fmt::format("--frames: {}", error.what())));
+  }
+  if (frames.size() < 2)
+    throw InputError("--frames: a sequence has at least two frames; leave it out for a still");
+  for (const std::string& path : {options.image, options.reference})
+    if (!has_frame_pattern(path))
+      throw InputError(one_line(path + ": has no place for a frame number, like a.####.exr"));
+  SequenceErrors errors(options);
+  for (const int frame : frames)
+    errors.add(frame);
+  errors.print();
   return 0;
 }
 
@@ -49,6 +151,8 @@ CommandRun add_compare(CLI::App& app) {
   app.add_option("reference", options->reference, "The true image")
       ->required()
       ->option_text("REFERENCE");
+  app.add_option("-f,--frames", options->frames, "Two sequences: these frames of a.####.exr")
+      ->option_text("RANGE");
   app.add_flag("--json", options->json, "Print JSON");
   app.footer(R"(In linear RGB, v the image and r the reference:
   RMSE    sqrt(mean((v - r)^2))
@@ -56,11 +160,17 @@ CommandRun add_compare(CLI::App& app) {
   relMSE  mean((v - r)^2 / (r^2 + 0.01)) without the worst 0.1 % of pixels
   bias    mean(v) / mean(r) - 1
   FLIP    mean FLIP difference at 67 pixels per degree
+Of a sequence the means over its frames, and its temporal error, what one sees as flicker:
+  mean((dv - dr)^2 / (r + 0.01)^2), dv and dr the change from one frame to the next, r the mean of
+  both references. Frames whose noise is independent have twice their MRSE.
 
 Examples:
   vdbeam compare cloud.exr reference.exr
-  vdbeam compare cloud.exr reference.exr --json)");
-  return [options] { return run_compare(*options); };
+  vdbeam compare cloud.exr reference.exr --json
+  vdbeam compare smoke.####.exr truth.####.exr -f 1-24)");
+  return [options] {
+    return options->frames.empty() ? compare_stills(*options) : compare_sequences(*options);
+  };
 }
 
 } // namespace vdbeam::cli

@@ -10,6 +10,8 @@
 
 namespace vdbeam {
 
+class PhotonCache;
+
 /// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
 /// number), whatever the threads.
 class Estimator {
@@ -29,6 +31,7 @@ struct EstimatorInput {
   /// Pixels that are wanted; empty: all. Others may stay black.
   PixelWindow window = {};
   const std::atomic<bool>* stop = nullptr; ///< becomes true when the pass is to be abandoned
+  PhotonCache* photons = nullptr; ///< of frames with the same world; null: photons are not kept
 
   bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };

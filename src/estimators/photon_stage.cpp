@@ -1,10 +1,20 @@
 #include "estimators/photon_stage.h"
 
+#include "estimators/photon_cache.h"
+
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 namespace vdbeam {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 constexpr double default_neighbours = 500;
 /// Collisions of one path that are kept on average: more of them tell little that is new.
@@ -24,6 +34,12 @@ constexpr double direct_per_path = 12;
 constexpr int most_direct_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+
+/// The nearest power of the fourth root of two: the same number, and so the same photons, for
+/// frames that differ a little.
+double in_steps(double number) {
+  return number > 0 ? std::exp2(std::round(4 * std::log2(number)) / 4) : 0;
+}
 
 /// Camera rays of a pass that meet the medium, from a coarse sample.
 double count_hits(const EstimatorInput& input) {
@@ -90,7 +106,7 @@ void PhotonStage::choose_counts() {
   double paths = static_cast<double>(settings.photons.value_or(0)) *
                  std::min(1 / stored_per_path, most_paths_per_photon);
   if (!settings.photons)
-    paths = std::min(std::max(fewest_paths, paths_per_hit * count_hits(input_)),
+    paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input_))),
                      most_photons / stored_per_path);
   paths_ = static_cast<std::uint64_t>(std::ceil(paths));
 }
@@ -149,16 +165,21 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
     map_ = PhotonMap::build({}, 1, radii(pass), input_.world.settings.kernel_shape);
     return;
   }
-  const auto start = std::chrono::steady_clock::now();
   const World& world = input_.world;
-  PhotonPass photons = trace_photons(world, pass_settings(static_cast<std::uint64_t>(pass)));
-  statistics.trace +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (input_.stopped())
-    photons = {}; // of an abandoned pass, nobody needs the map
-  statistics.light_paths += paths_;
-  map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii(pass),
-                          world.settings.kernel_shape);
+  const PhotonPassSettings settings = pass_settings(static_cast<std::uint64_t>(pass));
+  RadiusSettings radius_settings = radii(pass);
+  // The share of kernels inside the medium depends on the camera; all before it does not.
+  const KernelShare support = std::exchange(radius_settings.support, nullptr);
+  if (const auto kept = input_.photons ? input_.photons->find(settings) : nullptr) {
+    map_ = kept->copy();
+    ++statistics.maps_reused;
+  } else {
+    make_map(settings, radius_settings, statistics);
+  }
+  const auto start = Clock::now();
+  if (support)
+    map_.divide_power(support);
+  statistics.radii += seconds_since(start);
   statistics.photons_stored += map_.size();
   if (world.settings.kernel == KernelRadius::adaptive)
     statistics.neighbourhoods += map_.size();
@@ -166,9 +187,26 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
     statistics.directions += map_.size();
   if (map_.size() > 0)
     statistics.bytes_per_photon = map_.bytes() / map_.size();
+}
+
+/// Traces the photons and builds their map.
+void PhotonStage::make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
+                           RenderStatistics& statistics) {
+  const auto start = Clock::now();
+  const World& world = input_.world;
+  PhotonPass photons = trace_photons(world, settings);
+  statistics.trace += seconds_since(start);
+  const bool stopped = input_.stopped();
+  if (stopped)
+    photons = {}; // of an abandoned pass, nobody needs the map
+  statistics.light_paths += settings.paths;
+  map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii,
+                          world.settings.kernel_shape);
   statistics.order += map_.times().order;
   statistics.radii += map_.times().radii;
   statistics.build += map_.times().build;
+  if (input_.photons && !stopped)
+    input_.photons->keep(settings, map_);
 }
 
 } // namespace vdbeam

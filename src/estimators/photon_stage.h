@@ -35,6 +35,8 @@ private:
   void choose_counts();
   PhotonPassSettings pass_settings(std::uint64_t pass) const;
   RadiusSettings radii(int pass) const;
+  void make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
+                RenderStatistics& statistics);
 
   EstimatorInput input_;
   std::vector<bool> sampled_;

@@ -95,6 +95,30 @@ ImageError image_error(const Image& image, const Image& reference) {
   return error;
 }
 
+double temporal_error(const Image& before, const Image& after, const Image& reference_before,
+                      const Image& reference_after) {
+  check_sizes(after, reference_after);
+  check_sizes(before, reference_before);
+  if (before.width != after.width || before.height != after.height)
+    throw InputError(fmt::format("a frame is {} x {} pixels, the next {} x {}; the sizes must be "
+                                 "equal",
+                                 before.width, before.height, after.width, after.height));
+  const Planes v0 = rgb_planes(before, "image"), v1 = rgb_planes(after, "image");
+  const Planes r0 = rgb_planes(reference_before, "reference"),
+               r1 = rgb_planes(reference_after, "reference");
+  const std::size_t pixels = static_cast<std::size_t>(before.width) * before.height;
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const double change = static_cast<double>(v1[c][i]) - v0[c][i];
+      const double truth = static_cast<double>(r1[c][i]) - r0[c][i];
+      const double error =
+          (change - truth) / ((static_cast<double>(r0[c][i]) + r1[c][i]) / 2 + mrse_offset);
+      sum += error * error;
+    }
+  return sum / (3 * static_cast<double>(pixels));
+}
+
 ImageError compare_images(const Image& image, const Image& reference) {
   ImageError error = image_error(image, reference);
   error.flip = mean_flip(image, reference);

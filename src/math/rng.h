@@ -19,6 +19,8 @@ struct RngKey {
   std::uint64_t seed = 1;
   std::uint64_t frame = 0;
   std::uint64_t pass = 0;
+
+  bool operator==(const RngKey&) const = default;
 };
 
 /// A counter-based generator: the n-th number of a stream is a pure function of the stream's name

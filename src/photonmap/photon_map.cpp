@@ -62,9 +62,9 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedP
   return blocks;
 }
 
-void divide_by_support(PhotonBlocks& blocks, const RadiusSettings& radii) {
+void divide_by_share(PhotonBlocks& blocks, const KernelShare& share_of) {
   tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
-    const float share = radii.support(blocks.position(i), blocks.at(i, PhotonBlocks::radius));
+    const float share = share_of(blocks.position(i), blocks.at(i, PhotonBlocks::radius));
     for (int c = 0; c < blocks.channels(); ++c)
       blocks.at(i, PhotonBlocks::power + c) /= share;
   });
@@ -103,7 +103,7 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   start = Clock::now();
   find_kernel_radii(data.blocks, radii);
   if (radii.support)
-    divide_by_support(data.blocks, radii);
+    divide_by_share(data.blocks, radii.support);
   data.times.radii = seconds_since(start);
 
   start = Clock::now();
@@ -115,6 +115,16 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
       data.blocks.count() ? static_cast<float>(sum / static_cast<double>(data.blocks.count())) : 0;
   data.times.build = seconds_since(start);
   return map;
+}
+
+PhotonMap PhotonMap::copy() const {
+  PhotonMap map;
+  *map.data_ = *data_;
+  return map;
+}
+
+void PhotonMap::divide_power(const KernelShare& share) {
+  divide_by_share(data_->blocks, share);
 }
 
 std::size_t PhotonMap::size() const {

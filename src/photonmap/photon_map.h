@@ -10,17 +10,19 @@
 
 namespace vdbeam {
 
+/// Share of a photon's kernel that lies where photons can be stored at all, from its position and
+/// radius.
+using KernelShare = std::function<float(const Vec3f& position, float radius)>;
+
 /// How kernel radii are chosen (render units).
 struct RadiusSettings {
   KernelRadius mode = KernelRadius::adaptive;
-  float fixed_radius = 0;    ///< fixed mode
-  float neighbours = 100;    ///< adaptive mode: expected photons in the sphere of radius r_i
-  float scale = 1;           ///< progressive shrinking: applied to adaptive and fixed radii alike
-  float min_radius = 0;      ///< clamp after scaling; > 0
-  float max_radius = 1e30f;  ///< clamp after scaling
-  /// Share of a photon's kernel that lies where photons can be stored at all, from its position and
-  /// radius; its power is divided by it. Empty: 1.
-  std::function<float(const Vec3f& position, float radius)> support;
+  float fixed_radius = 0;   ///< fixed mode
+  float neighbours = 100;   ///< adaptive mode: expected photons in the sphere of radius r_i
+  float scale = 1;          ///< progressive shrinking: applied to adaptive and fixed radii alike
+  float min_radius = 0;     ///< clamp after scaling; > 0
+  float max_radius = 1e30f; ///< clamp after scaling
+  KernelShare support;      ///< photons' powers are divided by it; empty: 1
 };
 
 struct MapTimes {
@@ -46,6 +48,11 @@ public:
   /// x is kept), else 3.
   static PhotonMap build(PhotonList photons, int channels, const RadiusSettings& radii,
                          KernelShape shape);
+
+  /// The same map once more.
+  PhotonMap copy() const;
+  /// Divides every photon's power by its share: what build does with radii.support.
+  void divide_power(const KernelShare& share);
 
   std::size_t size() const;
   std::size_t bytes() const;

@@ -1,12 +1,12 @@
 #include "render/memory_check.h"
 
+#include "scene/cgroups.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <limits>
 
 namespace vdbeam {
@@ -32,13 +32,8 @@ std::string gigabytes(std::uint64_t bytes) {
 std::uint64_t granted_memory() {
   std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  for (const char* name :
-       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    std::ifstream file(name);
-    std::uint64_t limit = 0;
-    if (file >> limit) // a word, "max", where there is none
-      bytes = std::min(bytes, limit);
-  }
+  if (const std::uint64_t limit = cgroup_limits().memory; limit > 0)
+    bytes = std::min(bytes, limit);
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);

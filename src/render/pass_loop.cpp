@@ -65,7 +65,7 @@ void PassLoop::note(const std::string& line) {
 void PassLoop::run(Estimator& estimator) {
   if (!hooks_.checkpoint.path.empty() && hooks_.checkpoint.resume)
     resume();
-  start_ = last_checkpoint_ = Clock::now();
+  start_ = last_attempt_ = Clock::now();
   PassImage image;
   while (!finished()) {
     estimator.render_pass(next_pass(), image, result_.statistics);
@@ -131,7 +131,7 @@ void PassLoop::resume() {
   } catch (const InputError& problem) {
     return note(fmt::format("{}; the frame begins anew", problem.what()));
   }
-  result_.resumed_passes = last_checkpoint_passes_ = film_.passes();
+  result_.resumed_passes = last_checkpoint_passes_ = last_attempt_passes_ = film_.passes();
   note(fmt::format("{}: goes on after {} passes", path, film_.passes()));
   PassRecord record;
   record.pass = film_.passes();
@@ -170,20 +170,32 @@ void PassLoop::compare(PassRecord& record) {
 void PassLoop::serve_requests() {
   if (hooks_.snapshot && hooks_.snapshot->exchange(false) && hooks_.on_snapshot) {
     develop();
-    hooks_.on_snapshot(result_);
+    attempt([&] { hooks_.on_snapshot(result_); });
   }
   const CheckpointSettings& settings = hooks_.checkpoint;
-  const double since = std::chrono::duration<double>(Clock::now() - last_checkpoint_).count();
+  const double since = std::chrono::duration<double>(Clock::now() - last_attempt_).count();
   if ((settings.seconds > 0 && since >= settings.seconds) ||
-      (settings.passes > 0 && film_.passes() - last_checkpoint_passes_ >= settings.passes))
-    write_checkpoint();
+      (settings.passes > 0 && film_.passes() - last_attempt_passes_ >= settings.passes)) {
+    attempt([&] { write_checkpoint(); });
+    last_attempt_ = Clock::now();
+    last_attempt_passes_ = film_.passes();
+  }
+}
+
+/// Writes a file that the picture does not need: a full disk must not cost the passes so far.
+template <class F>
+void PassLoop::attempt(F write) {
+  try {
+    write();
+  } catch (const FrameError& error) {
+    note(fmt::format("{}; rendering goes on", error.what()));
+  }
 }
 
 void PassLoop::write_checkpoint() {
   if (hooks_.checkpoint.path.empty() || film_.passes() == last_checkpoint_passes_)
     return;
   write_film(file_info(), film_, hooks_.checkpoint.path);
-  last_checkpoint_ = Clock::now();
   last_checkpoint_passes_ = film_.passes();
 }
 

@@ -25,6 +25,8 @@ private:
   void record();
   void compare(PassRecord& record);
   void serve_requests();
+  template <class F>
+  void attempt(F write);
   void write_checkpoint();
   void develop();
   FilmFileInfo file_info() const;
@@ -43,8 +45,8 @@ private:
   Clock::time_point start_;
   double earlier_seconds_ = 0; ///< of the passes that came from a checkpoint
   std::uint64_t photons_before_ = 0;
-  Clock::time_point last_checkpoint_;
-  int last_checkpoint_passes_ = 0;
+  Clock::time_point last_attempt_; ///< to write a checkpoint
+  int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;
   std::string pass_hash_; ///< empty where no film goes to disk
 };
 

@@ -1,5 +1,6 @@
 #include "render/prepared_scene.h"
 
+#include "render/memory_check.h"
 #include "scene/scene_keys.h"
 
 #include <fmt/format.h>
@@ -63,6 +64,12 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
   return read_density_grid(volume.file, volume.density);
 }
 
+/// Bytes for photons that later frames may use: at most an eighth of the memory, which is less than
+/// what `vdbeam farm` asks for beyond its estimate.
+std::uint64_t cache_capacity() {
+  return std::min<std::uint64_t>(granted_memory() / 8, std::uint64_t{1} << 30);
+}
+
 void keep_facts(const DensityGrid& grid, ReadVolume& read) {
   read.facts.index_to_world = grid.index_to_world;
   read.facts.repairs = grid.repairs;
@@ -79,6 +86,9 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
   if (previous && previous->settings == prepared->settings) {
     prepared->world = previous->world;
     prepared->volumes = previous->volumes;
+    prepared->photons = previous->photons;
+    if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
+      prepared->photons = std::make_shared<PhotonCache>(cache_capacity());
     return prepared;
   }
   std::vector<DensityGrid> grids;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/photon_cache.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 
@@ -21,6 +22,8 @@ public:
   std::shared_ptr<const World> world;
   std::vector<ReadVolume> volumes;
   std::string settings; ///< everything but the volumes' contents that the world is made from
+  /// Photons of earlier frames with this world; null where no frame can use those of another.
+  std::shared_ptr<PhotonCache> photons;
   double seconds_read = 0, seconds_build = 0;
 };
 

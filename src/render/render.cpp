@@ -74,8 +74,10 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   check_memory(scene, result.plan, granted_memory());
   for (const std::string& line : limit_notes(scene, world, result.plan))
     note(line);
-  const EstimatorInput input{world, camera, static_cast<std::uint64_t>(hooks.frame), window,
-                             hooks.stop};
+  // Correlated frames all draw the numbers of frame 1.
+  const bool correlated = scene.render.seeds == SeedPolicy::correlated;
+  const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
+  const EstimatorInput input{world, camera, key, window, hooks.stop, prepared->photons.get()};
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   PassLoop(scene, hooks, window, result).run(*estimator);
   return result;

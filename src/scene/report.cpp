@@ -133,7 +133,8 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"shadow_rays", statistics.shadow_rays},
                       {"camera_walks", statistics.camera_walks},
                       {"neighbourhoods", statistics.neighbourhoods},
-                      {"directions", statistics.directions}};
+                      {"directions", statistics.directions},
+                      {"maps_reused", statistics.maps_reused}};
   report["stopped_by"] = result.stopped_by;
   report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);

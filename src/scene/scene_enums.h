@@ -56,6 +56,11 @@ struct EnumNames<KernelRadius> {
       {{KernelRadius::adaptive, "adaptive"}, {KernelRadius::fixed, "fixed"}}};
 };
 template <>
+struct EnumNames<SeedPolicy> {
+  static constexpr std::array<std::pair<SeedPolicy, std::string_view>, 2> table{
+      {{SeedPolicy::per_frame, "per_frame"}, {SeedPolicy::correlated, "correlated"}}};
+};
+template <>
 struct EnumNames<KernelShape> {
   static constexpr std::array<std::pair<KernelShape, std::string_view>, 4> table{
       {{KernelShape::constant, "constant"},

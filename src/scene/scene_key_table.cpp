@@ -237,6 +237,7 @@ void add_render(Table& table) {
   table.add("cutoff", &R::cutoff, "transmittance at which a camera ray ends").inside(0, 1);
   table.add("step", &R::step, "step of the march estimator").unit("voxels").above(0);
   table.add("seed", &R::seed, "random numbers; the same seed gives the same picture").at_least(0);
+  table.add("seeds", &R::seeds, "random numbers of each frame's own, or the same in all frames");
   table
       .add("threads", &R::threads,
            "threads; 0: all that the machine grants. Never changes the picture")

@@ -119,6 +119,16 @@ private:
 
 } // namespace
 
+bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
+  // Names every member, so that a new one cannot be forgotten here.
+  const auto& [paths, store, keep, skip_first_flight, max_bounces, directions, factor, key, stop] =
+      a;
+  static_cast<void>(stop);
+  return paths == b.paths && store == b.store && keep == b.keep &&
+         skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
+         directions == b.directions && factor == b.factor && key == b.key;
+}
+
 PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings) {
   PhotonPass pass;
   if (world.medium.empty() || settings.paths == 0)

@@ -22,6 +22,9 @@ struct PhotonPassSettings {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// True where trace_photons gives the same photons in the same world.
+bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
+
 struct PhotonPass {
   PhotonList photons;         ///< power divided by the number of paths already
   double mean_collisions = 0; ///< storable collisions per path, before `keep`

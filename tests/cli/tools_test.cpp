@@ -62,6 +62,43 @@ TEST_F(PlanCommand, Json) {
   EXPECT_TRUE(plan["stages"][0]["reason"].is_string());
 }
 
+TEST_F(CompareCommand, SequencesHaveATemporalError) {
+  for (const char* seed : {"1", "2"})
+    ASSERT_EQ(run({"render", cloud, "-f", "1-3", "-o", std::string("s") + seed + ".####.exr",
+                   "--seed", seed, "--set", "render.seeds=per_frame", "--passes", "2",
+                   "--resolution", "32x18", "--set", "render.photons=2000", "-q"})
+                  .code,
+              0);
+  const auto result = run({"compare", "s1.####.exr", "s2.####.exr", "-f", "1-3", "--json"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  const Json json = Json::parse(result.out);
+  ASSERT_EQ(json["frames"].size(), 3u);
+  EXPECT_FALSE(json["frames"][0].contains("temporal"));
+  const double second = json["frames"][1]["temporal"], third = json["frames"][2]["temporal"];
+  EXPECT_GT(second, 0);
+  EXPECT_DOUBLE_EQ(json["temporal"], (second + third) / 2);
+  double mrse = 0;
+  for (const Json& frame : json["frames"])
+    mrse += frame["mrse"].get<double>() / 3;
+  EXPECT_DOUBLE_EQ(json["mrse"], mrse);
+  EXPECT_NE(run({"compare", "s1.####.exr", "s2.####.exr", "-f", "1-3"}).out.find("temporal error"),
+            std::string::npos);
+}
+
+TEST_F(CompareCommand, SequencesThatAreNoneAreBadInput) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"a.exr", "b.####.exr", "-f", "1-3"},
+        {"a.####.exr", "b.####.exr", "-f", "1"},
+        {"a.####.exr", "b.####.exr", "-f", "1..3"},
+        {"a.####.exr", "b.####.exr", "-f", "1-3"}}) {
+    std::vector<std::string> arguments{"compare"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.code, 2) << result.error;
+    EXPECT_EQ(result.error_lines(), 1u) << result.error;
+  }
+}
+
 TEST_F(CompareCommand, UnreadableImagesAreBadInput) {
   write("text.exr", "hello");
   for (const char* name : {"none.exr", "text.exr", "text.txt"}) {

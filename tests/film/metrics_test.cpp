@@ -45,6 +45,41 @@ TEST(ImageError, MatchesDefinitionsByHand) {
   EXPECT_EQ(error.flip, 0) << "only compare_images computes FLIP";
 }
 
+TEST(TemporalError, MatchesItsDefinitionByHand) {
+  const Image r0 = constant({1, 0, 0.5f}, 2, 1), r1 = constant({3, 0, 0.5f}, 2, 1);
+  const Image v0 = constant({1.5f, 0, 0.5f}, 2, 1), v1 = constant({3.1f, 0.1f, 0.5f}, 2, 1);
+  EXPECT_NEAR(temporal_error(v0, v1, r0, r1), (0.16 / (2.01 * 2.01) + 0.01 / (0.01 * 0.01)) / 3,
+              1e-4);
+}
+
+TEST(TemporalError, AnErrorThatStaysIsNoFlicker) {
+  const Image r0 = constant({1, 1, 1}), r1 = constant({2, 2, 2});
+  const Image v0 = constant({1.5f, 1.5f, 1.5f}), v1 = constant({2.5f, 2.5f, 2.5f});
+  EXPECT_EQ(temporal_error(v0, v1, r0, r1), 0);
+  EXPECT_GT(image_error(v0, r0).mrse, 0.1);
+}
+
+TEST(TemporalError, IndependentNoiseHasTwiceItsMrse) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(1, 0.1f);
+  const auto noisy = [&] {
+    return make_image(64, 48, [&](int, int) { return Colour{noise(random), noise(random), 1}; });
+  };
+  const Image truth = constant({1, 1, 1}), a = noisy(), b = noisy();
+  const double expected = image_error(a, truth).mrse + image_error(b, truth).mrse;
+  // The sum of n = 6144 products of two noises, against that of as many squares: 4 / sqrt(n).
+  EXPECT_NEAR(temporal_error(a, b, truth, truth) / expected, 1, 0.05);
+}
+
+TEST(TemporalError, OtherSizesAndMissingChannelsAreRefused) {
+  const Image a = constant({1, 1, 1}, 4, 4), b = constant({1, 1, 1}, 4, 5);
+  Image grey = a;
+  grey.channels.pop_back();
+  EXPECT_THROW(temporal_error(a, b, a, b), InputError);
+  EXPECT_THROW(temporal_error(a, a, a, b), InputError);
+  EXPECT_THROW(temporal_error(a, grey, a, a), InputError);
+}
+
 TEST(ImageError, RelmseDropsTheWorstThousandth) {
   const int width = 100, height = 50; // 5 of 5000 pixels
   const auto with_outliers = [&](int outliers) {

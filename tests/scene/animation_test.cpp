@@ -1,4 +1,3 @@
-#include "scene/threads.h"
 #include "scene/volume_time.h"
 #include "scene_fixture.h"
 
@@ -120,25 +119,6 @@ TEST_F(Animation, PassHashForgetsTheStopRuleOnly) {
   EXPECT_NE(hash("render.passes=3"), hash("render.seed=7"));
   EXPECT_NE(scene_hash(load(text, {"render.passes=3"})),
             scene_hash(load(text, {"render.passes=4"})));
-}
-
-TEST(Threads, FarmAndCgroupLimitThem) {
-  EXPECT_EQ(cgroup_cpus("max 100000\n"), 0);
-  EXPECT_EQ(cgroup_cpus("150000 100000\n"), 2);
-  EXPECT_EQ(cgroup_cpus("-1 100000"), 0);
-  EXPECT_EQ(cgroup_cpus(""), 0);
-  RenderSettings settings;
-  setenv("SLURM_CPUS_PER_TASK", "1", 1);
-  EXPECT_EQ(thread_count(settings), 1);
-  settings.threads = 3;
-  EXPECT_EQ(thread_count(settings), 3);
-  settings.threads = 0;
-  setenv("SLURM_CPUS_PER_TASK", "many", 1);
-  setenv("CUE_THREADS", "1", 1);
-  EXPECT_EQ(thread_count(settings), 1);
-  unsetenv("SLURM_CPUS_PER_TASK");
-  unsetenv("CUE_THREADS");
-  EXPECT_GE(thread_count(settings), 1);
 }
 
 } // namespace

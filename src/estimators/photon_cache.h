@@ -1,0 +1,38 @@
+#pragma once
+
+#include "photonmap/photon_map.h"
+#include "transport/photon_tracing.h"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace vdbeam {
+
+/// Photon maps of passes, for later frames of a sequence in which nothing but the camera moves:
+/// with correlated seeds their passes have the same photons. Maps are kept as they are before
+/// anything that depends on the camera. All frames must have the same world.
+class PhotonCache {
+public:
+  /// Keeps maps of up to `capacity` bytes in all.
+  explicit PhotonCache(std::uint64_t capacity) : capacity_(capacity) {}
+
+  /// The map of these photons; null where it is not there.
+  std::shared_ptr<const PhotonMap> find(const PhotonPassSettings& settings) const;
+  /// Keeps a copy, unless there is no room for it. Maps of the same pass with other photons go.
+  void keep(const PhotonPassSettings& settings, const PhotonMap& map);
+  std::uint64_t bytes() const;
+
+private:
+  struct Entry {
+    PhotonPassSettings settings;
+    std::shared_ptr<const PhotonMap> map;
+  };
+
+  mutable std::mutex mutex_;
+  std::uint64_t capacity_, bytes_ = 0;
+  std::vector<Entry> entries_;
+};
+
+} // namespace vdbeam

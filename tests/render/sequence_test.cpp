@@ -1,0 +1,180 @@
+#include "estimators/photon_cache.h"
+#include "render/prepared_scene.h"
+#include "support/temp_folder.h"
+#include "vdbeam/metrics.h"
+#include "vdbeam/render.h"
+#include "vdbeam/scene_file.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace vdbeam {
+namespace {
+
+/// The sample cloud at a frame, small and quick.
+Scene small_cloud(int frame = 1, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"image.width=40", "image.height=23", "render.photons=3000",
+                                     "render.passes=3"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", frame, overrides);
+}
+
+RenderResult render_frame(const Scene& scene, int frame, const PreparedScenePtr& prepared) {
+  RenderHooks hooks;
+  hooks.frame = frame;
+  return render(scene, prepared, hooks);
+}
+Image render_alone(const Scene& scene, int frame) {
+  return render_frame(scene, frame, prepare_scene(scene)).image;
+}
+
+bool same_pixels(const Image& a, const Image& b) {
+  if (a.channels.size() != b.channels.size())
+    return false;
+  for (std::size_t c = 0; c < a.channels.size(); ++c)
+    if (a.channels[c].data.size() != b.channels[c].data.size() ||
+        std::memcmp(a.channels[c].data.data(), b.channels[c].data.data(),
+                    a.channels[c].data.size() * sizeof(float)) != 0)
+      return false;
+  return true;
+}
+
+TEST(Seeds, CorrelatedFramesDrawTheSameNumbers) {
+  for (const char* estimator : {"beam", "march", "path"}) {
+    const std::string choice = std::string("render.estimator=") + estimator;
+    const Scene correlated = small_cloud(1, {choice, "render.seeds=correlated"});
+    const Scene per_frame = small_cloud(1, {choice, "render.seeds=per_frame"});
+    const Image first = render_alone(correlated, 1);
+    EXPECT_TRUE(same_pixels(first, render_alone(correlated, 7))) << estimator;
+    EXPECT_TRUE(same_pixels(first, render_alone(per_frame, 1))) << estimator;
+    EXPECT_FALSE(same_pixels(first, render_alone(per_frame, 7))) << estimator;
+    const Scene other = small_cloud(1, {choice, "render.seeds=correlated", "render.seed=2"});
+    EXPECT_FALSE(same_pixels(first, render_alone(other, 7))) << estimator;
+  }
+}
+
+/// The temporal error of a cloud that grows denser by 2 % from one frame to the next, mean of
+/// `count` pairs.
+double flicker(const std::vector<Image>& truth, const char* policy, int count) {
+  double sum = 0;
+  for (int seed = 1; seed <= count; ++seed) {
+    std::vector<Image> images;
+    for (int frame = 1; frame <= 2; ++frame)
+      images.push_back(render_alone(
+          small_cloud(frame,
+                      {std::string("render.seeds=") + policy, "render.seed=" + std::to_string(seed),
+                       "volume.0.extinction=" + std::to_string(frame == 1 ? 40.0 : 40.8)}),
+          frame));
+    sum += temporal_error(images[0], images[1], truth[0], truth[1]);
+  }
+  return sum / count;
+}
+
+TEST(Seeds, TheDefaultFlickersLess) {
+  EXPECT_EQ(small_cloud().render.seeds, SeedPolicy::correlated);
+  std::vector<Image> truth;
+  for (int frame = 1; frame <= 2; ++frame)
+    truth.push_back(render_alone(
+        small_cloud(frame, {"render.seed=99", "render.passes=60",
+                            "volume.0.extinction=" + std::to_string(frame == 1 ? 40.0 : 40.8)}),
+        frame));
+  const double correlated = flicker(truth, "correlated", 3);
+  const double per_frame = flicker(truth, "per_frame", 3);
+  EXPECT_GT(correlated, 0);
+  EXPECT_LT(correlated, 0.5 * per_frame) << correlated << " " << per_frame;
+}
+
+/// Renders a moving camera over a still cloud, each frame after the other, and compares with frames
+/// rendered alone. Returns how many passes of each frame took the photons of an earlier one.
+std::vector<std::uint64_t> reused_maps(const std::vector<std::string>& more) {
+  std::vector<std::uint64_t> counts;
+  PreparedScenePtr prepared;
+  for (int frame = 1; frame <= 4; ++frame) {
+    Scene scene = small_cloud(frame, more);
+    scene.camera.position.x += 0.1 * frame;
+    scene.camera.fov += frame;
+    prepared = prepare_scene(scene, prepared);
+    const RenderResult result = render_frame(scene, frame, prepared);
+    counts.push_back(result.statistics.maps_reused);
+    EXPECT_EQ(result.statistics.trace == 0, counts.back() == 3);
+    EXPECT_EQ(result.statistics.light_paths == 0, counts.back() == 3);
+    EXPECT_GT(result.statistics.photons_stored, 0u);
+    EXPECT_TRUE(same_pixels(result.image, render_alone(scene, frame))) << frame;
+  }
+  return counts;
+}
+
+using Counts = std::vector<std::uint64_t>;
+
+TEST(PhotonReuse, OfAStillVolumeUnderAMovingCameraIsExact) {
+  // The second frame is the first that is known to share its world with another.
+  EXPECT_EQ(reused_maps({}), (Counts{0, 0, 3, 3}));
+  EXPECT_EQ(reused_maps({"render.estimator=march"}), (Counts{0, 0, 3, 3}));
+  EXPECT_EQ(reused_maps({"render.kernel=fixed", "render.radius=0.2", "render.store=scatter"}),
+            (Counts{0, 0, 3, 3}));
+}
+
+TEST(PhotonReuse, IsNotDoneWhereFramesHaveTheirOwnNumbers) {
+  EXPECT_EQ(reused_maps({"render.seeds=per_frame"}), (Counts{0, 0, 0, 0}));
+}
+
+TEST(PhotonReuse, IsNotDoneWhereTheNumberOfPhotonsFollowsTheView) {
+  // A camera so close that many more rays meet the cloud wants more light paths.
+  PreparedScenePtr prepared;
+  std::vector<std::uint64_t> counts;
+  for (int frame = 1; frame <= 4; ++frame) {
+    Scene scene = small_cloud(
+        frame, {"image.width=160", "image.height=92", "render.passes=1", "render.photons=auto"});
+    scene.camera.fov = frame == 3 ? 10 : 24;
+    prepared = prepare_scene(scene, prepared);
+    const RenderResult result = render_frame(scene, frame, prepared);
+    counts.push_back(result.statistics.maps_reused);
+    EXPECT_TRUE(same_pixels(result.image, render_alone(scene, frame))) << frame;
+  }
+  EXPECT_EQ(counts, (Counts{0, 0, 0, 0}));
+}
+
+TEST(PhotonReuse, EndsWhenALightOrTheVolumeChanges) {
+  PreparedScenePtr prepared;
+  for (int frame = 1; frame <= 5; ++frame) {
+    Scene scene = small_cloud(frame);
+    scene.lights[0].irradiance = Rgb(frame == 4 ? 2.0f : 1.0f);
+    prepared = prepare_scene(scene, prepared);
+    const RenderResult result = render_frame(scene, frame, prepared);
+    EXPECT_EQ(result.statistics.maps_reused, frame == 3 ? 3u : 0u) << frame;
+    EXPECT_TRUE(same_pixels(result.image, render_alone(scene, frame))) << frame;
+  }
+}
+
+TEST(PhotonCache, KeepsNoMoreThanItMay) {
+  PhotonList photons;
+  for (int i = 0; i < 64; ++i) {
+    photons.position.push_back(Vec3f(static_cast<float>(i)));
+    photons.power.push_back(Rgb(1));
+  }
+  const PhotonMap map = PhotonMap::build(photons, 1, {}, KernelShape::biweight);
+  PhotonCache cache(2 * map.bytes());
+  PhotonPassSettings settings;
+  settings.paths = 10;
+  for (std::uint64_t pass = 0; pass < 5; ++pass) {
+    settings.key.pass = pass;
+    cache.keep(settings, map);
+  }
+  EXPECT_EQ(cache.bytes(), 2 * map.bytes());
+  settings.key.pass = 1;
+  ASSERT_NE(cache.find(settings), nullptr);
+  EXPECT_EQ(cache.find(settings)->size(), 64u);
+  settings.key.pass = 2;
+  EXPECT_EQ(cache.find(settings), nullptr);
+  // Other photons of a pass replace those that are there.
+  settings.key.pass = 1;
+  settings.paths = 11;
+  EXPECT_EQ(cache.find(settings), nullptr);
+  cache.keep(settings, map);
+  EXPECT_EQ(cache.bytes(), 2 * map.bytes());
+  EXPECT_NE(cache.find(settings), nullptr);
+}
+
+} // namespace
+} // namespace vdbeam
