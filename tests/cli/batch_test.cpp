@@ -25,6 +25,10 @@ protected:
     arguments.insert(arguments.end(), more.begin(), more.end());
     return render(arguments);
   }
+  /// "c.0007.vdb"
+  static std::string fmt_name(const std::string& stem, int frame, const std::string& extension) {
+    return stem + ".000" + std::to_string(frame) + "." + extension;
+  }
   Json summary() const { return Json::parse(read("summary.json")); }
   std::vector<float> pixels(const std::string& name) const {
     return read_image(file(name)).find("R")->data;
@@ -50,6 +54,30 @@ TEST_F(BatchCommand, SkipsFinishedFramesAndNoOthers) {
   EXPECT_EQ(summary()["done"], Json::array({1, 2, 3}));
   render_frames("1-3", {"--skip-existing", "--seed", "9"});
   EXPECT_EQ(summary()["skipped"], Json::array({1, 2, 3}));
+}
+
+/// Files that open as images of this very frame, and are not the finished one.
+TEST_F(BatchCommand, PartialResizedAndCutImagesAreRenderedAgain) {
+  write_sequence();
+  ASSERT_EQ(render_frames("1").code, 0);
+  const auto again = [&](const Names& made_by, const std::string& why) {
+    std::filesystem::remove(folder_ / "o.0001.exr");
+    Names words{"render", "s.toml", "-f", "1", "-o", "o.####.exr", "--set", "render.photons=2000"};
+    words.insert(words.end(), made_by.begin(), made_by.end());
+    ASSERT_EQ(run(words).code, 0);
+    const auto result = render_frames("1", {"--skip-existing"});
+    EXPECT_EQ(summary()["done"], Json::array({1})) << why;
+    EXPECT_NE(result.error.find("rendered again: " + why), std::string::npos) << result.error;
+  };
+  again({"--pass-range", "0", "--resolution", "32x18"}, "is not marked as finished");
+  again({"--passes", "1", "--resolution", "31x18"}, "has another size");
+  again({"--passes", "1", "--resolution", "32x18", "--region", "1,1,20,18"}, "is of another scene");
+  again({"--passes", "2", "--resolution", "32x18"}, "is of another scene");
+  // A frame under another's name.
+  ASSERT_EQ(render_frames("2").code, 0);
+  write("o.0001.exr", read("o.0002.exr"));
+  EXPECT_NE(render_frames("1", {"--skip-existing"}).error.find("is of another frame"),
+            std::string::npos);
 }
 
 TEST_F(BatchCommand, TellsWhatFailedAndGoesOn) {
@@ -119,6 +147,19 @@ TEST_F(BatchCommand, PartialImagesMerge) {
       with({"-o", "a.exr", "--pass-range", "0-1", "--skip-existing", "--summary", "summary.json"}),
       0);
   EXPECT_EQ(summary()["skipped"], Json::array({1}));
+}
+
+TEST_F(BatchCommand, MemoryIsThatOfTwoFrames) {
+  for (int frame = 1; frame <= 7; ++frame)
+    std::filesystem::copy_file(cloud_vdb, folder_ / fmt_name("c", frame, "vdb"));
+  write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
+  ASSERT_EQ(render({"s.toml", "-f", "1-7", "--passes", "1", "-q", "--report", "r.####.json"}).code,
+            0);
+  const auto peak = [&](int frame) {
+    return Json::parse(read(fmt_name("r", frame, "json")))["peak_memory"].get<double>();
+  };
+  // Bricks of the cloud are 40 MB: two frames have them twice, seven would have 200 MB more.
+  EXPECT_LT(peak(7), peak(3) + 40e6);
 }
 
 TEST_F(BatchCommand, BadValuesAreRefused) {

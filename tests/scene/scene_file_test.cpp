@@ -134,6 +134,12 @@ TEST_F(SceneFile, FrameNumbersInPaths) {
     const Scene scene = load(std::string("[[volume]]\nfile = '") + pattern + "'\n", {}, 7);
     EXPECT_EQ(scene.volumes[0].file, file("s.0007.vdb"));
   }
+  for (const char* pattern : {"sky.####.exr", "sky.%04d.exr", "sky.$F4.exr"}) {
+    write("sky.0007.exr", "");
+    const Scene scene =
+        load(std::string("[[light]]\ntype = 'environment'\nimage = '") + pattern + "'\n", {}, 7);
+    EXPECT_EQ(scene.lights[0].image, file("sky.0007.exr"));
+  }
 }
 
 TEST_F(SceneFile, PathsAreRelativeToTheFile) {
