@@ -36,6 +36,7 @@ struct RenderStatistics {
   std::uint64_t neighbourhoods = 0; ///< photons whose radius follows their neighbours'
   std::uint64_t directions = 0;     ///< photons stored with their direction
   std::uint64_t maps_reused = 0;    ///< passes whose photons were those of an earlier frame
+  std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
   std::uint64_t peak_memory = 0; ///< bytes, whole process
   std::size_t bytes_per_photon = 0;
 };

@@ -67,6 +67,9 @@ struct LightSettings {
 
 enum class EstimatorType { beam, march, path };
 enum class PhotonStore { fluence, scatter };
+/// Which of a light path's collisions become photons: those that the camera sees, or all alike;
+/// automatic is the first, but for a scene file in which only the camera moves.
+enum class PhotonThinning { automatic, view, even };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
 enum class SeedPolicy { per_frame, correlated };
@@ -88,7 +91,8 @@ struct RenderSettings {
   double min_radius = 0;               ///< world units; 0: automatic
   double max_radius = 0;               ///< world units; 0: automatic
   double alpha = 0.6;                  ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
-  double keep = 0;                     ///< share of a path's collisions that are stored; 0: automatic
+  PhotonThinning thinning = PhotonThinning::automatic; ///< which collisions are stored (beam)
+  double keep = 0;                     ///< share of them that are stored, evenly; 0: automatic
   std::optional<int> max_bounces;      ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;                ///< transmittance below which a camera ray ends
   double step = 1;                     ///< march: step length in voxels

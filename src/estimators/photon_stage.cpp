@@ -1,6 +1,8 @@
 #include "estimators/photon_stage.h"
 
 #include "estimators/photon_cache.h"
+#include "estimators/view_importance.h"
+#include "estimators/view_thinning.h"
 
 #include <chrono>
 #include <cmath>
@@ -32,6 +34,8 @@ constexpr double most_paths_per_photon = 16;
 /// noise is most of the error; in thick ones the photons' noise hides it (docs/decisions.md).
 constexpr double direct_per_path = 12;
 constexpr int most_direct_samples = 6;
+/// Where the camera sees nothing of a photon, at least this share of those like it is stored.
+constexpr float least_importance = 1.0f / 1024;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 
@@ -55,6 +59,11 @@ double count_hits(const EstimatorInput& input) {
       hits += !profile.empty();
     }
   return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+}
+
+bool thins_by_view(const RenderSettings& settings) {
+  return settings.estimator == EstimatorType::beam && settings.thinning != PhotonThinning::even &&
+         !(settings.keep > 0);
 }
 
 } // namespace
@@ -97,18 +106,53 @@ void PhotonStage::choose_counts() {
     return;
   PhotonPassSettings pilot = pass_settings(pilot_pass);
   pilot.paths = pilot_paths;
-  const double collisions = std::max(1e-3, trace_photons(input_.world, pilot).mean_collisions);
+  const PhotonPass sample = trace_photons(input_.world, pilot);
+  const double collisions = std::max(1e-3, sample.mean_collisions);
   if (settings.direct_samples == 0)
     direct_samples_ = std::clamp(static_cast<int>(std::lround(direct_per_path / (1 + collisions))),
                                  1, most_direct_samples);
   keep_ = settings.keep > 0 ? settings.keep : std::min(1.0, kept_per_path / collisions);
-  const double stored_per_path = collisions * keep_;
+  stored_per_path_ = collisions * keep_;
+  if (thins_by_view(settings) && sample.photons.size() > 0)
+    choose_thinning(sample);
+  paths_ = choose_paths();
+}
+
+std::uint64_t PhotonStage::choose_paths() const {
+  const RenderSettings& settings = input_.world.settings;
   double paths = static_cast<double>(settings.photons.value_or(0)) *
-                 std::min(1 / stored_per_path, most_paths_per_photon);
+                 std::min(1 / stored_per_path_, most_paths_per_photon);
   if (!settings.photons)
     paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input_))),
-                     most_photons / stored_per_path);
-  paths_ = static_cast<std::uint64_t>(std::ceil(paths));
+                     most_photons / stored_per_path_);
+  return static_cast<std::uint64_t>(std::ceil(paths));
+}
+
+void PhotonStage::choose_thinning(const PhotonPass& pilot) {
+  const double collisions = pilot.mean_collisions;
+  stored_per_path_ = std::min(collisions, std::max(kept_per_path, std::sqrt(collisions)));
+  CellTables importance = view_importance(input_.world, input_.camera, kernel_reach(pilot.photons),
+                                          least_importance, importance_rays_);
+  ViewThinning thinning = thin_by_view(input_.world, std::move(importance), pilot.photons,
+                                       collisions, stored_per_path_);
+  keep_by_cell_ = std::make_shared<const CellTables>(std::move(thinning.keep));
+  stored_per_path_ = thinning.stored_per_path;
+}
+
+/// About the radius that kernels would have without regard to the view.
+float PhotonStage::kernel_reach(const PhotonList& pilot) const {
+  constexpr std::size_t enough = 8192;
+  const std::size_t stride = (pilot.size() + enough - 1) / enough;
+  PhotonList sample;
+  for (std::size_t i = 0; i < pilot.size(); i += stride) {
+    sample.position.push_back(pilot.position[i]);
+    sample.power.push_back(pilot.power[i]);
+  }
+  RadiusSettings settings = radii(0);
+  const double photons = stored_per_path_ * static_cast<double>(choose_paths());
+  settings.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
+  settings.support = nullptr;
+  return PhotonMap::build(std::move(sample), 1, settings, KernelShape::biweight).mean_radius();
 }
 
 PhotonPassSettings PhotonStage::pass_settings(std::uint64_t pass) const {
@@ -123,6 +167,7 @@ PhotonPassSettings PhotonStage::pass_settings(std::uint64_t pass) const {
   if (common_albedo_ && settings.store == PhotonStore::fluence)
     settings.factor = world.medium.volumes[0].albedo;
   settings.key = {world.settings.seed, input_.frame, pass};
+  settings.keep_by_cell = keep_by_cell_;
   settings.stop = input_.stop;
   return settings;
 }
@@ -200,6 +245,7 @@ void PhotonStage::make_map(const PhotonPassSettings& settings, const RadiusSetti
   if (stopped)
     photons = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
+  statistics.importance_rays += std::exchange(importance_rays_, 0);
   map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii,
                           world.settings.kernel_shape);
   statistics.order += map_.times().order;

@@ -33,6 +33,9 @@ public:
 private:
   void choose_lights();
   void choose_counts();
+  void choose_thinning(const PhotonPass& pilot);
+  std::uint64_t choose_paths() const;
+  float kernel_reach(const PhotonList& pilot) const;
   PhotonPassSettings pass_settings(std::uint64_t pass) const;
   RadiusSettings radii(int pass) const;
   void make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
@@ -43,7 +46,10 @@ private:
   bool common_albedo_ = false;
   bool needs_map_ = true;
   int direct_samples_ = 1;
-  double keep_ = 1;
+  double keep_ = 1; ///< share of the collisions that are stored, where it is the same everywhere
+  std::shared_ptr<const CellTables> keep_by_cell_; ///< else
+  double stored_per_path_ = 0;
+  std::uint64_t importance_rays_ = 0;
   double neighbours_ = 0;
   std::uint64_t paths_ = 0; ///< light paths per pass
   KernelSupport support_;

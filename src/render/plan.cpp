@@ -105,6 +105,12 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       first_reason({{!needs.scatters, no_scattering},
                     {path, "the path estimator shoots none"},
                     {!needs.photons, "single bounce, all by shadow rays"}}));
+  const bool beam = render.estimator == EstimatorType::beam;
+  const bool by_view = beam && render.thinning != PhotonThinning::even && !(render.keep > 0);
+  add("photon importance", needs.photons && by_view,
+      first_reason({{!needs.photons, "no photons"},
+                    {!beam, "only beam knows where its rays see photons"},
+                    {!by_view, "photons are kept evenly, as asked for"}}));
   add("map", needs.photons, needs.photons ? "photons are gathered" : "no photons");
   add("neighbours", needs.photons && render.kernel == KernelRadius::adaptive,
       first_reason({{!needs.photons, "no photons"},
@@ -121,9 +127,8 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   add("shadow rays", needs.shadow_rays,
       first_reason({{!needs.scatters, no_scattering},
                     {!needs.shadow_rays, "every light is left to photons or to escaping rays"}}));
-  add("beam query", needs.photons && render.estimator == EstimatorType::beam,
-      first_reason({{!needs.photons, "no photons"},
-                    {render.estimator != EstimatorType::beam, "another estimator"}}));
+  add("beam query", needs.photons && beam,
+      first_reason({{!needs.photons, "no photons"}, {!beam, "another estimator"}}));
   add("march", needs.photons && render.estimator == EstimatorType::march,
       first_reason({{!needs.photons, "no photons"},
                     {render.estimator != EstimatorType::march, "another estimator"}}));

@@ -133,6 +133,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"shadow_rays", statistics.shadow_rays},
                       {"camera_walks", statistics.camera_walks},
                       {"neighbourhoods", statistics.neighbourhoods},
+                      {"importance_rays", statistics.importance_rays},
                       {"directions", statistics.directions},
                       {"maps_reused", statistics.maps_reused}};
   report["stopped_by"] = result.stopped_by;

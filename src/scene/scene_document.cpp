@@ -90,6 +90,27 @@ void visit_files(const toml::table& root, const Visitor& visitor) {
             visitor(*file);
 }
 
+/// Whether a value of the scene changes from frame to frame.
+bool is_animated(const toml::node& node) {
+  bool animated = false;
+  if (const toml::array* list = node.as_array())
+    for (const toml::node& item : *list)
+      animated = animated || is_animated(item);
+  if (const toml::table* table = node.as_table())
+    for (const auto& [name, value] : *table)
+      animated = animated || name == "keys" || is_animated(value);
+  return animated;
+}
+
+/// The camera moves and all that it sees stands still: photons can serve many frames
+/// (docs/sequences.md) if they do not depend on the view.
+bool only_camera_moves(const toml::table& root) {
+  bool camera = false, others = false;
+  for (const auto& [name, section] : root)
+    (name == "camera" ? camera : others) |= is_animated(section);
+  return camera && !others;
+}
+
 } // namespace
 
 bool is_vdb_file(const std::string& path) {
@@ -120,6 +141,9 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
 Scene SceneDocument::scene_at(int frame, MissingFile missing) const {
   Scene scene = SceneReader(path_, folder_, frame, missing).read(root_);
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
+  if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
+      !has_frame_pattern())
+    scene.render.thinning = PhotonThinning::even;
   constexpr int usual_passes = 64;
   if (!scene.render.passes && !scene.render.time && !scene.render.target_error)
     scene.render.passes = usual_passes;

@@ -51,6 +51,13 @@ struct EnumNames<PhotonStore> {
       {{PhotonStore::fluence, "fluence"}, {PhotonStore::scatter, "scatter"}}};
 };
 template <>
+struct EnumNames<PhotonThinning> {
+  static constexpr std::array<std::pair<PhotonThinning, std::string_view>, 3> table{
+      {{PhotonThinning::automatic, "auto"},
+       {PhotonThinning::view, "view"},
+       {PhotonThinning::even, "even"}}};
+};
+template <>
 struct EnumNames<KernelRadius> {
   static constexpr std::array<std::pair<KernelRadius, std::string_view>, 2> table{
       {{KernelRadius::adaptive, "adaptive"}, {KernelRadius::fixed, "fixed"}}};

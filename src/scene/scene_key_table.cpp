@@ -229,7 +229,9 @@ void add_render(Table& table) {
       .unit("world")
       .above(0);
   table.add("alpha", &R::alpha, "radius shrinking over the passes; 1: none").above_up_to(0, 1);
-  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons")
+  table.add("thinning", &R::thinning,
+            "photons are kept where the camera sees them (beam), or everywhere alike");
+  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons, evenly")
       .above_up_to(0, 1);
   table.add("max_bounces", &R::max_bounces, "scattering events per path")
       .at_least(1)

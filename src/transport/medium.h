@@ -33,6 +33,8 @@ struct Volume {
   /// The density at a point of which is known that it lies inside: rounding may have put it beyond
   /// a face, where a field that ends sharply is 0.
   float density_inside(const Vec3f& p) const { return field.sample(field.nearest(local_point(p))); }
+  /// Offset of the 8^3 cell of a point, outside of the nearest one.
+  std::size_t cell_at(const Vec3f& p) const;
   /// sigma_t of the strongest channel's majorant at a point; 0 outside.
   float majorant(const Vec3f& p) const;
   /// The ray in units of the field's 8^3 cells.
@@ -41,6 +43,9 @@ struct Volume {
             field.cell_counts(), t_begin, t_end};
   }
 };
+
+/// A value for each 8^3 cell of each volume of a medium.
+using CellTables = std::vector<std::vector<float>>;
 
 /// All volumes of a scene; they may overlap, and coefficients add.
 struct Medium {
@@ -55,6 +60,14 @@ struct Medium {
   /// Part of the ray inside `bounds`; t_begin >= t_end where it misses.
   void clip(const Ray& ray, float& t_begin, float& t_end) const;
 };
+
+inline std::size_t Volume::cell_at(const Vec3f& p) const {
+  const Vec3<int>& n = field.cell_counts();
+  const Vec3f last = Vec3f(n) - Vec3f(1);
+  const Vec3f cell = min(max(local_point(p) * 0.125f, Vec3f(0)), last);
+  return field.cell_offset(static_cast<int>(cell.x), static_cast<int>(cell.y),
+                           static_cast<int>(cell.z));
+}
 
 inline float Volume::majorant(const Vec3f& p) const {
   const Vec3f cell = local_point(p) * 0.125f;

@@ -79,14 +79,14 @@ private:
       if (hit.volume == nullptr)
         return hit;
       if (storable && settings_.store == PhotonStore::fluence)
-        store(ray, hit.t, flux / total_majorant(ray, hit), rng);
+        store(ray, hit, flux / total_majorant(ray, hit), rng);
       const bool real = collide_really(hit, medium.chromatic, flux, rng);
       if (!length.survive(flux, rng))
         return {};
       if (!real)
         continue;
       if (storable && settings_.store == PhotonStore::scatter)
-        store(ray, hit.t, flux * hit.volume->albedo, rng);
+        store(ray, hit, flux * hit.volume->albedo, rng);
       return hit;
     }
   }
@@ -103,14 +103,23 @@ private:
     return sum;
   }
 
-  void store(const Ray& ray, float t, const Rgb& power, Rng& rng) {
+  float keep(const Volume& volume, const Vec3f& point) const {
+    if (!settings_.keep_by_cell)
+      return settings_.keep;
+    const auto index = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
+    return (*settings_.keep_by_cell)[index][volume.cell_at(point)];
+  }
+
+  void store(const Ray& ray, const Collision& hit, const Rgb& power, Rng& rng) {
     ++collisions;
-    if (settings_.keep < 1 && rng.uniform() >= settings_.keep)
+    const Vec3f point = ray.at(hit.t);
+    const float share = keep(*hit.volume, point);
+    if (share < 1 && rng.uniform() >= share)
       return;
-    photons.position.push_back(ray.at(t));
+    photons.position.push_back(point);
     if (settings_.directions)
       photons.direction.push_back(ray.direction);
-    photons.power.push_back(power * settings_.factor / settings_.keep);
+    photons.power.push_back(power * settings_.factor / share);
   }
 
   const World& world_;
@@ -121,10 +130,12 @@ private:
 
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
-  const auto& [paths, store, keep, skip_first_flight, max_bounces, directions, factor, key, stop] =
-      a;
+  const auto& [paths, store, keep, keep_by_cell, skip_first_flight, max_bounces, directions, factor,
+               key, stop] = a;
   static_cast<void>(stop);
-  return paths == b.paths && store == b.store && keep == b.keep &&
+  const bool same_cells = keep_by_cell == b.keep_by_cell ||
+                          (keep_by_cell && b.keep_by_cell && *keep_by_cell == *b.keep_by_cell);
+  return same_cells && paths == b.paths && store == b.store && keep == b.keep &&
          skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
          directions == b.directions && factor == b.factor && key == b.key;
 }

@@ -4,6 +4,7 @@
 #include "transport/world.h"
 
 #include <atomic>
+#include <memory>
 
 namespace vdbeam {
 
@@ -12,6 +13,8 @@ struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
   float keep = 1; ///< share of the storable collisions that is kept, each at 1 / keep
+  /// Where given, in place of `keep`: the share by cell, each > 0.
+  std::shared_ptr<const CellTables> keep_by_cell;
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;

@@ -55,6 +55,7 @@ void expect_plan_kept(const Outcome& run) {
   expect("map", s.bytes_per_photon);
   expect("map", s.lookups);
   expect("map", s.contributions);
+  expect("photon importance", s.importance_rays);
   expect("neighbours", s.neighbourhoods);
   expect("photon directions", s.directions);
   expect("depth profiles", s.depth_profiles);
@@ -76,8 +77,9 @@ MemoryScene base() {
 
 TEST(Plan, SunlitVolume) {
   const Outcome r = run(base());
-  EXPECT_EQ(r.needed, (Names{"read", "majorants", "photons", "map", "neighbours",
-                             "photon directions", "depth profiles", "shadow rays", "beam query"}));
+  EXPECT_EQ(r.needed,
+            (Names{"read", "majorants", "photons", "photon importance", "map", "neighbours",
+                   "photon directions", "depth profiles", "shadow rays", "beam query"}));
   expect_plan_kept(r);
 }
 
@@ -142,6 +144,19 @@ TEST(Plan, FixedKernel) {
   EXPECT_TRUE(r.plan.needs("map"));
   EXPECT_FALSE(r.plan.needs("neighbours"));
   expect_plan_kept(r);
+}
+
+TEST(Plan, PhotonsKeptEvenly) {
+  MemoryScene scene = base();
+  scene.scene.render.thinning = PhotonThinning::even;
+  const Outcome even = run(scene);
+  EXPECT_FALSE(even.plan.needs("photon importance"));
+  expect_plan_kept(even);
+  scene = base();
+  scene.scene.render.keep = 0.5;
+  const Outcome share = run(scene);
+  EXPECT_FALSE(share.plan.needs("photon importance"));
+  expect_plan_kept(share);
 }
 
 TEST(Plan, NoEnvironment) {

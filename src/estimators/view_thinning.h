@@ -1,0 +1,21 @@
+#pragma once
+
+#include "photonmap/photon.h"
+#include "transport/world.h"
+
+namespace vdbeam {
+
+/// Which share of the collisions in each cell become photons, and how many a path leaves.
+struct ViewThinning {
+  CellTables keep;
+  double stored_per_path = 0;
+};
+
+/// Shares in proportion to what the camera sees of each cell (view_importance), such that a path
+/// leaves `wanted_per_path` photons, or fewer where most of them would go unseen. `pilot` holds all
+/// collisions of a sample of paths, `per_path` on average. Nothing is lost: a photon that is kept
+/// with share s weighs 1 / s.
+ViewThinning thin_by_view(const World& world, CellTables importance, const PhotonList& pilot,
+                          double per_path, double wanted_per_path);
+
+} // namespace vdbeam
