@@ -25,27 +25,10 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, double px,
   return result;
 }
 
-/// False only where no ray of the camera can meet the medium: its bounds lie beyond one of the
-/// planes around the view.
+/// False only where no ray of the camera can meet the medium.
 inline bool may_see_medium(const World& world, const Camera& camera) {
-  if (world.medium.empty())
-    return false;
   const Boxf& box = world.medium.bounds;
-  const double tan_y = camera.tan_half(), tan_x = tan_y * camera.width() / camera.height();
-  bool behind = true, right = true, left = true, above = true, below = true;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d p =
-        Vec3d{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-              corner & 4 ? box.upper.z : box.lower.z} -
-        camera.origin();
-    const double x = dot(p, camera.right()), y = dot(p, camera.up()), z = dot(p, camera.forward());
-    behind = behind && z < 0;
-    right = right && x > tan_x * z;
-    left = left && -x > tan_x * z;
-    above = above && y > tan_y * z;
-    below = below && -y > tan_y * z;
-  }
-  return !(behind || right || left || above || below);
+  return !world.medium.empty() && camera.may_see({Vec3d(box.lower), Vec3d(box.upper)});
 }
 
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #include "render/plan.h"
 
 #include "film/film.h"
+#include "transport/camera.h"
 #include "volume/vdb_reader.h"
 
 #include <limits>
@@ -155,19 +156,44 @@ std::uint64_t film_memory(const ImageSettings& image, int width, int height) {
          (Film::bytes_per_pixel() + developed) * pixels(width, height);
 }
 
+namespace {
+
+/// World bounds of all that a grid can make visible: a border voxel ramps to 0 over one voxel.
+Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
+  Affine placed;
+  placed.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
+  placed.translation = {m[3], m[7], m[11]};
+  const Affine map = placed.after(grid.index_to_world);
+  const Vec3d lower = Vec3d(grid.index_lower) - Vec3d(1),
+              upper = Vec3d(grid.index_upper) + Vec3d(1);
+  Boxd bounds;
+  for (int corner = 0; corner < 8; ++corner)
+    bounds.extend(map.point({corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
+                             corner & 4 ? upper.z : lower.z}));
+  return bounds;
+}
+
+} // namespace
+
 RenderPlan make_plan(const Scene& scene) {
   std::vector<VolumeFacts> facts;
+  Boxd bounds;
   for (const VolumeSettings& volume : scene.volumes) {
     VolumeFacts fact{true, 0};
-    if (!volume.present) {
-      facts.push_back(fact);
-      continue;
+    if (volume.present) {
+      const GridSummary grid = read_grid_header(volume.file, volume.density);
+      fact = {grid.active_voxels == 0, grid.active_voxels};
+      const Boxd visible = visible_bounds(grid, volume.transform);
+      if (!fact.empty) {
+        bounds.extend(visible.lower);
+        bounds.extend(visible.upper);
+      }
     }
-    for (const GridSummary& grid : summarize_vdb(volume.file))
-      if (grid.name == volume.density)
-        fact = {grid.active_voxels == 0, grid.active_voxels};
     facts.push_back(fact);
   }
+  const Camera camera(scene.camera, scene.image, {});
+  for (VolumeFacts& fact : facts)
+    fact.in_view = !fact.empty && camera.may_see(bounds);
   return plan_stages(scene, facts);
 }
 

@@ -26,6 +26,25 @@ public:
     const double sy = (1 - 2 * py / height_) * tan_half_;
     return normalize(forward_ + right_ * sx + up_ * sy);
   }
+  /// False only where no ray of the picture can meet the box: it lies beyond one of the planes
+  /// around the view.
+  bool may_see(const Boxd& box) const {
+    const double tan_x = tan_half_ * width_ / height_;
+    bool behind = true, right = true, left = true, above = true, below = true;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3d p =
+          Vec3d{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                corner & 4 ? box.upper.z : box.lower.z} -
+          origin_;
+      const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
+      behind = behind && z < 0;
+      right = right && x > tan_x * z;
+      left = left && -x > tan_x * z;
+      above = above && y > tan_half_ * z;
+      below = below && -y > tan_half_ * z;
+    }
+    return !(behind || right || left || above || below);
+  }
   const Vec3d& origin() const { return origin_; }
   const Vec3d& forward() const { return forward_; }
   const Vec3d& right() const { return right_; }

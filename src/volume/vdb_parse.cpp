@@ -188,6 +188,15 @@ void write_grid_names(const std::string& path, int descriptor) {
     write_all(descriptor, (name + '\n').data(), name.size() + 1);
 }
 
+void require_density_grid(const std::string& path, const std::string& grid_name) {
+  auto& file = make_immortal<openvdb::io::File>(path);
+  file.open(false);
+  if (!file.hasGrid(grid_name))
+    throw InputError(missing_grid_message(path, grid_name, grid_names(file)));
+  check_kind(path, grid_name,
+             *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(grid_name)));
+}
+
 void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files

@@ -19,12 +19,20 @@ T& make_immortal(Arguments&&... arguments) {
 /// Registers OpenVDB's grid types; must be called before the fork.
 void prepare_openvdb();
 
+/// Throws InputError where a file has no such grid, or one of another type or map than can be
+/// rendered.
+void require_density_grid(const std::string& path, const std::string& grid_name);
+
 /// Reads one grid and writes it to `descriptor`, laid out as RawGridHeader says. Throws InputError
 /// (no such grid, unsupported type, class, map or background), and whatever OpenVDB throws.
 void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor);
 
 /// Writes the names of a file's grids, each ended by a line feed.
 void write_grid_names(const std::string& path, int descriptor);
+
+/// Writes the GridSummary of a grid that could be rendered, as far as the file's metadata tell it:
+/// no voxels are read unless the file lacks statistics. Throws as write_raw_grid.
+void write_header(const std::string& path, const std::string& grid_name, int descriptor);
 
 /// Reads one grid of any type and writes its GridSummary (see vdb_reader.h) as CBOR.
 void write_summary(const std::string& path, const std::string& grid_name, int descriptor);

@@ -117,6 +117,15 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   return grid;
 }
 
+GridSummary read_grid_header(const std::string& path, const std::string& grid_name,
+                             const ReadLimits& limits) {
+  const GuardLimits guard = guard_limits(check_file(path), limits);
+  prepare_openvdb();
+  const MappedFile header =
+      run_guarded(path, guard, [&](int output) { write_header(path, grid_name, output); });
+  return decode_summary(path, header.data(), header.size());
+}
+
 std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();

@@ -56,6 +56,12 @@ struct ReadLimits {
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
                               const ReadLimits& limits = {});
 
+/// What a file's header says of a grid that read_density_grid would read: name, type, class, map,
+/// active voxels and bounds. Takes milliseconds: voxels are read only where the file was written
+/// without statistics. Same errors.
+GridSummary read_grid_header(const std::string& path, const std::string& grid_name,
+                             const ReadLimits& limits = {});
+
 /// Lists every grid of a file; same errors.
 std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits = {});
 

@@ -95,14 +95,10 @@ void summarize_map(const openvdb::math::Transform& transform, GridSummary& summa
   }
 }
 
-} // namespace
-
-void write_summary(const std::string& path, const std::string& grid_name, int descriptor) {
-  auto& file = make_immortal<openvdb::io::File>(path);
-  file.open(false);
-  const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
+/// What a grid tells without its tree.
+GridSummary summarize_grid(const std::string& name, const openvdb::GridBase& grid) {
   GridSummary summary;
-  summary.name = grid_name;
+  summary.name = name;
   summary.saved_as_half = grid.saveFloatAsHalf();
   summary.value_type =
       summary.saved_as_half && grid.valueType() == "float" ? "half" : grid.valueType();
@@ -110,17 +106,66 @@ void write_summary(const std::string& path, const std::string& grid_name, int de
   summary.index_lower = Vec3<std::int64_t>(0);
   summary.index_upper = Vec3<std::int64_t>(-1);
   summarize_map(grid.transform(), summary);
+  return summary;
+}
+
+void set_bounds(const openvdb::GridBase& grid, const openvdb::CoordBBox& box,
+                GridSummary& summary) {
+  summary.index_lower = {box.min().x(), box.min().y(), box.min().z()};
+  summary.index_upper = {box.max().x(), box.max().y(), box.max().z()};
+  summary.world_bounds = box_in_world(grid.transform(), box);
+}
+
+/// Takes the voxel count and the bounds from the statistics that OpenVDB writes with a grid; false
+/// where they are not there or cannot be right.
+bool take_statistics(const openvdb::GridBase& grid, GridSummary& summary) {
+  const auto count = grid.getMetadata<openvdb::Int64Metadata>(grid.META_FILE_VOXEL_COUNT);
+  const auto lower = grid.getMetadata<openvdb::Vec3IMetadata>(grid.META_FILE_BBOX_MIN);
+  const auto upper = grid.getMetadata<openvdb::Vec3IMetadata>(grid.META_FILE_BBOX_MAX);
+  if (!count || !lower || !upper || count->value() < 0)
+    return false;
+  summary.active_voxels = static_cast<std::uint64_t>(count->value());
+  if (summary.active_voxels == 0)
+    return true;
+  const openvdb::CoordBBox box{openvdb::Coord(lower->value()), openvdb::Coord(upper->value())};
+  if (box.empty())
+    return false;
+  set_bounds(grid, box, summary);
+  return true;
+}
+
+void write_encoded(const GridSummary& summary, int descriptor) {
+  const std::vector<std::uint8_t> bytes = encode_summary(summary);
+  write_all(descriptor, bytes.data(), bytes.size());
+}
+
+} // namespace
+
+void write_header(const std::string& path, const std::string& grid_name, int descriptor) {
+  require_density_grid(path, grid_name);
+  auto& file = make_immortal<openvdb::io::File>(path);
+  file.open(false);
+  const openvdb::GridBase& grid =
+      *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(grid_name));
+  GridSummary summary = summarize_grid(grid_name, grid);
+  if (take_statistics(grid, summary))
+    write_encoded(summary, descriptor);
+  else
+    write_summary(path, grid_name, descriptor);
+}
+
+void write_summary(const std::string& path, const std::string& grid_name, int descriptor) {
+  auto& file = make_immortal<openvdb::io::File>(path);
+  file.open(false);
+  const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
+  GridSummary summary = summarize_grid(grid_name, grid);
   grid.apply<openvdb::GridTypes>([&summary](const auto& typed) {
     summarize_tree(typed, summary);
     openvdb::CoordBBox box;
-    if (summary.active_voxels > 0 && typed.tree().evalActiveVoxelBoundingBox(box)) {
-      summary.index_lower = {box.min().x(), box.min().y(), box.min().z()};
-      summary.index_upper = {box.max().x(), box.max().y(), box.max().z()};
-      summary.world_bounds = box_in_world(typed.transform(), box);
-    }
+    if (summary.active_voxels > 0 && typed.tree().evalActiveVoxelBoundingBox(box))
+      set_bounds(typed, box, summary);
   });
-  const std::vector<std::uint8_t> bytes = encode_summary(summary);
-  write_all(descriptor, bytes.data(), bytes.size());
+  write_encoded(summary, descriptor);
 }
 
 } // namespace vdbeam

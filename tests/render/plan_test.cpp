@@ -3,10 +3,14 @@
 #include "estimators/estimator.h"
 #include "render/plan.h"
 #include "support/memory_scene.h"
+#include "support/temp_folder.h"
 #include "transport/camera.h"
+#include "vdbeam/error.h"
+#include "volume_factory.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <set>
 
 namespace vdbeam {
@@ -284,6 +288,41 @@ TEST(Plan, EstimatesMemory) {
   const Outcome r = run(base());
   EXPECT_GT(r.plan.photon_bytes, 2000 * r.statistics.bytes_per_photon / 2);
   EXPECT_GE(r.plan.film_bytes, 64u * 160);
+}
+
+/// make_plan needs the files' headers only, and says of the view what the renderer says.
+TEST(MakePlan, ReadsHeadersOnly) {
+  const TempFolder folder;
+  Scene scene;
+  VolumeSettings volume;
+  volume.file = folder.file("noise.vdb");
+  VolumeOptions options;
+  options.size = 32;
+  write_volume("noise", volume.file, options); // 2 world units wide, about 0
+  std::filesystem::resize_file(volume.file, std::filesystem::file_size(volume.file) / 2);
+  scene.volumes.push_back(volume);
+  scene.lights.resize(1);
+  const RenderPlan plan = make_plan(scene);
+  EXPECT_TRUE(plan.needs("photons"));
+  EXPECT_TRUE(plan.needs("depth profiles"));
+  EXPECT_GT(plan.volume_bytes, 1000u);
+
+  scene.camera.look_at = {5, 0, 5};
+  const RenderPlan away = make_plan(scene);
+  EXPECT_FALSE(away.needs("photons"));
+  EXPECT_FALSE(away.needs("depth profiles"));
+  EXPECT_TRUE(away.needs("majorants"));
+
+  scene.volumes[0].transform[3] = 5; // moves it into view
+  EXPECT_FALSE(make_plan(scene).needs("photons"));
+  scene.volumes[0].transform[11] = 5;
+  scene.camera.look_at = {2, 0, 5};
+  EXPECT_TRUE(make_plan(scene).needs("photons"));
+
+  scene.volumes[0].density = "flame";
+  EXPECT_THROW(make_plan(scene), InputError);
+  scene.volumes[0].present = false;
+  EXPECT_FALSE(make_plan(scene).needs("majorants"));
 }
 
 } // namespace

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <filesystem>
+
 namespace vdbeam {
 namespace {
 
@@ -98,6 +100,53 @@ TEST_F(Summary, codec_keeps_all_and_refuses_rubbish) {
   EXPECT_EQ(encode_summary(decode_summary("label", data, bytes.size())), bytes);
   EXPECT_THROW(decode_summary("label", data, bytes.size() / 2), FrameError);
   EXPECT_THROW(decode_summary("label", data, 0), FrameError);
+}
+
+TEST_F(Summary, headers_tell_the_same) {
+  for (const char* kind : {"sheared", "tiles", "noise", "far", "empty"}) {
+    const GridSummary full = summarize(kind).at(0);
+    const GridSummary header = read_grid_header(path_, "density");
+    SCOPED_TRACE(kind);
+    EXPECT_EQ(header.active_voxels, full.active_voxels);
+    EXPECT_EQ(header.index_lower, full.index_lower);
+    EXPECT_EQ(header.index_upper, full.index_upper);
+    EXPECT_EQ(header.world_bounds.lower, full.world_bounds.lower);
+    EXPECT_EQ(header.world_bounds.upper, full.world_bounds.upper);
+    EXPECT_EQ(header.value_type, full.value_type);
+    EXPECT_EQ(header.map_type, full.map_type);
+    EXPECT_EQ(header.leaf_count + header.tile_count, 0u); // nobody looked
+  }
+}
+
+/// A header is read also where the voxels after it are cut off.
+TEST_F(Summary, headers_need_no_voxels) {
+  const GridSummary full = summarize("noise").at(0);
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
+  EXPECT_THROW(read_density_grid(path_, "density"), FrameError);
+  EXPECT_EQ(read_grid_header(path_, "density").active_voxels, full.active_voxels);
+}
+
+TEST_F(Summary, headers_without_statistics) {
+  const GridSummary full = summarize("noise").at(0);
+  openvdb::io::File file(path_);
+  file.open(false);
+  const openvdb::GridPtrVec grids{file.readGrid("density")};
+  const std::string bare = folder_.file("bare.vdb");
+  openvdb::io::File out(bare);
+  out.setGridStatsMetadataEnabled(false);
+  grids[0]->removeMeta(openvdb::GridBase::META_FILE_VOXEL_COUNT);
+  out.write(grids);
+  out.close();
+  const GridSummary header = read_grid_header(bare, "density");
+  EXPECT_EQ(header.active_voxels, full.active_voxels);
+  EXPECT_GT(header.leaf_count, 0u);
+}
+
+TEST_F(Summary, headers_of_what_cannot_be_rendered_are_refused) {
+  summarize("vector");
+  EXPECT_THROW(read_grid_header(path_, "density"), InputError);
+  EXPECT_THROW(read_grid_header(path_, "flame"), InputError);
+  EXPECT_THROW(read_grid_header(folder_.file("none.vdb"), "density"), InputError);
 }
 
 } // namespace
