@@ -3,7 +3,6 @@ macro(vdbeam_find)
   find_package(${ARGN} REQUIRED)
 endmacro()
 include(VdbeamLibraries)
-find_package(CLI11 CONFIG REQUIRED)
 
 set(VDBEAM_LIBRARIES OpenVDB::openvdb TBB::tbb OpenEXR::OpenEXR Imath::Imath PNG::PNG fmt::fmt
     tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json PkgConfig::HWY)
