@@ -212,6 +212,7 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   }
   const World& world = input_.world;
   const PhotonPassSettings settings = pass_settings(static_cast<std::uint64_t>(pass));
+  statistics.importance_rays += std::exchange(importance_rays_, 0);
   RadiusSettings radius_settings = radii(pass);
   // The share of kernels inside the medium depends on the camera; all before it does not.
   const KernelShare support = std::exchange(radius_settings.support, nullptr);
@@ -245,7 +246,6 @@ void PhotonStage::make_map(const PhotonPassSettings& settings, const RadiusSetti
   if (stopped)
     photons = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
-  statistics.importance_rays += std::exchange(importance_rays_, 0);
   map_ = PhotonMap::build(std::move(photons.photons), world.grey ? 1 : 3, radii,
                           world.settings.kernel_shape);
   statistics.order += map_.times().order;

@@ -47,6 +47,18 @@ TEST_F(Animation, SmoothSlopesAreContinuous) {
   EXPECT_NEAR(before, after, 0.002);
 }
 
+/// Photons that do not depend on the view can serve all frames where nothing but the camera moves.
+TEST_F(Animation, ThinningFollowsWhatMoves) {
+  const std::string moving = "[camera]\nfov = { keys = [[1, 30], [9, 40]] }\n";
+  const auto thinning = [&](const std::string& text) { return load(text).render.thinning; };
+  EXPECT_EQ(thinning(scene_with("")), PhotonThinning::automatic);
+  EXPECT_EQ(thinning(scene_with("", moving)), PhotonThinning::even);
+  EXPECT_EQ(thinning(scene_with("extinction = { keys = [[1, 10], [5, 30]] }", moving)),
+            PhotonThinning::automatic);
+  EXPECT_EQ(thinning(scene_with("", moving + "[render]\nthinning = 'view'\n")),
+            PhotonThinning::view);
+}
+
 TEST_F(Animation, WholeNumbersColoursAndPlacementsCanBeAnimated) {
   const Scene scene = load(scene_with("translate = { keys = [[0, [0, 0, 0]], [2, [4, 0, 0]]] }\n"
                                       "albedo = { keys = [[0, 0], [2, [1, 0.5, 0]]] }",
