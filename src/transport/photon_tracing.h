@@ -25,7 +25,8 @@ struct PhotonPassSettings {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// True where trace_photons gives the same photons in the same world.
+/// True where trace_photons gives the same photons in the same world. Either may be older than what
+/// its pointers lead to.
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
 struct PhotonPass {
