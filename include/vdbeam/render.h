@@ -39,6 +39,12 @@ struct RenderStatistics {
   std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
   std::uint64_t peak_memory = 0; ///< bytes, whole process
   std::size_t bytes_per_photon = 0;
+  /// What render.clamp took: sums of radiance over passes, pixels and channels, and pixels of passes.
+  double clamp_removed = 0, clamp_total = 0;
+  std::uint64_t clamped_pixels = 0;
+
+  /// Share of the picture's light that render.clamp took.
+  double clamped_fraction() const { return clamp_total > 0 ? clamp_removed / clamp_total : 0; }
 };
 
 /// What a stage of the render plan is and why it runs or is left out.

@@ -41,6 +41,8 @@ void SceneOptions::declare(CLI::App& app) {
                     "Estimated error (MRSE) to reach");
   declare_shorthand(app, "--estimator", "render.estimator", "NAME", "beam, march or path");
   app.add_option("--resolution", resolution_, "Size of the picture in pixels")->option_text("WxH");
+  declare_shorthand(app, "--clamp", "render.clamp", "L",
+                    "Dim pixels of passes above this radiance; the report tells what it took");
   declare_shorthand(app, "--seed", "render.seed", "N", "Random numbers");
   declare_shorthand(app, "--threads", "render.threads", "N", "Threads; never changes the picture");
   app.add_option("--set", sets_, "Set any key of the scene; may be repeated")

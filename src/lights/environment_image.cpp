@@ -17,14 +17,40 @@ double luminance(const Rgb& c) {
          0.0722 * static_cast<double>(c.z);
 }
 
-// Radiance as it can be used: a sun that overflowed its half floats is as bright as they go,
-// anything else that is no radiance is none.
-float usable(float value) {
-  constexpr float largest_half = 65504;
-  if (value == infinity)
-    return largest_half;
-  return value > 0 ? value : 0;
-}
+constexpr float largest_half = 65504;
+constexpr float largest_float = std::numeric_limits<float>::max();
+
+/// What had to be changed in an image's values to make radiance of them.
+struct Mended {
+  std::uint64_t infinite = 0, negative = 0, not_numbers = 0, too_bright = 0;
+
+  /// Radiance as it can be used: a sun that overflowed its half floats is as bright as they go,
+  /// anything else that is no radiance is none.
+  float radiance(float value, float factor) {
+    if (!(value >= 0)) {
+      ++(std::isnan(value) ? not_numbers : negative);
+      return 0;
+    }
+    if (value == infinity) {
+      ++infinite;
+      value = largest_half;
+    }
+    too_bright += factor > 1 && value > largest_float / factor;
+    return std::min(value * factor, largest_float);
+  }
+
+  void tell(const std::string& name, std::vector<std::string>& notes) const {
+    const auto add = [&](std::uint64_t count, const char* what) {
+      if (count > 0)
+        notes.push_back(fmt::format("light.image {}: {} {} {}", name, count,
+                                    count == 1 ? "value" : "values", what));
+    };
+    add(infinite, "of infinity, taken for 65504, the largest half float: the light may lack power");
+    add(negative, "below 0, taken for 0");
+    add(not_numbers, "that are no numbers, taken for 0");
+    add(too_bright, "too bright for single precision, taken for 3.4e38");
+  }
+};
 
 /// Radiance over the sphere, in the image's own frame (z up, x where the turn is 0).
 class RadianceMap {
@@ -44,10 +70,10 @@ public:
     pixels_.resize(count);
     for (std::size_t i = 0; i < count; ++i)
       for (int c = 0; c < 3; ++c)
-        pixels_[i][c] =
-            std::min(usable(channels[c]->data[i]) * factor[c], std::numeric_limits<float>::max());
+        pixels_[i][c] = mended_.radiance(channels[c]->data[i], factor[c]);
   }
 
+  const Mended& mended() const { return mended_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -90,6 +116,7 @@ private:
 
   int width_, height_;
   std::vector<Rgb> pixels_;
+  Mended mended_;
 };
 
 // Rows: the directions, in render space, that are x, y, z of the image's own frame.
@@ -119,6 +146,8 @@ public:
         table_(map_.pixel_integrals(), map_.width(), map_.height()),
         axes_(image_axes(context.up, settings.rotation)), boxes_(context.region.boxes) {
     power_ = estimate_power(*this);
+    if (context.notes)
+      map_.mended().tell(name, *context.notes);
   }
 
   IncidentSample sample_incident(const Vec3f&, float u, float v) const override {

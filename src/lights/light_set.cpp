@@ -5,8 +5,9 @@
 namespace vdbeam {
 
 LightSet::LightSet(const std::vector<LightSettings>& settings, const Vec3d& up,
-                   const RenderSpace& space, const OccupiedRegion& region) {
-  const LightContext context{up, space, region};
+                   const RenderSpace& space, const OccupiedRegion& region,
+                   std::vector<std::string>* notes) {
+  const LightContext context{up, space, region, notes};
   for (const LightSettings& light : settings)
     for (const LightKind& kind : light_table())
       if (kind.type == light.type) {

@@ -15,8 +15,9 @@ class LightSet {
 public:
   LightSet() = default;
   /// Converts the settings to render space. Throws InputError for an unreadable environment image.
+  /// `notes` takes what the user should know.
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
-           const OccupiedRegion& region);
+           const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
   std::size_t size() const { return lights_.size(); }
   const Light& operator[](std::size_t i) const { return *lights_[i]; }

@@ -110,7 +110,8 @@ Image merge_partials(const std::vector<std::string>& paths, const MergeSettings&
     add_passes(info.passes, partials[i]);
     info.seconds += partials[i].info.seconds;
     info.invalid_values += partials[i].info.invalid_values;
-    for (const char* count : {"vdbeam:photonsStored"}) // a sum over the passes
+    for (const char* count : {"vdbeam:photonsStored", "vdbeam:clampRemoved", "vdbeam:clampTotal",
+                              "vdbeam:clampedPixels"}) // a sum over the passes
       if (const auto found = partials[i].info.header.numbers.find(count);
           found != partials[i].info.header.numbers.end())
         info.header.numbers[count] += found->second;

@@ -1,5 +1,6 @@
 #include "render/pass_loop.h"
 
+#include "film/clamp.h"
 #include "scene/image_metadata.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
@@ -8,6 +9,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -71,7 +74,10 @@ void PassLoop::run(Estimator& estimator) {
     estimator.render_pass(next_pass(), image, result_.statistics);
     if (stop_requested())
       continue; // the pass was abandoned
-    film_.add(whole_ ? image : cut_out(image, window_));
+    if (!whole_)
+      image = cut_out(image, window_);
+    clamp(image);
+    film_.add(image);
     record();
     serve_requests();
   }
@@ -82,6 +88,20 @@ void PassLoop::run(Estimator& estimator) {
   develop();
   if (film_.invalid_values() > 0)
     note(fmt::format("{} pixel values were not finite and count as 0", film_.invalid_values()));
+  if (scene_.render.clamp)
+    note(fmt::format("render.clamp = {:g} took {:.3g} % of the picture's light, from {} pixels of "
+                     "passes; the estimated error does not hold it",
+                     *scene_.render.clamp, 100 * result_.statistics.clamped_fraction(),
+                     result_.statistics.clamped_pixels));
+}
+
+void PassLoop::clamp(PassImage& pass) {
+  if (!scene_.render.clamp)
+    return;
+  const ClampTally tally = clamp_pass(pass, *scene_.render.clamp);
+  result_.statistics.clamp_removed += tally.removed;
+  result_.statistics.clamp_total += tally.total;
+  result_.statistics.clamped_pixels += tally.pixels;
 }
 
 bool PassLoop::finished() {
@@ -128,6 +148,14 @@ void PassLoop::resume() {
                          "begins anew");
     film_ = read_film(path, info);
     earlier_seconds_ = info.seconds;
+    const auto number = [&](const char* name) {
+      const auto found = info.header.numbers.find(name);
+      return found == info.header.numbers.end() || std::isnan(found->second) ? 0.0 : found->second;
+    };
+    result_.statistics.clamp_removed = number("vdbeam:clampRemoved");
+    result_.statistics.clamp_total = number("vdbeam:clampTotal");
+    result_.statistics.clamped_pixels =
+        static_cast<std::uint64_t>(std::clamp(number("vdbeam:clampedPixels"), 0.0, 1e18));
   } catch (const InputError& problem) {
     return note(fmt::format("{}; the frame begins anew", problem.what()));
   }

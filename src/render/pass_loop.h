@@ -24,6 +24,7 @@ private:
   void resume();
   void record();
   void compare(PassRecord& record);
+  void clamp(PassImage& pass);
   void serve_requests();
   template <class F>
   void attempt(F write);

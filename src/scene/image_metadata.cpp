@@ -80,6 +80,11 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
       image.numbers["vdbeam:errorEstimate"] = last.error_estimate;
   }
   image.numbers["vdbeam:photonsStored"] = static_cast<double>(result.statistics.photons_stored);
+  if (scene.render.clamp) { // sums, so that parts can be joined
+    image.numbers["vdbeam:clampRemoved"] = result.statistics.clamp_removed;
+    image.numbers["vdbeam:clampTotal"] = result.statistics.clamp_total;
+    image.numbers["vdbeam:clampedPixels"] = static_cast<double>(result.statistics.clamped_pixels);
+  }
   image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
   const Matrix view = world_to_camera(scene.camera);
   image.matrices["worldToCamera"] = flatten(view);

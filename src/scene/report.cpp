@@ -136,6 +136,12 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"importance_rays", statistics.importance_rays},
                       {"directions", statistics.directions},
                       {"maps_reused", statistics.maps_reused}};
+  if (scene.render.clamp) {
+    Json& clamp = report["clamp"];
+    clamp["limit"] = *scene.render.clamp;
+    clamp["removed_fraction"] = statistics.clamped_fraction();
+    clamp["pixels"] = statistics.clamped_pixels;
+  }
   report["stopped_by"] = result.stopped_by;
   report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);

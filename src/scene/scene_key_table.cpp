@@ -237,6 +237,13 @@ void add_render(Table& table) {
       .at_least(1)
       .absent("none");
   table.add("cutoff", &R::cutoff, "transmittance at which a camera ray ends").inside(0, 1);
+  table
+      .add("clamp", &R::clamp,
+           "most that the medium may send to a pixel in one pass; takes light away, and tells how "
+           "much")
+      .unit("radiance")
+      .above(0)
+      .absent("none");
   table.add("step", &R::step, "step of the march estimator").unit("voxels").above(0);
   table.add("seed", &R::seed, "random numbers; the same seed gives the same picture").at_least(0);
   table.add("seeds", &R::seeds, "random numbers of each frame's own, or the same in all frames");

@@ -162,7 +162,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
   }
   if (!world.medium.empty())
     bound_region(world, bounds);
-  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region);
+  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &world.notes);
   world.grey = grey_scene(scene, world);
   world.seconds_build = seconds_since(start);
   return world;

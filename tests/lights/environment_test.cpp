@@ -267,6 +267,30 @@ TEST(EnvironmentImage, UnusableValuesAreMended) {
               1, 5e-3);
 }
 
+TEST(EnvironmentImage, MendingIsToldOfEachKind) {
+  const auto notes = [](float (*value)(int, int), float radiance) {
+    std::vector<std::string> lines;
+    const RenderSpace space{{}, 1};
+    const OccupiedRegion region = region_of({cube({}, 1)});
+    make_environment_image(lat_long(8, 4, value), "sky.exr", sky(Rgb(radiance)),
+                           LightContext{{0, 1, 0}, space, region, &lines});
+    return lines;
+  };
+  EXPECT_TRUE(notes([](int x, int) { return static_cast<float>(x); }, 1).empty());
+  const std::vector<std::string> lines = notes(
+      [](int x, int y) {
+        return x > 2 ? 1.0f : x == 0 ? std::nanf("") : x == 1 ? -1.0f : y == 0 ? infinity : 1.0f;
+      },
+      1);
+  EXPECT_EQ(lines,
+            (std::vector<std::string>{
+                "light.image sky.exr: 3 values of infinity, taken for 65504, the largest half "
+                "float: the light may lack power",
+                "light.image sky.exr: 12 values below 0, taken for 0",
+                "light.image sky.exr: 12 values that are no numbers, taken for 0"}));
+  EXPECT_EQ(notes([](int, int) { return 1e20f; }, 1e20f).size(), 1u);
+}
+
 TEST(EnvironmentImage, BlackImageGivesNoLight) {
   const ImageLight made(lat_long(8, 4, [](int, int) { return 0.0f; }), sky(Rgb(1)),
                         region_of({cube({}, 1)}));

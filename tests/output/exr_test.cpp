@@ -118,6 +118,19 @@ TEST(Exr, HalfOverflowBecomesAFloatChannel) {
   EXPECT_TRUE(std::isinf(back.find("B")->data[5]));
 }
 
+TEST(Exr, DarkChannelsKeepTheirDigits) {
+  TempFolder folder;
+  for (const float radiance : {1e-20f, 1e-7f, 1e-4f, 2e-3f, 0.0f}) {
+    Image image = make_image(4, 3);
+    for (std::size_t i = 0; i < image.channels[0].data.size(); ++i)
+      image.channels[0].data[i] = i == 3 ? radiance : 0.5f * radiance;
+    write_exr(image, folder.file("a.exr"));
+    const Image back = read_image(folder.file("a.exr"));
+    EXPECT_EQ(back.find("R")->half, radiance == 0 || radiance > 1e-3f) << radiance;
+    EXPECT_NEAR(back.find("R")->data[3], radiance, 1e-3f * radiance);
+  }
+}
+
 TEST(Exr, ReplacesAFileAndLeavesNothingElse) {
   TempFolder folder;
   write_bytes(folder.file("a.exr"), "old");
