@@ -4,7 +4,7 @@
 Renders each scene with each estimator for the same time, with several seeds, against a reference,
 and writes to the output folder:
   curves.csv             every pass of every run
-  SCENE.png, SCENE.svg   MRSE against seconds, a line per estimator, a band over the seeds
+  SCENE.png, SCENE.svg   MRSE against seconds, a line per variant, a band over the seeds
   table.md               MRSE x seconds at MRSE 0.01, at 0.001 and at the end
   index.html             all of it on one page, with images at equal time and error images
   runs/                  images and reports; references/: references rendered by `path`
@@ -12,11 +12,15 @@ and writes to the output folder:
 Examples:
   tools/error_vs_time.py
   tools/error_vs_time.py --scenes data/smoke.toml --time 20 --seeds 1-5 --estimators beam,path
-  tools/error_vs_time.py --reference cloud=cloud_4096spp.exr --option=--threads=2
+  tools/error_vs_time.py --reference cloud=cloud_4096spp.exr --threads 2 --peers
+  tools/error_vs_time.py --estimators beam --variant 'k100: --set render.neighbours=100' \
+      --variant 'scatter: --set render.store=scatter'
   tools/error_vs_time.py --plot-only            # draws again what the last run left
 """
 
 import argparse
+import json
+import os
 import sys
 from pathlib import Path
 
@@ -44,7 +48,12 @@ def parse_arguments(arguments):
     parser.add_argument("--scenes", nargs="+", type=Path, metavar="SCENE",
                         default=[ROOT / "data/cloud.toml", ROOT / "data/smoke.toml"])
     parser.add_argument("--estimators", default=",".join(ESTIMATORS),
-                        type=lambda text: text.split(","), help="default: %(default)s")
+                        type=lambda text: [e for e in text.split(",") if e],
+                        help="default: %(default)s; '' for none")
+    parser.add_argument("--variant", action="append", default=[], metavar="NAME: OPTIONS",
+                        type=runner.parse_variant,
+                        help="another way to render: 'k200: --set render.neighbours=200'; may be "
+                             "repeated")
     parser.add_argument("--time", type=float, default=10, metavar="SECONDS",
                         help="of rendering per run (default: %(default)s)")
     parser.add_argument("--seeds", type=parse_seeds, default="1-3",
@@ -57,13 +66,22 @@ def parse_arguments(arguments):
     parser.add_argument("--binary", type=Path, default=ROOT / "build/release/vdbeam")
     parser.add_argument("--option", action="append", default=[], metavar="=--OPTION",
                         help="passed on to `vdbeam render`, such as --option=--threads=2")
+    parser.add_argument("--peers", action="store_true",
+                        help="compare with Blender's Cycles too, where it is installed")
+    parser.add_argument("--threads", type=int, default=0, metavar="N",
+                        help="for every renderer (default: all cores)")
     parser.add_argument("--plot-only", action="store_true",
                         help="render no curves; use the reports that are there")
     parser.add_argument("--no-plots", action="store_true", help="write the tables alone")
     options = parser.parse_args(arguments)
+    options.variants = [runner.parse_variant(name) for name in options.estimators] + options.variant
+    names = [variant.name for variant in options.variants]
+    if not names or len(set(names)) < len(names):
+        parser.error("there must be estimators or variants, each with another name")
     stems = [scene.stem for scene in options.scenes]
     if len(set(stems)) < len(stems):
         parser.error("two scenes have the same file name; the results are named by it")
+    options.option = [f"--threads={options.threads}", *options.option] if options.threads else options.option
     options.references = dict(pair.partition("=")[::2] for pair in options.reference)
     unknown = set(options.references) - set(stems)
     if unknown:
@@ -90,15 +108,32 @@ def find_references(options):
 def existing_runs(options):
     runs = []
     for scene in options.scenes:
-        for estimator in options.estimators:
+        for variant in options.variants:
             for seed in options.seeds:
-                path = options.output / "runs" / f"{scene.stem}.{estimator}.{seed}.json"
+                path = options.output / "runs" / f"{scene.stem}.{variant.name}.{seed}.json"
                 if path.exists():
-                    runs.append(reports.read_report(path, scene.stem, estimator, seed))
+                    runs.append(reports.read_report(path, scene.stem, variant.name, seed))
     if not runs:
         raise reports.ReportError(f"{options.output / 'runs'}: no reports of these scenes, "
                                   "estimators and seeds; run without --plot-only first")
     return runs
+
+
+def run_peers(options, references, runs):
+    """Other renderers, on scenes as the reports of vdbeam's runs describe them."""
+    from error_curves import peers
+
+    for scene in options.scenes:
+        first = next(run for run in runs if run.scene == scene.stem)
+        folder = options.output / "runs"
+        report = folder / f"{first.scene}.{first.estimator}.{first.seed}.json"
+        settings = json.loads(report.read_text(encoding="utf-8")).get("settings")
+        try:
+            runs += peers.run_cycles(options.binary, scene.stem, settings, references[scene.stem],
+                                     options.seeds, options.time,
+                                     options.threads or os.cpu_count(), folder)
+        except peers.NotWithinMeans as reason:
+            print(f"{scene}: Cycles is left out: {reason}", flush=True)
 
 
 def draw(runs, folder, references, noise):
@@ -117,9 +152,11 @@ def main(arguments=None):
             runs = existing_runs(options)
         references, noise = find_references(options)
         if not options.plot_only:
-            runs = runner.run_all(options.binary, options.scenes, references, options.estimators,
+            runs = runner.run_all(options.binary, options.scenes, references, options.variants,
                                   options.seeds, options.time, options.output / "runs",
                                   options.option)
+            if options.peers:
+                run_peers(options, references, runs)
         reports.write_csv(runs, options.output / "curves.csv")
         if not options.no_plots:
             draw(runs, options.output, references, noise)

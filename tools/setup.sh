@@ -21,6 +21,11 @@ packages=(
 if [[ ${VDBEAM_SETUP_SLURM:-} == 1 ]]; then
   packages+=(munge slurmctld slurmd slurm-client)
 fi
+# A browser, 300 MB, for the test of the page that tools/error_vs_time.py writes; without it the test is
+# skipped. Only where it is asked for.
+if [[ ${VDBEAM_SETUP_BROWSER:-} == 1 ]]; then
+  packages+=(chromium chromium-driver)
+fi
 
 if [[ ${1:-} == --list ]]; then
   echo "${packages[*]}"

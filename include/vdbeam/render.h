@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/image.h"
+#include "vdbeam/pass_record.h"
 #include "vdbeam/scene.h"
 
 #include <atomic>
@@ -12,28 +13,19 @@
 
 namespace vdbeam {
 
-/// One finished pass, as the report lists it.
-struct PassRecord {
-  int pass = 0;              ///< number of passes so far
-  double seconds = 0;        ///< since rendering began (reading excluded)
-  std::uint64_t photons = 0; ///< stored in this pass
-  double error_estimate = 0; ///< MRSE of the image so far, from the spread of the passes
-  double rmse = 0, mrse = 0, relmse = 0, bias = 0; ///< against the reference, where one is given
-  bool has_reference = false;
-};
-
 /// Seconds and counts of a render, by stage.
 struct RenderStatistics {
   double read = 0;    ///< volumes: file to bricks; 0 where the last frame's were kept
   double prepare = 0; ///< majorants, lights
-  double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0,
-         path = 0, write = 0;
+  double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0, path = 0,
+         bias = 0, write = 0;
   std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, camera_rays = 0;
   std::uint64_t lookups = 0;        ///< rays or points gathered from the photon map
   std::uint64_t depth_profiles = 0; ///< camera rays whose optical depth was integrated
   std::uint64_t shadow_rays = 0;    ///< of camera rays' single scattering
   std::uint64_t camera_walks = 0;   ///< random walks from camera rays (path)
   std::uint64_t neighbourhoods = 0; ///< photons whose radius follows their neighbours'
+  std::uint64_t bias_rays = 0;      ///< camera rays followed by path tracing to tell the bias
   std::uint64_t directions = 0;     ///< photons stored with their direction
   std::uint64_t maps_reused = 0;    ///< passes whose photons were those of an earlier frame
   std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
@@ -49,7 +41,7 @@ struct RenderStatistics {
 
 /// What a stage of the render plan is and why it runs or is left out.
 struct PlanStage {
-  std::string name;   ///< "read", "photons", "map", "neighbours", "direct", ...
+  std::string name; ///< "read", "photons", "map", "neighbours", "direct", ...
   bool needed = false;
   std::string reason; ///< one clause
 };
@@ -69,7 +61,7 @@ struct RenderPlan {
 
 /// Everything a render gives back.
 struct RenderResult {
-  Image image;                    ///< R, G, B, A and the AOVs
+  Image image; ///< R, G, B, A and the AOVs
   std::vector<PassRecord> passes;
   RenderStatistics statistics;
   RenderPlan plan;

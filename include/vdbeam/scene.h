@@ -95,6 +95,7 @@ struct RenderSettings {
   double keep = 0;                     ///< share of them that are stored, evenly; 0: automatic
   std::optional<int> max_bounces;      ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;                ///< transmittance below which a camera ray ends
+  double bias_rays = 1.0 / 128;        ///< share of the camera rays that tell the bias
   std::optional<double> clamp;         ///< most that the medium may send to a pixel in one pass [radiance]
   double step = 1;                     ///< march: step length in voxels
   std::uint64_t seed = 1;

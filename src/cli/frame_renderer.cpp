@@ -43,12 +43,17 @@ std::string start_text(const Scene& scene) {
                      scene.image.width, scene.image.height);
 }
 
-std::string end_text(const RenderResult& result, const std::string& output) {
+std::string end_text(const Scene& scene, const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
   std::string text = fmt::format("{}: {} {} in {}", output, last.pass,
                                  last.pass == 1 ? "pass" : "passes", format_duration(last.seconds));
   if (std::isfinite(last.error_estimate))
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
+  if (std::isfinite(last.error_low))
+    text += fmt::format(" ({:.2g} to {:.2g})", last.error_low, last.error_high);
+  if (std::isfinite(last.bias_margin) && scene.render.estimator != EstimatorType::path)
+    text += fmt::format(", estimated bias {:+.1f} +- {:.1f} %", 100 * last.bias_estimate,
+                        100 * last.bias_margin);
   if (last.has_reference)
     text += fmt::format(", MRSE {:.3g}, bias {:+.2f} %", last.mrse, 100 * last.bias);
   return text + ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
@@ -218,7 +223,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   const bool complete = result.stopped_by != "stop";
   if (!result.passes.empty())
     write_files(loaded, result);
-  progress.finish(complete ? end_text(result, output(loaded.frame))
+  progress.finish(complete ? end_text(scene, result, output(loaded.frame))
                            : stop_text(result, hooks.checkpoint.path));
   return complete;
 }

@@ -161,14 +161,13 @@ void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
 /// rest by walks from points drawn from it.
-void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, std::size_t pixel,
-                          const RngKey& key, PassImage& image) const {
+void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, Rng rng, std::size_t target,
+                          PassImage& image) const {
   const World& world = input_.world;
   DepthProfile& profile = scratch.profile;
-  Rng rng(key, RngStage::path, pixel);
   profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
                 static_cast<float>(world.settings.cutoff));
-  shade_profile(world, camera, profile, pixel, image);
+  shade_profile(world, camera, profile, target, image);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_ ||
       (world.settings.max_bounces && *world.settings.max_bounces < 1))
@@ -185,15 +184,46 @@ void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, std::size_t
     if (distances.opacity(c) > 0)
       scatter_first(camera, distances.sample(u, c), rng, walks);
   }
-  image.direct[pixel] = out.direct + walks.direct * share;
-  image.indirect[pixel] = walks.indirect * share;
+  image.direct[target] = out.direct + walks.direct * share;
+  image.indirect[target] = walks.indirect * share;
   scratch.counts.camera_walks += static_cast<std::uint64_t>(splits_);
+}
+
+RngKey PathEstimator::key(int pass) const {
+  return {input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
+}
+
+/// Pixel `pixel` of the picture, to pixel `target` of `image`.
+void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& scratch,
+                                 std::size_t target, PassImage& image) const {
+  const Camera& camera = input_.camera;
+  const std::size_t width = static_cast<std::size_t>(camera.width());
+  Rng jitter(key, RngStage::camera, pixel);
+  const double x = static_cast<double>(pixel % width) + static_cast<double>(jitter.uniform());
+  const double y = static_cast<double>(pixel / width) + static_cast<double>(jitter.uniform());
+  trace(camera_ray(input_.world, camera, x, y), scratch, Rng(key, RngStage::path, pixel), target,
+        image);
+}
+
+std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
+  const RngKey pass_key = key(pass);
+  PassImage image;
+  image.resize(static_cast<int>(pixels.size()), 1);
+  tbb::enumerable_thread_specific<Scratch> scratches;
+  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+    if (!input_.stopped())
+      render_pixel(pass_key, pixels[i], scratches.local(), i, image);
+  });
+  std::vector<Rgb> result;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    result.push_back(image.direct[i] + image.indirect[i] + image.background[i]);
+  return result;
 }
 
 void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
   const Camera& camera = input_.camera;
-  const RngKey key{input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
+  const RngKey pass_key = key(pass);
   image.resize(camera.width(), camera.height());
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, [&](int x0, int y0, int x1, int y1) {
@@ -201,10 +231,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
-        Rng jitter(key, RngStage::camera, pixel);
-        const double px = x + static_cast<double>(jitter.uniform());
-        const double py = y + static_cast<double>(jitter.uniform());
-        trace(camera_ray(input_.world, camera, px, py), scratch, pixel, key, image);
+        render_pixel(pass_key, pixel, scratch, pixel, image);
       }
   });
   for (const Scratch& scratch : scratches) {

@@ -17,12 +17,18 @@ public:
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
+  /// What these pixels of the pass show, along the same camera rays as every estimator's.
+  std::vector<Rgb> radiance(int pass, const std::vector<std::size_t>& pixels) const;
+
 private:
   struct Outputs;
   struct State;
   struct Scratch;
 
-  void trace(const CameraRay& camera, Scratch& scratch, std::size_t pixel, const RngKey& key,
+  RngKey key(int pass) const;
+  void render_pixel(const RngKey& key, std::size_t pixel, Scratch& scratch, std::size_t target,
+                    PassImage& image) const;
+  void trace(const CameraRay& camera, Scratch& scratch, Rng rng, std::size_t target,
              PassImage& image) const;
   void scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
                      Outputs& out) const;

@@ -83,7 +83,7 @@ inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) 
 Film::Film(int width, int height)
     : width_(width), height_(height), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), opacity_(pixels()), depth_(pixels()), depth_passes_(pixels()),
-      squares_(3 * pixels()) {}
+      squares_(3 * pixels()), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -110,13 +110,14 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
   return invalid;
 }
 
-void Film::add(const PassImage& pass) {
+void Film::add(const PassImage& pass, const std::vector<ProbeValue>& probes) {
   check_size(pass.width, pass.height);
   std::vector<std::uint64_t> invalid((pixels() + block_size - 1) / block_size);
   for_each_block(pixels(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     invalid[block] = add_pixels(pass, begin, end);
   });
   invalid_values_ = std::accumulate(invalid.begin(), invalid.end(), invalid_values_);
+  history_.add(pass, probes);
   ++passes_;
 }
 
@@ -133,6 +134,8 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
       squares_[i] += other.squares_[i];
   });
+  history_.merge(other.history_);
+  shapes_.reset();
   passes_ += other.passes_;
   invalid_values_ += other.invalid_values_;
 }
@@ -154,12 +157,21 @@ std::vector<FilmPlane> Film::planes() {
   add("opacity", opacity_, 1, 0);
   add("depth", depth_, 1, 0);
   planes.push_back({"depth_passes", depth_passes_.data(), 1});
+  const auto add_history = [&](const char* name, auto& values) {
+    for (std::size_t first = 0; first < values.size(); first += pixels())
+      planes.push_back({fmt::format("history.{}.{}", name, first / pixels()), &values[first], 1});
+  };
+  if (pixels() > 0) {
+    add_history("sums", history_.values());
+    add_history("passes", history_.counts());
+  }
   return planes;
 }
 
 void Film::set_counts(int passes, std::uint64_t invalid_values) {
   passes_ = passes;
   invalid_values_ = invalid_values;
+  shapes_.reset();
 }
 
 Image Film::develop() const {
@@ -210,6 +222,13 @@ double Film::mrse_estimate() const {
     }
   });
   return std::accumulate(sums.begin(), sums.end(), 0.0) / (3 * static_cast<double>(pixels()));
+}
+
+ErrorEstimate Film::error_estimate(bool unbiased) const {
+  // Batches that are complete stay as they are until there are more or, joined, fewer of them.
+  if (!shapes_ || shapes_->batches != history_.batches())
+    shapes_ = {history_.batches(), noise_shape(history_), bias_shape(history_)};
+  return combine_errors(mrse_estimate(), shapes_->noise, shapes_->bias, unbiased);
 }
 
 } // namespace vdbeam

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "estimators/pass_image.h"
+#include "film/error_estimate.h"
+#include "film/pass_history.h"
 #include "vdbeam/image.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -39,7 +42,7 @@ struct FilmPlane {
 };
 
 /// The mean of passes. It holds 160 bytes per pixel (1.3 GB at 3840 x 2160) whatever the number of
-/// passes, and developing it needs 60 more.
+/// passes, at most 2 MB of their history, and developing it needs 60 more per pixel.
 ///
 /// Pass values that are not finite count as 0, so that one bad path cannot destroy a frame; see
 /// invalid_values().
@@ -47,8 +50,9 @@ class Film {
 public:
   Film(int width, int height);
 
-  /// Adds one pass. Its size must be the film's (std::invalid_argument).
-  void add(const PassImage& pass);
+  /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
+  /// values of probe_pixels(), any of them.
+  void add(const PassImage& pass, const std::vector<ProbeValue>& probes = {});
   /// Adds the passes of another film of the same size (std::invalid_argument).
   void merge(const Film& other);
 
@@ -62,6 +66,8 @@ public:
   /// Everything that a film holds per pixel, always in the same order: with these and the two
   /// counts stored and put back, it goes on bit for bit.
   std::vector<FilmPlane> planes();
+  /// Pixels that probes may hold a biased estimator against.
+  const std::vector<std::size_t>& probe_pixels() const { return history_.pixels(); }
   void set_counts(int passes, std::uint64_t invalid_values);
 
   /// R, G, B: direct + indirect + background; A: the mean opacity; and the AOVs volume.* (direct +
@@ -74,6 +80,10 @@ public:
   /// mean over pixels and channels of s^2 / (n (mean + 0.01)^2), s^2 the unbiased sample variance
   /// of n passes. Infinite for fewer than 2 passes.
   double mrse_estimate() const;
+  /// The same corrected for weights that follow the noise they weigh, with the bias that probes
+  /// show (`unbiased`: there is none) and an interval from what pixels share of the noise
+  /// (docs/physics.md). The corrections change only when a batch of passes is complete.
+  ErrorEstimate error_estimate(bool unbiased) const;
 
 private:
   std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
@@ -87,6 +97,13 @@ private:
   CompensatedSums opacity_, depth_;
   std::vector<std::uint32_t> depth_passes_; ///< passes with a depth
   std::vector<double> squares_; ///< 3 per pixel: sums of (direct + indirect + background)^2
+  PassHistory history_;
+  struct Shapes {
+    std::size_t batches;
+    NoiseShape noise;
+    BiasShape bias;
+  };
+  mutable std::optional<Shapes> shapes_; ///< of the history, from when a batch was last full
 };
 
 } // namespace vdbeam

@@ -19,7 +19,7 @@ namespace vdbeam {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "doubles are stored low half first");
-constexpr const char* film_format = "1";
+constexpr const char* film_format = "2";
 constexpr int largest_side = 65536;
 
 Imath::Box2i data_window(const Image& header) {

@@ -1,12 +1,13 @@
+#include "render/error_record.h"
 #include "render/film_file.h"
 #include "scene/frame_range.h"
+#include "scene/image_metadata.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -93,8 +94,7 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   image.numbers["vdbeam:passes"] = film.passes();
   image.numbers["vdbeam:seconds"] = info.seconds;
   image.numbers["vdbeam:complete"] = 1;
-  if (const double error = film.mrse_estimate(); std::isfinite(error))
-    image.numbers["vdbeam:errorEstimate"] = error;
+  add_error_metadata(image, error_record(film, image.metadata["vdbeam:estimator"] == "path"));
   return image;
 }
 

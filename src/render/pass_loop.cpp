@@ -1,6 +1,7 @@
 #include "render/pass_loop.h"
 
 #include "film/clamp.h"
+#include "render/error_record.h"
 #include "scene/image_metadata.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
@@ -65,7 +66,7 @@ void PassLoop::note(const std::string& line) {
     hooks_.on_note(line);
 }
 
-void PassLoop::run(Estimator& estimator) {
+void PassLoop::run(Estimator& estimator, BiasProbe* probe) {
   if (!hooks_.checkpoint.path.empty() && hooks_.checkpoint.resume)
     resume();
   start_ = last_attempt_ = Clock::now();
@@ -74,10 +75,15 @@ void PassLoop::run(Estimator& estimator) {
     estimator.render_pass(next_pass(), image, result_.statistics);
     if (stop_requested())
       continue; // the pass was abandoned
+    std::vector<ProbeValue> probes;
+    if (probe)
+      probes = probe->trace(next_pass(), result_.statistics);
+    if (stop_requested())
+      continue;
     if (!whole_)
       image = cut_out(image, window_);
     clamp(image);
-    film_.add(image);
+    film_.add(image, probes);
     record();
     serve_requests();
   }
@@ -118,7 +124,7 @@ bool PassLoop::finished() {
   // Fewer passes than this do not tell their own spread.
   constexpr int trusted_passes = 4;
   if (settings.target_error && passes >= trusted_passes &&
-      film_.mrse_estimate() <= *settings.target_error)
+      estimate_errors().error_estimate <= *settings.target_error)
     return stop("target_error");
   return false;
 }
@@ -161,20 +167,23 @@ void PassLoop::resume() {
   }
   result_.resumed_passes = last_checkpoint_passes_ = last_attempt_passes_ = film_.passes();
   note(fmt::format("{}: goes on after {} passes", path, film_.passes()));
-  PassRecord record;
-  record.pass = film_.passes();
+  PassRecord record = estimate_errors();
   record.seconds = earlier_seconds_;
-  record.error_estimate = film_.mrse_estimate();
   result_.passes.push_back(record);
 }
 
+PassRecord PassLoop::estimate_errors() const {
+  const bool unbiased =
+      !scene_.render.clamp &&
+      (scene_.render.estimator == EstimatorType::path || !result_.plan.needs("photons"));
+  return error_record(film_, unbiased);
+}
+
 void PassLoop::record() {
-  PassRecord record;
-  record.pass = film_.passes();
+  PassRecord record = estimate_errors();
   record.seconds = seconds();
   record.photons = result_.statistics.photons_stored - photons_before_;
   photons_before_ = result_.statistics.photons_stored;
-  record.error_estimate = film_.mrse_estimate();
   if (hooks_.reference)
     compare(record);
   result_.passes.push_back(record);

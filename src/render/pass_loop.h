@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "render/bias_probe.h"
 #include "render/film_file.h"
 
 #include <chrono>
@@ -14,7 +15,10 @@ public:
   PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWindow& window,
            RenderResult& result);
 
-  void run(Estimator& estimator);
+  /// `probe` tells the bias; null where the estimator has none or nobody asks.
+  void run(Estimator& estimator, BiasProbe* probe);
+
+  const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -23,6 +27,7 @@ private:
   bool stop(const char* reason);
   void resume();
   void record();
+  PassRecord estimate_errors() const;
   void compare(PassRecord& record);
   void clamp(PassImage& pass);
   void serve_requests();

@@ -135,6 +135,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
                     {render.estimator != EstimatorType::march, "another estimator"}}));
   add("paths", path && needs.scatters,
       first_reason({{!path, "another estimator"}, {!needs.scatters, no_scattering}}));
+  add("bias", needs.photons && render.bias_rays > 0,
+      needs.photons && render.bias_rays > 0
+          ? "kernels blur: some rays are followed by path tracing to tell how much"
+          : first_reason({{!needs.photons, "no photons"}, {true, "render.bias_rays is 0"}}));
   add("environment", needs.environment,
       needs.environment ? "a light surrounds the scene" : "no environment light");
 

@@ -59,6 +59,22 @@ std::vector<float> flatten(const Matrix& m) {
 
 } // namespace
 
+void add_error_metadata(Image& image, const PassRecord& record) {
+  const std::pair<const char*, double> values[] = {{"errorEstimate", record.error_estimate},
+                                                   {"errorLow", record.error_low},
+                                                   {"errorHigh", record.error_high},
+                                                   {"noiseEstimate", record.noise_estimate},
+                                                   {"biasMrseEstimate", record.bias_mrse_estimate},
+                                                   {"biasEstimate", record.bias_estimate},
+                                                   {"biasMargin", record.bias_margin}};
+  for (const auto& [name, value] : values) {
+    const std::string key = fmt::format("vdbeam:{}", name);
+    image.numbers.erase(key); // an older one would be of fewer passes
+    if (std::isfinite(value))
+      image.numbers[key] = value;
+  }
+}
+
 void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result, int frame,
                         const std::string& hash) {
   for (const auto& [name, version] : component_versions())
@@ -76,8 +92,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     const PassRecord& last = result.passes.back();
     image.numbers["vdbeam:passes"] = last.pass;
     image.numbers["vdbeam:seconds"] = last.seconds;
-    if (std::isfinite(last.error_estimate))
-      image.numbers["vdbeam:errorEstimate"] = last.error_estimate;
+    add_error_metadata(image, last);
   }
   image.numbers["vdbeam:photonsStored"] = static_cast<double>(result.statistics.photons_stored);
   if (scene.render.clamp) { // sums, so that parts can be joined

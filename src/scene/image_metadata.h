@@ -11,4 +11,7 @@ namespace vdbeam {
 void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result, int frame,
                         const std::string& hash);
 
+/// What is known of the picture's error, as attributes; what is unknown is left out.
+void add_error_metadata(Image& image, const PassRecord& record);
+
 } // namespace vdbeam

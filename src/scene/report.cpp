@@ -43,7 +43,13 @@ Json passes_json(const RenderResult& result) {
     Json entry{{"pass", pass.pass},
                {"seconds", pass.seconds},
                {"photons", pass.photons},
-               {"error_estimate", number(pass.error_estimate)}};
+               {"error_estimate", number(pass.error_estimate)},
+               {"error_low", number(pass.error_low)},
+               {"error_high", number(pass.error_high)},
+               {"noise_estimate", number(pass.noise_estimate)},
+               {"bias_mrse_estimate", number(pass.bias_mrse_estimate)},
+               {"bias_estimate", number(pass.bias_estimate)},
+               {"bias_margin", number(pass.bias_margin)}};
     if (pass.has_reference) {
       entry["rmse"] = number(pass.rmse);
       entry["mrse"] = number(pass.mrse);
@@ -57,13 +63,19 @@ Json passes_json(const RenderResult& result) {
 
 Json seconds_json(const RenderResult& result) {
   const RenderStatistics& s = result.statistics;
-  return {
-      {"read", s.read},     {"prepare", s.prepare},
-      {"build", s.build},   {"trace", s.trace},
-      {"order", s.order},   {"radii", s.radii},
-      {"query", s.query},   {"profile", s.profile},
-      {"direct", s.direct}, {"path", s.path},
-      {"write", s.write},   {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
+  return {{"read", s.read},
+          {"prepare", s.prepare},
+          {"build", s.build},
+          {"trace", s.trace},
+          {"order", s.order},
+          {"radii", s.radii},
+          {"query", s.query},
+          {"profile", s.profile},
+          {"direct", s.direct},
+          {"path", s.path},
+          {"bias", s.bias},
+          {"write", s.write},
+          {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
 }
 
 Json machine_json(const Scene& scene) {
@@ -132,6 +144,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"depth_profiles", statistics.depth_profiles},
                       {"shadow_rays", statistics.shadow_rays},
                       {"camera_walks", statistics.camera_walks},
+                      {"bias_rays", statistics.bias_rays},
                       {"neighbourhoods", statistics.neighbourhoods},
                       {"importance_rays", statistics.importance_rays},
                       {"directions", statistics.directions},

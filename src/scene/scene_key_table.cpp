@@ -238,6 +238,10 @@ void add_render(Table& table) {
       .absent("none");
   table.add("cutoff", &R::cutoff, "transmittance at which a camera ray ends").inside(0, 1);
   table
+      .add("bias_rays", &R::bias_rays,
+           "share of the camera rays that path tracing follows too, to tell the bias; 0: none")
+      .within(0, 1);
+  table
       .add("clamp", &R::clamp,
            "most that the medium may send to a pixel in one pass; takes light away, and tells how "
            "much")

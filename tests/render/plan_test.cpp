@@ -83,7 +83,7 @@ TEST(Plan, SunlitVolume) {
   const Outcome r = run(base());
   EXPECT_EQ(r.needed,
             (Names{"read", "majorants", "photons", "photon importance", "map", "neighbours",
-                   "photon directions", "depth profiles", "shadow rays", "beam query"}));
+                   "photon directions", "depth profiles", "shadow rays", "beam query", "bias"}));
   expect_plan_kept(r);
 }
 

@@ -2,64 +2,15 @@
 """tools/error_vs_time.py with a stand-in for the renderer whose error is known: C / seconds."""
 
 import csv
-import struct
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
+from fake_renderer import install
+
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools/error_vs_time.py"
-
-# Takes the options that the tool may give, refuses others, and writes the same image each time.
-FAKE_RENDERER = """#!/usr/bin/python3
-import argparse, json, shutil, sys
-parser = argparse.ArgumentParser()
-parser.add_argument("command", choices=["render"])
-parser.add_argument("scene")
-for name in ("-o", "--report", "--estimator", "--time", "--reference"):
-    parser.add_argument(name)
-for name in ("--seed", "--passes", "--threads"):
-    parser.add_argument(name, type=int)
-options = parser.parse_args()
-with open(__file__ + ".log", "a") as log:
-    print(options.scene, options.estimator, options.seed, options.reference, file=log)
-if "broken" in options.scene:
-    print("broken.toml:3: medium.g must lie in (-1, 1), got 1.2", file=sys.stderr)
-    sys.exit(2)
-budget = float(options.time.rstrip("s"))
-product = {"beam": 0.002, "march": 0.05, "path": 0.03}[options.estimator]
-product *= 1 + 0.1 * (options.seed % 3 - 1)
-passes = []
-for i in range(1, 41):
-    seconds = budget * i / 40
-    entry = {"pass": i, "seconds": seconds, "photons": 1000,
-             "error_estimate": None if i == 1 else product / seconds}
-    if options.reference:
-        entry.update(rmse=0.1, mrse=product / seconds, relmse=0.1, bias=-0.001)
-    passes.append(entry)
-shutil.copy(__file__ + ".exr", options.o)
-json.dump({"passes": passes}, open(options.report, "w"))
-"""
-
-
-def tiny_exr():
-    """An uncompressed EXR of 2 x 1 pixels: R, G, B as floats."""
-    def attribute(name, kind, data):
-        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
-
-    channels = b"".join(name + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in (b"B", b"G", b"R"))
-    window = struct.pack("<4i", 0, 0, 1, 0)
-    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute(b"channels", b"chlist", channels + b"\0")
-              + attribute(b"compression", b"compression", b"\0")
-              + attribute(b"dataWindow", b"box2i", window)
-              + attribute(b"displayWindow", b"box2i", window)
-              + attribute(b"lineOrder", b"lineOrder", b"\0")
-              + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
-              + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
-              + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0")
-    pixels = struct.pack("<6f", 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
-    return (header + struct.pack("<Q", len(header) + 8) + struct.pack("<ii", 0, len(pixels)) + pixels)
 
 
 class ErrorVsTime(unittest.TestCase):
@@ -68,10 +19,7 @@ class ErrorVsTime(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
         self.output = self.folder / "out"
-        self.binary = self.folder / "vdbeam"
-        self.binary.write_text(FAKE_RENDERER, encoding="utf-8")
-        self.binary.chmod(0o755)
-        Path(f"{self.binary}.exr").write_bytes(tiny_exr())
+        self.binary = install(self.folder)
         for name in ("cloud", "smoke", "broken"):
             (self.folder / f"{name}.toml").write_text(f"# {name}\n", encoding="utf-8")
 
@@ -120,8 +68,10 @@ class ErrorVsTime(unittest.TestCase):
         self.assertEqual(self.run_tool("--seeds", "4,6-7", scenes=("cloud",)).returncode, 0)
         calls = self.calls()
         self.assertEqual(calls[0], ["path", "999983", "None"])
+        # Each seed begins with another one.
+        turns = ("4", "beam march path"), ("6", "march path beam"), ("7", "path beam march")
         self.assertEqual([call[:2] for call in calls[1:]],
-                         [[e, s] for s in "467" for e in ("beam", "march", "path")])
+                         [[e, seed] for seed, order in turns for e in order.split()])
         self.assertTrue(all(call[2].endswith(".exr") for call in calls[1:]))
         self.assertEqual(self.run_tool("--seeds", "1", scenes=("cloud",)).returncode, 0)
         self.assertEqual(len([c for c in self.calls() if c[1] == "999983"]), 1)
@@ -134,6 +84,17 @@ class ErrorVsTime(unittest.TestCase):
                                "--option=--threads=2", scenes=("cloud",))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.calls(), [["beam", str(s), "/r/true.exr"] for s in (1, 2, 3)])
+
+    def test_variants_are_estimators_with_other_settings(self):
+        result = self.run_tool("--estimators", "beam", "--seeds", "1",
+                               "--variant", "quick: --estimator path --threads 1",
+                               scenes=("cloud",), plots=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([call[0] for call in self.calls()[1:]], ["beam", "path"])
+        self.assertEqual(self.table_row("cloud", "quick")[7:], ["0.03", "-", "0.03"])
+        self.assertIn('"name": "quick"', (self.output / "index.html").read_text(encoding="utf-8"))
+        for wrong in (["--variant", "a/b: --threads=1"], ["--variant", "beam: --threads=1"]):
+            self.assertEqual(self.run_tool(*wrong, scenes=("cloud",)).returncode, 2, wrong)
 
     def test_plots_again_without_rendering(self):
         self.assertNotEqual(self.run_tool("--plot-only").returncode, 0)

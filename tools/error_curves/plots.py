@@ -10,7 +10,8 @@ from .report import group_runs, join_seeds
 
 # Told apart also without colour: each estimator has its own line style.
 STYLES = {"beam": ("#0072b2", "-"), "march": ("#d55e00", "--"), "path": ("#009e73", "-.")}
-OTHER = ("#555555", ":")
+OTHERS = [(colour, style) for style in ("-", "--", ":") for colour in
+          ("#cc79a7", "#e69f00", "#56b4e9", "#555555", "#8c564b")]
 
 
 def plot_scene(runs, scene, path_stem, noise=None):
@@ -18,11 +19,13 @@ def plot_scene(runs, scene, path_stem, noise=None):
     seeds), a band from the least to the largest, and the reference's own noise."""
     plt.rcParams["svg.hashsalt"] = "vdbeam"  # the same file for the same data
     figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
+    other = 0
     for name, estimator, group in group_runs(runs):
         curve = join_seeds(group) if name == scene else None
         if curve is None:
             continue
-        colour, style = STYLES.get(estimator, OTHER)
+        colour, style = STYLES.get(estimator) or OTHERS[other % len(OTHERS)]
+        other += estimator not in STYLES
         marker = "o" if len(curve.seconds) == 1 else None
         axes.plot(curve.seconds, curve.mrse, style, color=colour, marker=marker, label=estimator)
         if len(group) > 1:

@@ -2,8 +2,10 @@
 
 import hashlib
 import json
+import re
 import shlex
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 
 from .report import ReportError, read_report
@@ -18,11 +20,28 @@ class RenderFailed(Exception):
     """A render that did not end well, as one line."""
 
 
-def render(binary, scene, output, report, estimator, seed, seconds, reference=None, extra=()):
+@dataclass(frozen=True)
+class Variant:
+    """One way to render, compared with the others: a name and options of `vdbeam render`."""
+
+    name: str
+    options: tuple = ()
+
+
+def parse_variant(text):
+    """'k200: --estimator beam --set render.neighbours=200' or the name of an estimator alone."""
+    name, colon, options = text.partition(":")
+    name = name.strip()
+    if not re.fullmatch(r"[A-Za-z0-9_=,-]+", name):
+        raise ValueError(f"'{name}' is no name for a file")
+    return Variant(name, tuple(shlex.split(options)) if colon else ("--estimator", name))
+
+
+def render(binary, scene, output, report, variant, seed, seconds, reference=None, extra=()):
     """Renders for a number of seconds; the report goes to `report`."""
     command = [str(binary), "render", str(scene), "-o", str(output), "--report", str(report),
-               "--estimator", estimator, "--seed", str(seed), "--time", f"{seconds:g}s",
-               "--passes", str(MANY_PASSES), *extra]
+               "--seed", str(seed), "--time", f"{seconds:g}s", "--passes", str(MANY_PASSES),
+               *variant.options, *extra]
     if reference is not None:
         command += ["--reference", str(reference)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -42,7 +61,8 @@ def cached_reference(binary, scene, folder, seconds, extra=()):
     image, report = Path(f"{stem}.exr"), Path(f"{stem}.json")
     if not (image.exists() and report.exists()):
         print(f"{scene}: rendering a reference for {seconds:g} s", flush=True)
-        render(binary, scene, image, report, "path", REFERENCE_SEED, seconds, extra=extra)
+        render(binary, scene, image, report, parse_variant("path"), REFERENCE_SEED, seconds,
+               extra=extra)
     return image, report
 
 
@@ -55,22 +75,25 @@ def reference_noise(report):
         return None
 
 
-def run_all(binary, scenes, references, estimators, seeds, seconds, folder, extra=()):
-    """Every scene, estimator and seed. The estimators take turns within a seed, so that a machine
-    that gets slower is unfair to none."""
+def run_all(binary, scenes, references, variants, seeds, seconds, folder, extra=()):
+    """Every scene, variant and seed. The variants take turns within a seed, and each seed begins
+    with another one, so that a machine that gets slower or hotter is unfair to none."""
     folder.mkdir(parents=True, exist_ok=True)
     runs = []
     for scene in scenes:
-        for seed in seeds:
-            for estimator in estimators:
-                stem = f"{Path(scene).stem}.{estimator}.{seed}"
-                print(f"{scene}: {estimator}, seed {seed}, {seconds:g} s", flush=True)
-                report = folder / f"{stem}.json"
-                render(binary, scene, folder / f"{stem}.exr", report, estimator, seed, seconds,
-                       references[Path(scene).stem], extra)
-                runs.append(read_report(report, Path(scene).stem, estimator, seed))
-    return runs
+        stem = Path(scene).stem
+        for turn, seed in enumerate(seeds):
+            first = turn % len(variants)
+            for variant in variants[first:] + variants[:first]:
+                print(f"{scene}: {variant.name}, seed {seed}, {seconds:g} s", flush=True)
+                output = folder / f"{stem}.{variant.name}.{seed}.exr"
+                report = output.with_suffix(".json")
+                render(binary, scene, output, report, variant, seed, seconds, references[stem],
+                       extra)
+                runs.append(read_report(report, stem, variant.name, seed))
+    order = [variant.name for variant in variants]
+    return sorted(runs, key=lambda run: order.index(run.estimator))
 
 
-__all__ = ["ReportError", "RenderFailed", "cached_reference", "reference_noise", "render",
-           "run_all"]
+__all__ = ["ReportError", "RenderFailed", "Variant", "cached_reference", "parse_variant",
+           "reference_noise", "render", "run_all"]

@@ -1,0 +1,317 @@
+#include "film/error_estimate.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+constexpr double offset = 0.01; ///< of MRSE
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// Weight of a pixel's neighbours beside its own batches, in batches.
+constexpr double neighbour_weight = 0.5;
+/// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
+/// that has all of a pixel's light would weigh as if the pixel were black.
+constexpr double least_mean = 0.4;
+/// What weights that are themselves estimated leave uncertain.
+constexpr double least_spread = 0.03;
+constexpr std::size_t fewest_batches = 3;
+constexpr std::size_t batches_of_interval = 4;
+constexpr int group_width = 8; ///< followed pixels of a group, along a side
+
+/// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
+double student(double degrees) {
+  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
+  return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees) +
+         (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / (384 * degrees * degrees * degrees);
+}
+
+/// The mean of all batches, R, G, B of each followed pixel.
+std::vector<float> mean_of(const PassHistory& history, double passes) {
+  std::vector<double> sums(3 * history.pixels().size());
+  for (std::size_t batch = 0; batch < history.batches(); ++batch)
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      sums[i] += static_cast<double>(history.sums(batch)[i]);
+  std::vector<float> means(sums.size());
+  std::transform(sums.begin(), sums.end(), means.begin(),
+                 [&](double sum) { return static_cast<float>(sum / passes); });
+  return means;
+}
+
+/// Mean over the 3 x 3 followed pixels around each; the border repeats.
+std::vector<float> smoothed(const std::vector<float>& means, int columns, int rows) {
+  std::vector<float> result(means.size());
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int from =
+              std::clamp(y + dy, 0, rows - 1) * columns + std::clamp(x + dx, 0, columns - 1);
+          for (int c = 0; c < 3; ++c)
+            result[static_cast<std::size_t>(3 * (y * columns + x) + c)] +=
+                means[static_cast<std::size_t>(3 * from + c)] / 9;
+        }
+  return result;
+}
+
+double total_passes(const PassHistory& history) {
+  double passes = 0;
+  for (std::size_t batch = 0; batch < history.batches(); ++batch)
+    passes += history.passes(batch);
+  return passes;
+}
+
+double dot(const std::vector<float>& a, const std::vector<float>& b) {
+  std::array<double, 8> sums{}; // so that compilers may vectorise
+  std::size_t i = 0;
+  for (; i + sums.size() <= a.size(); i += sums.size())
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      sums[k] += static_cast<double>(a[i + k]) * static_cast<double>(b[i + k]);
+  for (; i < a.size(); ++i)
+    sums[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  double sum = 0;
+  for (const double part : sums)
+    sum += part;
+  return sum;
+}
+
+/// Deviations of the batches from the mean, in units of MRSE.
+struct Deviations {
+  std::vector<std::vector<float>> batches; ///< sqrt(passes) times the weighted deviation
+  double plain = 0;                        ///< sum of squares with weights 1 / (mean + offset)^2
+  double diagonal = 0;                     ///< sum over pixels of the square of their variance
+
+  /// A weight must know nothing of the deviation that it weighs, or pixels with a rare bright pass
+  /// would hide it under the brightness it caused. So a batch is weighed by the mean of the others
+  /// and, where they are few, of the neighbours. The mean of 1 / (m + offset)^2 over a noisy m is
+  /// too large by 3 Var(m) / (m + offset)^4 to first order, which is taken off.
+  Deviations(const PassHistory& history, double passes) : batches(history.batches()) {
+    const std::vector<float> means = mean_of(history, passes);
+    const std::vector<float> around = smoothed(means, history.columns(), history.rows());
+    for (std::vector<float>& batch : batches)
+      batch.resize(means.size());
+    const double neighbours = neighbour_weight * passes / static_cast<double>(batches.size());
+    for (std::size_t i = 0; i < means.size(); i += 3) {
+      double variance = 0;
+      for (std::size_t c = i; c < i + 3; ++c)
+        variance += add_value(history, passes, c, means[c], around[c], neighbours);
+      diagonal += variance * variance;
+    }
+  }
+
+private:
+  double add_value(const PassHistory& history, double passes, std::size_t i, float value,
+                   float around, double neighbours) {
+    const double mean = static_cast<double>(value), count = static_cast<double>(batches.size());
+    std::array<double, PassHistory::most_batches> squares{};
+    double sum = 0, weighted = 0;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      const double n = history.passes(b), d = static_cast<double>(history.sums(b)[i]) / n - mean;
+      squares[b] = n * d * d;
+      sum += squares[b];
+    }
+    plain += sum / ((mean + offset) * (mean + offset));
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      const double n = history.passes(b), others = passes - n;
+      const double d = static_cast<double>(history.sums(b)[i]) / n - mean;
+      const double others_mean = mean - d * n / others;
+      const double variance = std::max(0.0, sum - squares[b] * passes / others) / (count - 2);
+      const double expected =
+          (others_mean * others + neighbours * static_cast<double>(around)) / (others + neighbours);
+      const double m = std::max({0.0, expected, least_mean * mean});
+      const double weight =
+          1 / ((m + offset) * (m + offset) +
+               3 * variance * others / ((others + neighbours) * (others + neighbours)));
+      weighted += squares[b] * weight;
+      batches[b][i] = static_cast<float>(std::sqrt(n * weight) * d);
+    }
+    return weighted / (count - 1);
+  }
+};
+
+/// 1 / degrees of freedom of the image's error: the trace of the squared covariance of a pass over
+/// the square of its trace, from the scalar products of independent passes.
+double inverse_degrees(const PassHistory& history, const Deviations& deviations,
+                       const std::vector<double>& products, double passes, double trace) {
+  const std::size_t count = deviations.batches.size();
+  double sum = 0, expected = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double a = history.passes(i) / passes, b = history.passes(j) / passes;
+      // Deviations from the common mean are correlated by -sqrt(a b) without saying anything.
+      const double product = products[i * count + j] + std::sqrt(a * b) * trace;
+      sum += product * product;
+      expected += (1 - a) * (1 - b) + a * b;
+    }
+  const double all_pairs = sum / expected;
+  // Followed pixels stand for their neighbours as far as pixels share noise, not for what each has
+  // of its own.
+  const double own = deviations.diagonal / (1 + 2 / static_cast<double>(count - 1));
+  const double squares = std::max(all_pairs - (1 - history.share()) * own, history.share() * own);
+  return squares / (trace * trace);
+}
+
+/// Value and standard error by leaving out each batch in turn (jackknife).
+template <class Value>
+std::pair<double, double> jackknife(std::size_t count, const Value& without) {
+  const double whole = without(count), n = static_cast<double>(count);
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    squares += (without(i) - whole) * (without(i) - whole);
+  return {whole, std::sqrt(squares * (n - 1) / n)};
+}
+
+/// Differences of a batch to its probes, by groups of followed pixels.
+struct ProbeDifferences {
+  std::vector<double> sums, weights; ///< groups; sums are R, G, B
+  double difference = 0, brightness = 0;
+};
+
+ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
+                                const std::vector<float>& means, const std::vector<float>& around) {
+  const int columns = history.columns();
+  const int across = (columns + group_width - 1) / group_width;
+  const int down = (history.rows() + group_width - 1) / group_width;
+  ProbeDifferences result;
+  result.weights.resize(static_cast<std::size_t>(across) * down);
+  result.sums.resize(3 * result.weights.size());
+  for (std::size_t i = 0; i < history.pixels().size(); ++i) {
+    const double probes = static_cast<double>(history.probes(batch)[i]);
+    if (probes == 0)
+      continue;
+    const int x = static_cast<int>(i) % columns, y = static_cast<int>(i) / columns;
+    const auto group = static_cast<std::size_t>(y / group_width * across + x / group_width);
+    result.weights[group] += probes;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t k = 3 * i + c;
+      const double value = static_cast<double>(history.sums(batch)[k]) / history.passes(batch);
+      const double difference = probes * value - static_cast<double>(history.probe_sums(batch)[k]);
+      const double typical =
+          (static_cast<double>(means[k]) + neighbour_weight * static_cast<double>(around[k])) /
+          (1 + neighbour_weight);
+      result.sums[3 * group + c] += difference / (std::max(typical, 0.0) + offset);
+      result.difference += difference;
+      result.brightness += probes * value;
+    }
+  }
+  return result;
+}
+
+} // namespace
+
+NoiseShape noise_shape(const PassHistory& history) {
+  const std::size_t count = history.batches();
+  if (count < fewest_batches)
+    return {};
+  const double passes = total_passes(history);
+  const Deviations deviations(history, passes);
+  std::vector<double> products(count * count);
+  tbb::parallel_for(std::size_t{0}, count * count, [&](std::size_t k) {
+    if (k % count <= k / count)
+      products[k] = dot(deviations.batches[k / count], deviations.batches[k % count]);
+  });
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    squares += products[i * count + i];
+  NoiseShape shape;
+  shape.batches = static_cast<int>(count);
+  shape.spread = least_spread;
+  if (!(squares > 0) || !(deviations.plain > 0))
+    return shape;
+  shape.correction = squares / deviations.plain;
+  const double trace = squares / static_cast<double>(count - 1);
+  // How much the batches' own squares differ tells how far the sum over them may be off.
+  double uneven = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    uneven += std::pow(products[i * count + i] * static_cast<double>(count) / squares - 1, 2);
+  uneven /= static_cast<double>(count) * static_cast<double>(count - 1);
+  shape.spread = std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) +
+                           uneven + least_spread * least_spread);
+  return shape;
+}
+
+BiasShape bias_shape(const PassHistory& history) {
+  const std::size_t count = history.batches();
+  if (count < fewest_batches)
+    return {unknown, unknown, unknown, unknown};
+  const std::vector<float> means = mean_of(history, total_passes(history));
+  const std::vector<float> around = smoothed(means, history.columns(), history.rows());
+  std::vector<ProbeDifferences> batches(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
+    batches[batch] = compare_probes(history, batch, means, around);
+  });
+  // Products of independent batches: noise has none on average, bias has its square.
+  std::vector<double> products(count * count), weights(count * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      for (std::size_t g = 0; g < batches[i].weights.size(); ++g) {
+        const double a = batches[i].weights[g], b = batches[j].weights[g];
+        if (!(a * b > 0))
+          continue;
+        const double share = std::sqrt(a * b);
+        for (std::size_t c = 0; c < 3; ++c)
+          products[i * count + j] +=
+              share / 3 * batches[i].sums[3 * g + c] / a * batches[j].sums[3 * g + c] / b;
+        weights[i * count + j] += share;
+      }
+  const auto mrse_without = [&](std::size_t left_out) {
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (i != left_out && j != left_out) {
+          sum += products[i * count + j];
+          weight += weights[i * count + j];
+        }
+    return weight > 0 ? sum / weight : unknown;
+  };
+  const auto bias_without = [&](std::size_t left_out) {
+    double difference = 0, brightness = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      if (i != left_out) {
+        difference += batches[i].difference;
+        brightness += batches[i].brightness;
+      }
+    return brightness != difference ? difference / (brightness - difference) : unknown;
+  };
+  const auto [mrse, mrse_error] = jackknife(count, mrse_without);
+  const auto [bias, bias_error] = jackknife(count, bias_without);
+  return {mrse, mrse_error, bias, bias_error};
+}
+
+ErrorEstimate combine_errors(double noise, const NoiseShape& shape, const BiasShape& bias,
+                             bool unbiased) {
+  ErrorEstimate estimate{};
+  estimate.noise = noise * shape.correction;
+  const double batches = shape.batches;
+  double part = 0, margin = 0;
+  estimate.bias_mrse = estimate.bias = estimate.bias_margin = unbiased ? 0 : unknown;
+  if (!unbiased && std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error)) {
+    const double t = student(std::max(1.0, batches - 1));
+    estimate.bias_mrse = bias.mrse;
+    estimate.bias = bias.bias;
+    estimate.bias_margin = t * bias.bias_error;
+    // Small estimates are noise more likely than bias: halfway between the positive part, which
+    // comes out too large where there is no bias, and that of James and Stein, which comes out too
+    // small where there is some.
+    const double half_error = 0.5 * bias.mrse_error;
+    if (bias.mrse > half_error)
+      part = bias.mrse - half_error * half_error / bias.mrse;
+    margin = t * bias.mrse_error;
+  }
+  estimate.mrse = estimate.noise + part;
+  estimate.low = estimate.high = unknown;
+  if (shape.batches < static_cast<int>(batches_of_interval))
+    return estimate;
+  const double factor = std::exp(student(2 * (batches - 1)) * shape.spread);
+  const double below = std::hypot(estimate.noise * (1 - 1 / factor), std::min(part, margin));
+  const double above = std::hypot(estimate.noise * (factor - 1), margin);
+  estimate.low = std::max(0.0, estimate.mrse - below);
+  estimate.high = estimate.mrse + above;
+  return estimate;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,38 @@
+#include "render/bias_probe.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace vdbeam {
+
+BiasProbe::BiasProbe(const EstimatorInput& input, const PixelWindow& window,
+                     const std::vector<std::size_t>& pixels, double share)
+    : path_(input), window_(window), image_width_(input.camera.width()), pixels_(pixels) {
+  const double wanted = share * window.width() * window.height();
+  const double period = static_cast<double>(pixels.size()) / std::max(wanted, 1.0);
+  period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
+}
+
+std::vector<ProbeValue> BiasProbe::trace(int pass, RenderStatistics& statistics) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<ProbeValue> probes;
+  std::vector<std::size_t> image_pixels;
+  // Every period-th pixel in an order that jumps, so that a pass does not probe columns.
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if ((mix64(i) + static_cast<std::uint64_t>(pass)) % period_ != 0)
+      continue;
+    const auto width = static_cast<std::size_t>(window_.width());
+    const std::size_t x = window_.x0 + pixels_[i] % width, y = window_.y0 + pixels_[i] / width;
+    probes.push_back({pixels_[i], {}});
+    image_pixels.push_back(y * static_cast<std::size_t>(image_width_) + x);
+  }
+  const std::vector<Rgb> radiance = path_.radiance(pass, image_pixels);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    probes[i].radiance = radiance[i];
+  statistics.bias_rays += probes.size();
+  statistics.bias +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return probes;
+}
+
+} // namespace vdbeam

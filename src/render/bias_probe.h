@@ -1,0 +1,27 @@
+#pragma once
+
+#include "estimators/path.h"
+#include "film/pass_history.h"
+
+namespace vdbeam {
+
+/// A few camera rays of each pass, followed by path tracing: what a biased estimator's picture is
+/// held against to tell its bias (Film::error_estimate). They never change the picture.
+class BiasProbe {
+public:
+  /// `pixels` are of the window, `share` of its pixels are probed per pass.
+  BiasProbe(const EstimatorInput& input, const PixelWindow& window,
+            const std::vector<std::size_t>& pixels, double share);
+
+  /// The pixels whose turn it is in this pass. A pure function of scene, seed, frame and pass.
+  std::vector<ProbeValue> trace(int pass, RenderStatistics& statistics);
+
+private:
+  PathEstimator path_;
+  PixelWindow window_;
+  int image_width_;
+  std::vector<std::size_t> pixels_;
+  std::size_t period_; ///< passes until a pixel's next turn
+};
+
+} // namespace vdbeam

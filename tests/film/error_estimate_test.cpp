@@ -1,0 +1,149 @@
+#include "film/error_estimate.h"
+
+#include "film/film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace vdbeam {
+namespace {
+
+constexpr int width = 48, height = 40;
+constexpr float mean = 1;
+
+/// A pass around 1 whose squares of `block` x `block` pixels share their noise.
+PassImage noisy_pass(int block, double sigma, std::mt19937& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  PassImage pass;
+  pass.resize(width, height);
+  const int columns = (width + block - 1) / block;
+  std::vector<float> noise;
+  for (int i = 0; i < columns * ((height + block - 1) / block); ++i)
+    noise.push_back(static_cast<float>(normal(random)));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      pass.indirect[static_cast<std::size_t>(y * width + x)] =
+          Rgb(mean + noise[static_cast<std::size_t>(y / block * columns + x / block)]);
+  return pass;
+}
+
+TEST(NoiseShape, CountsWhatPixelsShare) {
+  // Of n passes whose m squares are independent and Gaussian, the logarithm of true over estimated
+  // MRSE has the variance 2 / m + 2 / (m (n - 1)). It is known as well as 120 pairs of passes tell,
+  // to some 13 % of the variance; 4 times that is allowed.
+  for (const int block : {1, 2, 4, 8}) {
+    std::mt19937 random(7);
+    Film film(width, height);
+    PassHistory history(width, height);
+    for (int i = 0; i < 16; ++i)
+      history.add(noisy_pass(block, 0.05, random), {});
+    const NoiseShape shape = noise_shape(history);
+    const double squares = width * height / (block * block);
+    const double expected = 2 / squares * (1 + 1.0 / 15) + 0.03 * 0.03;
+    EXPECT_NEAR(shape.spread * shape.spread / expected, 1, 0.5) << block;
+    EXPECT_NEAR(shape.correction, 1, 0.02) << block;
+  }
+}
+
+TEST(NoiseShape, RareBrightPassesDoNotHideTheirNoise) {
+  // Each value is 5 with a chance of 1 / 5, else 0: weights by the mean of all passes see bright
+  // pixels as less noisy and dark ones as free of noise.
+  std::mt19937 random(3);
+  std::bernoulli_distribution bright(0.2);
+  const int passes = 64;
+  const double variance = 25 * 0.2 * 0.8 / passes, truth = variance / (1.01 * 1.01);
+  Film film(width, height);
+  PassImage pass;
+  pass.resize(width, height);
+  for (int i = 0; i < passes; ++i) {
+    for (Rgb& value : pass.indirect)
+      value = Rgb(bright(random) ? 5.0f : 0.0f);
+    film.add(pass);
+  }
+  const ErrorEstimate estimate = film.error_estimate(true);
+  EXPECT_NEAR(estimate.noise / truth, 1, 0.1);
+  EXPECT_GT(std::abs(film.mrse_estimate() / truth - 1), 0.05) << "the plain estimate is no better";
+}
+
+TEST(PassHistory, BatchesDoubleAndHoldEveryPass) {
+  std::mt19937 random(1);
+  const PassImage pass = noisy_pass(4, 0.1, random);
+  PassHistory history(width, height);
+  for (int i = 1; i <= 1000; ++i) {
+    history.add(pass, {});
+    double passes = 0;
+    for (std::size_t batch = 0; batch < history.batches(); ++batch) {
+      EXPECT_EQ(history.passes(batch), history.passes(0));
+      passes += history.passes(batch);
+    }
+    EXPECT_GT(passes, 0.87 * i); // what is left is the batch that fills up
+    EXPECT_GE(static_cast<int>(history.batches()), std::min(i, 8));
+  }
+  const double sum = static_cast<double>(history.sums(2)[0]);
+  EXPECT_NEAR(sum / history.passes(2), static_cast<double>(pass.indirect[0].x), 1e-4);
+}
+
+TEST(PassHistory, FollowsPixelsOfLargePictures) {
+  for (const auto& [w, h] : {std::pair{1920, 1080}, {1, 30000}, {64, 64}, {65, 64}, {1, 1}}) {
+    const PassHistory history(w, h);
+    EXPECT_LE(history.pixels().size(), PassHistory::most_samples);
+    EXPECT_GE(history.pixels().size(), std::min<std::size_t>(static_cast<std::size_t>(w) * h,
+                                                             PassHistory::most_samples / 8));
+    for (const std::size_t pixel : history.pixels())
+      EXPECT_LT(pixel, static_cast<std::size_t>(w) * h);
+  }
+}
+
+TEST(BiasShape, IsTheDifferenceToTheProbes) {
+  // A picture of 1.1 and probes of 1, both noisy; half of the pixels are probed in each pass.
+  std::mt19937 random(11);
+  std::normal_distribution<float> noise(0, 0.3f);
+  Film film(width, height);
+  for (int i = 0; i < 40; ++i) {
+    PassImage pass = noisy_pass(8, 0.1, random);
+    for (Rgb& value : pass.indirect)
+      value += Rgb(0.1f);
+    std::vector<ProbeValue> probes;
+    for (std::size_t k = static_cast<std::size_t>(i % 2); k < film.probe_pixels().size(); k += 2)
+      probes.push_back({film.probe_pixels()[k], Rgb(mean + noise(random))});
+    film.add(pass, probes);
+  }
+  const ErrorEstimate estimate = film.error_estimate(false);
+  // 4 standard errors: noise of 0.1 in 30 squares and 40 passes, and of 0.3 in 38,400 probes.
+  EXPECT_NEAR(estimate.bias, 0.1, 4 * std::hypot(0.1 / std::sqrt(30 * 40), 0.3 / std::sqrt(38400)));
+  EXPECT_GT(estimate.bias_margin, 0.002);
+  EXPECT_LT(estimate.bias_margin, 0.02);
+  EXPECT_NEAR(estimate.bias_mrse, std::pow(0.1 / 1.11, 2), 0.0015);
+  EXPECT_GT(estimate.high, estimate.mrse);
+  EXPECT_LT(estimate.low, estimate.mrse);
+  EXPECT_NEAR(estimate.mrse, estimate.noise + estimate.bias_mrse, 1e-4);
+
+  const ErrorEstimate without = film.error_estimate(true);
+  EXPECT_EQ(without.bias, 0);
+  EXPECT_EQ(without.mrse, without.noise);
+}
+
+TEST(ErrorEstimate, IsUnknownBeforeThereIsASpread) {
+  std::mt19937 random(5);
+  Film film(width, height);
+  EXPECT_TRUE(std::isinf(film.error_estimate(true).mrse));
+  for (int i = 1; i <= 4; ++i) {
+    film.add(noisy_pass(1, 0.1, random));
+    const ErrorEstimate estimate = film.error_estimate(false);
+    EXPECT_EQ(std::isfinite(estimate.mrse), i > 1);
+    EXPECT_EQ(std::isfinite(estimate.low), i > 3);
+    EXPECT_TRUE(std::isnan(estimate.bias)) << "nothing was probed";
+  }
+  // No noise, no error.
+  Film constant(width, height);
+  PassImage pass;
+  pass.resize(width, height);
+  for (int i = 0; i < 20; ++i)
+    constant.add(pass);
+  EXPECT_EQ(constant.error_estimate(true).high, 0);
+}
+
+} // namespace
+} // namespace vdbeam

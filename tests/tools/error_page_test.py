@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""The page of tools/error_vs_time.py in a real browser: it loads without errors, the slider and the mouse
+move the border between the images, the images can be chosen."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from fake_renderer import install
+from web_driver import Browser, missing_programs
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class ErrorPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        folder = Path(temporary.name)
+        for name in ("cloud", "smoke"):
+            (folder / f"{name}.toml").write_text(f"# {name}\n", encoding="utf-8")
+        subprocess.run([ROOT / "tools/error_vs_time.py", "--binary", install(folder), "--output",
+                        folder / "out", "--seeds", "1-2", "--scenes", folder / "cloud.toml",
+                        folder / "smoke.toml"], check=True, stdout=subprocess.DEVNULL)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+        cls.url = (folder / "out/index.html").as_uri()
+
+    def setUp(self):
+        self.browser.open(self.url)
+
+    def value(self, expression):
+        return self.browser.run(f"return {expression}")
+
+    def border(self):
+        """Where the images of the first scene meet, in percent, from what is shown."""
+        return self.value("""(() => {
+            const line = document.querySelector(".compare .line").getBoundingClientRect(),
+                  box = document.querySelector(".compare").getBoundingClientRect();
+            return 100 * ((line.left + line.right) / 2 - box.left) / box.width; })()""")
+
+    def test_loads_everything_without_errors(self):
+        self.assertEqual(self.value("document.querySelectorAll('section').length"), 2)
+        self.assertEqual(self.value("[...document.images].filter(i => !i.complete || "
+                                    "i.naturalWidth === 0).length"), 0)
+        self.assertEqual(self.value("document.querySelectorAll('section figure').length"), 6)
+        self.assertEqual(self.value("document.querySelectorAll('table tbody tr').length"), 6)
+        # Nothing comes from elsewhere, and nothing hangs over the edge.
+        self.assertEqual(self.value("performance.getEntriesByType('resource')"
+                                    ".filter(r => !r.name.startsWith('data:')).length"), 0)
+        self.assertTrue(self.value("document.documentElement.scrollWidth <= innerWidth"))
+        self.assertEqual(self.browser.console_errors(), [])
+
+    def test_slider_moves_the_border(self):
+        self.assertAlmostEqual(self.border(), 50, delta=1)
+        slider = "section input[type=range]"
+        width = self.value(f"document.querySelector('{slider}').getBoundingClientRect().width")
+        self.browser.drag(slider, (0, 0), (int(width / 4), 0))
+        moved = float(self.value(f"document.querySelector('{slider}').value"))
+        self.assertGreater(moved, 60)
+        self.assertAlmostEqual(self.border(), moved, delta=1)
+        clip = self.value("getComputedStyle(document.querySelector('.compare .left')).clipPath")
+        self.assertIn(f"{100 - moved:g}"[:4], clip)
+        # The other scene keeps its own.
+        self.assertEqual(self.value(f"document.querySelectorAll('{slider}')[1].value"), "50")
+        self.assertEqual(self.browser.console_errors(), [])
+
+    def test_mouse_on_the_images_moves_the_border(self):
+        width = self.value("document.querySelector('.compare').getBoundingClientRect().width")
+        self.browser.drag(".compare", (0, 0), (int(-0.3 * width), 0))
+        self.assertAlmostEqual(self.border(), 20, delta=1)
+
+    def test_pairs_of_images_change(self):
+        def shown():
+            return self.value("['.left', '.right'].map(s => "
+                              "document.querySelector('.compare ' + s).src)")
+
+        first = shown()
+        self.assertNotEqual(first[0], first[1])
+        captions = {self.value("document.querySelector('.caption').textContent")}
+        seen = {first[0]}
+        for estimator in (2, 3):
+            self.browser.click(f".choose-left option:nth-child({estimator})")
+            left, right = shown()
+            self.assertNotIn(left, seen)
+            self.assertEqual(right, first[1])
+            seen.add(left)
+            captions.add(self.value("document.querySelector('.caption').textContent"))
+        self.assertEqual(len(captions), 3)
+        self.browser.click(".choose-right option:nth-child(1)")
+        self.assertEqual(shown()[1], first[0])
+        self.assertEqual(self.browser.console_errors(), [])
+
+
+if __name__ == "__main__":
+    if missing_programs():
+        print(f"skipped: {' and '.join(missing_programs())} missing; install chromium and "
+              "chromium-driver")
+        sys.exit(77)
+    unittest.main()

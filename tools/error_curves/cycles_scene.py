@@ -1,0 +1,131 @@
+"""Builds a vdbeam scene in Blender and renders it with Cycles; run by Blender itself:
+
+  blender --background --factory-startup --python cycles_scene.py -- SETTINGS.json
+
+SETTINGS.json: `settings` of a vdbeam report, `image` (EXR to write), `seconds`, `threads`, `seed`,
+`step_rate`, `half_voxels` (half a voxel of each volume's grid in world units), `result` (JSON to write).
+
+What has to be minded (Blender 3.4):
+ - it draws voxel i at i + 1/2 where OpenVDB, and vdbeam, put it at i;
+ - it marches with one jittered offset: a step as long as a voxel is too bright where voxels are optically
+   thick, hence step_rate;
+ - a sun's strength is the irradiance on a plane that faces it, a world's strength is radiance;
+ - paths end after 4 bounces unless told otherwise; pixels are filtered unless told otherwise.
+"""
+
+import json
+import sys
+import time
+
+import bpy
+from mathutils import Matrix, Vector
+
+
+def look_at(camera):
+    position, target = Vector(camera["position"]), Vector(camera["look_at"])
+    back = (position - target).normalized()
+    right = Vector(camera["up"]).cross(back).normalized()
+    up = back.cross(right)
+    return Matrix(((right.x, up.x, back.x, position.x), (right.y, up.y, back.y, position.y),
+                   (right.z, up.z, back.z, position.z), (0, 0, 0, 1)))
+
+
+def add_camera(settings):
+    from math import radians
+
+    data = bpy.data.cameras.new("camera")
+    data.sensor_fit = "VERTICAL"
+    data.angle = radians(settings["camera"]["fov"])
+    data.clip_start, data.clip_end = 1e-3, 1e6
+    camera = bpy.data.objects.new("camera", data)
+    camera.matrix_world = look_at(settings["camera"])
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+
+
+def add_volume(volume, half_voxel):
+    data = bpy.data.volumes.new("volume")
+    data.filepath = volume["file"]
+    material = bpy.data.materials.new("medium")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    medium = tree.nodes.new("ShaderNodeVolumePrincipled")
+    medium.inputs["Color"].default_value = (*volume["albedo"], 1)
+    medium.inputs["Absorption Color"].default_value = (0, 0, 0, 1)  # what does not scatter is lost
+    medium.inputs["Anisotropy"].default_value = volume["phase"].get("g") or 0
+    # The node multiplies its density by the attribute of that name.
+    medium.inputs["Density"].default_value = volume["extinction"]
+    medium.inputs["Density Attribute"].default_value = volume["density"]
+    tree.links.new(medium.outputs["Volume"], output.inputs["Volume"])
+    data.materials.append(material)
+    place = bpy.data.objects.new("volume", data)
+    place.location = [-h for h in half_voxel]
+    bpy.context.scene.collection.objects.link(place)
+
+
+def add_light(light):
+    scene = bpy.context.scene
+    if light["type"] == "environment":
+        world = bpy.data.worlds.new("world")
+        world.use_nodes = True
+        background = world.node_tree.nodes["Background"]
+        background.inputs["Color"].default_value = (*light["radiance"], 1)
+        background.inputs["Strength"].default_value = 1
+        scene.world = world
+        return
+    data = bpy.data.lights.new("sun", "SUN")
+    data.color = [c / max(light["irradiance"]) for c in light["irradiance"]]
+    data.energy = max(light["irradiance"])
+    data.angle = 0
+    sun = bpy.data.objects.new("sun", data)
+    sun.rotation_euler = Vector(light["direction"]).to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(sun)
+
+
+def set_up_render(job):
+    scene = bpy.context.scene
+    image = job["settings"]["image"]
+    scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y = image["width"], image["height"]
+    scene.render.resolution_percentage = 100
+    scene.render.threads_mode = "FIXED"
+    scene.render.threads = job["threads"]
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.seed = job["seed"]
+    cycles.samples = 1 << 20
+    cycles.time_limit = job["seconds"]
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.pixel_filter_type = "BOX"
+    cycles.filter_width = 1
+    cycles.max_bounces = cycles.volume_bounces = 1024
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    cycles.volume_step_rate = job["step_rate"]
+    cycles.volume_max_steps = 65536
+    cycles.use_auto_tile = False
+    output = scene.render.image_settings
+    output.file_format, output.color_depth, output.exr_codec = "OPEN_EXR", "32", "ZIP"
+    scene.render.filepath = job["image"]
+
+
+def main():
+    with open(sys.argv[sys.argv.index("--") + 1], encoding="utf-8") as file:
+        job = json.load(file)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    bpy.context.scene.world = None
+    add_camera(job["settings"])
+    for volume, half_voxel in zip(job["settings"]["volume"], job["half_voxels"]):
+        add_volume(volume, half_voxel)
+    for light in job["settings"]["light"]:
+        add_light(light)
+    set_up_render(job)
+    start = time.monotonic()
+    bpy.ops.render.render(write_still=True)
+    with open(job["result"], "w", encoding="utf-8") as file:
+        json.dump({"seconds": time.monotonic() - start, "version": bpy.app.version_string}, file)
+
+
+main()
