@@ -63,7 +63,7 @@ def read_rgb(path):
 
 
 def _decode(data):
-    if data[:4] != b"\x76\x2f\x31\x01" or data[5]:
+    if data[:4] != b"\x76\x2f\x31\x01" or data[5] & ~4:  # 4: names may be long
         raise ValueError("not a plain EXR of scanlines")
     attributes, position = _attributes(data)
     if attributes["dataWindow"] != attributes["displayWindow"]:
