@@ -36,7 +36,10 @@ std::string version_text() {
   return text;
 }
 
-int fail(const std::string& line, ExitCode code) {
+/// One line on stderr, whatever a library or a damaged file put in it.
+int fail(std::string line, ExitCode code) {
+  for (char& c : line)
+    c = c == '\n' || c == '\r' || c == '\v' || c == '\f' ? ' ' : c;
   std::fflush(stdout);
   fmt::print(stderr, "{}\n", line);
   return static_cast<int>(code);

@@ -23,7 +23,10 @@ struct HdrHeader {
   bool flip_x = false, flip_y = false;
 };
 
-[[noreturn]] void damaged(const std::string& path, const std::string& reason) {
+/// The reason may quote the file, whose control characters would break the line.
+[[noreturn]] void damaged(const std::string& path, std::string reason) {
+  for (char& c : reason)
+    c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   throw InputError(fmt::format("{}: not a readable Radiance picture: {}", path, reason));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace vdbeam {
 
 namespace {
@@ -12,12 +14,25 @@ constexpr double deepest_for_photons = 5000;
 constexpr double deepest_for_positions = 2e6;
 /// Mean cosine of a lobe from which on few photons come from where it looks.
 constexpr double narrowest_lobe = 0.98;
+/// Thickness of the medium, as a share of its width, under which kernels reach through it.
+constexpr double thinnest_sheet = 0.02;
 
 double deepest(const World& world) {
   double depth = 0;
   for (const Volume& volume : world.medium.volumes)
     depth = std::max(depth, static_cast<double>(volume.extinction * volume.field.maximum()));
   return depth * 2 * static_cast<double>(world.region.radius);
+}
+
+/// Shortest by longest edge of the flattest box around something that is not empty; 1: a cube.
+double flattest(const World& world) {
+  float ratio = 1;
+  for (const OrientedBox& box : world.region.boxes) {
+    const float a = length(box.edges[0]), b = length(box.edges[1]), c = length(box.edges[2]);
+    if (const float longest = std::max({a, b, c}); longest > 0)
+      ratio = std::min(ratio, std::min({a, b, c}) / longest);
+  }
+  return static_cast<double>(ratio);
 }
 
 double narrowest(const World& world) {
@@ -49,6 +64,12 @@ std::vector<std::string> limit_notes(const Scene& scene, const World& world,
     notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
                                 "from where it looks; render.estimator = \"path\" has less noise",
                                 narrowest(world)));
+  if (const double sheet = flattest(world); sheet < thinnest_sheet)
+    notes.push_back(fmt::format("a medium is a sheet {:.2g} times as thick as it is wide: seen "
+                                "aslant, kernels reach through it and darken it until passes or "
+                                "a smaller render.neighbours make them small; render.estimator = "
+                                "\"path\" has no such limit",
+                                sheet));
   const double across = 2 * static_cast<double>(world.region.radius) / world.space.scale;
   if (scene.render.kernel == KernelRadius::fixed && scene.render.radius > 0.5 * across)
     notes.push_back(fmt::format("render.radius = {:.3g} is wide for a medium {:.3g} across: the "

@@ -115,6 +115,18 @@ TEST(Hdr, MalformedFilesAreInputErrors) {
   }
 }
 
+TEST(Hdr, MessagesQuoteInOneLine) {
+  TempFolder folder;
+  write_bytes(folder.file("a.hdr"), "#?RADIANCE\nFORMAT=62\rbit\x01\n\n-Y 1 +X 1\nabcd");
+  try {
+    read_image(folder.file("a.hdr"));
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    const std::string line = error.what();
+    EXPECT_EQ(line.find_first_of("\r\n\x01"), line.npos) << line;
+  }
+}
+
 TEST(Hdr, MutatedFilesNeverCrash) {
   TempFolder folder;
   std::string bytes = header("-Y 4 +X 20");

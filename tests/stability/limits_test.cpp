@@ -106,6 +106,17 @@ TEST(Limits, KernelWiderThanTheMediumIsNoted) {
   EXPECT_TRUE(noted(scene, "render.radius"));
 }
 
+TEST(Limits, SheetsAreNoted) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  scene.render.passes = 1;
+  EXPECT_FALSE(noted(scene, "sheet"));
+  scene.volumes[0].transform[5] = 0.001; // y
+  EXPECT_TRUE(noted(scene, "sheet"));
+  scene.render.estimator = EstimatorType::path;
+  EXPECT_FALSE(noted(scene, "sheet"));
+}
+
 TEST(Limits, WhatPhotonsDoNotResolveIsNoted) {
   const TempFolder folder;
   Scene scene = file_scene(folder);
