@@ -6,7 +6,6 @@
 #include "estimators/profile_shading.h"
 #include "transport/distance_sampling.h"
 #include "transport/photon_tracing.h"
-#include "transport/scattering.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -16,8 +15,7 @@ namespace vdbeam {
 
 namespace {
 
-/// Weight under which Russian roulette begins.
-constexpr float roulette_below = 0.1f;
+constexpr std::size_t walks_under_way = 16;
 
 /// Walks per camera ray: where walks are short, the depth profile that they start from costs more
 /// than they do, so several share it. From the mean length of a few light paths (not followed far:
@@ -32,11 +30,18 @@ int choose_splits(const EstimatorInput& input) {
   return std::clamp(static_cast<int>(std::lround(24 / (1 + collisions))), 4, 16);
 }
 
+std::vector<bool> lights_with_shadow_rays(const LightSet& lights) {
+  std::vector<bool> result;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    result.push_back(lights[i].wants_shadow_rays());
+  return result;
+}
+
 } // namespace
 
-PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
-  for (std::size_t i = 0; i < input_.world.lights.size(); ++i)
-    shadow_rays_.push_back(input_.world.lights[i].wants_shadow_rays());
+PathEstimator::PathEstimator(const EstimatorInput& input)
+    : input_(input), shadow_rays_(lights_with_shadow_rays(input.world.lights)),
+      tracer_(input.world, shadow_rays_) {
   for (const Volume& volume : input_.world.medium.volumes)
     scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
   const int samples = input_.world.settings.direct_samples;
@@ -44,68 +49,17 @@ PathEstimator::PathEstimator(const EstimatorInput& input) : input_(input) {
   splits_ = choose_splits(input);
 }
 
-struct PathEstimator::Outputs {
-  Rgb direct, indirect;
-};
-
 /// What a thread keeps from pixel to pixel.
 struct PathEstimator::Scratch {
   DepthProfile profile;
+  std::vector<PathWalk> walks;
   RenderStatistics counts;
 };
 
-struct PathEstimator::State {
-  Ray ray;
-  Rgb throughput{1, 1, 1};
-  int bounces = 0;
-  float phase_pdf = 0; ///< of ray.direction
-  Vec3f scatter_point;
-};
-
-/// Light that a ray meets where it leaves the scene, weighted against next-event estimation
-/// (balance heuristic, Veach and Guibas 1995).
-Rgb PathEstimator::escape(const State& state) const {
-  Rgb sum;
-  for (std::size_t i = 0; i < input_.world.lights.size(); ++i) {
-    const Light& light = input_.world.lights[i];
-    if (light.is_delta())
-      continue;
-    // Single scattering of these is complete already (direct_light draws both strategies).
-    if (state.bounces == 1 && light.wants_shadow_rays())
-      continue;
-    float weight = 1;
-    if (light.wants_shadow_rays())
-      weight = state.phase_pdf /
-               (state.phase_pdf + light.incident_pdf(state.scatter_point, state.ray.direction));
-    sum += light.escaped_radiance(state.ray.direction) * weight;
-  }
-  return sum * state.throughput;
-}
-
-/// Next-event estimation at state.scatter_point, from all lights that want it.
-Rgb PathEstimator::light(const State& state, const PhaseFunction& phase, Rng& rng) const {
-  Rgb sum;
-  for (std::size_t i = 0; i < input_.world.lights.size(); ++i) {
-    const Light& light = input_.world.lights[i];
-    if (!light.wants_shadow_rays())
-      continue;
-    const float u = rng.uniform(), v = rng.uniform();
-    const IncidentSample sample = light.sample_incident(state.scatter_point, u, v);
-    if (max_component(sample.value) <= 0)
-      continue;
-    const float p = phase.evaluate(dot(state.ray.direction, sample.wi));
-    const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    const Ray shadow{state.scatter_point, sample.wi};
-    sum += sample.value * (p * weight) *
-           ratio_transmittance(input_.world.medium, shadow, sample.distance, rng);
-  }
-  return sum * state.throughput;
-}
-
-/// Scatters at a point that was drawn from the camera ray's profile. Its light by shadow rays is
-/// estimated apart (direct_light), so the walk begins with what comes after.
-void PathEstimator::scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
-                                  Outputs& out) const {
+/// The walk of a path that scatters first at a point that was drawn from the camera ray's profile.
+void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& point,
+                               std::size_t target, Rng& rng, const Rng& walk_rng,
+                               std::vector<PathWalk>& walks) const {
   const Medium& medium = input_.world.medium;
   // Which volume scatters, in proportion to its share.
   float total = 0;
@@ -118,52 +72,18 @@ void PathEstimator::scatter_first(const CameraRay& camera, const ScatterPoint& p
   while (left >= 0 && volume + 1 < medium.volumes.size())
     left -= mean_component((*point.weights)[++volume]);
   const Rgb& weight = (*point.weights)[volume];
-  if (!(mean_component(weight) > 0))
-    return;
-  State state;
-  state.ray = {point.position, camera.ray.direction};
-  state.throughput = weight * (total / mean_component(weight));
-  turn(state, medium.phases[medium.volumes[volume].group], rng);
-  walk(state, rng, out);
-}
-
-void PathEstimator::turn(State& state, const PhaseFunction& phase, Rng& rng) const {
-  const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-  const Vec3f direction = phase.sample(state.ray.direction, u_lobe, u, v);
-  state.phase_pdf = phase.evaluate(dot(state.ray.direction, direction));
-  state.scatter_point = state.ray.origin;
-  state.ray.direction = direction;
-  ++state.bounces;
-}
-
-/// The walk after the first scattering, until it leaves or ends.
-void PathEstimator::walk(State& state, Rng& rng, Outputs& out) const {
-  const World& world = input_.world;
-  LengthRoulette length;
-  while (!input_.stopped()) {
-    const Collision hit = next_scattering(world.medium, state.ray, state.throughput, rng);
-    if (hit.volume == nullptr) {
-      (state.bounces == 1 ? out.direct : out.indirect) += escape(state);
-      return;
-    }
-    if (world.settings.max_bounces && state.bounces >= *world.settings.max_bounces)
-      return;
-    state.throughput *= hit.volume->albedo;
-    if (!survive_roulette(roulette_below, state.throughput, rng) ||
-        !length.survive(state.throughput, rng))
-      return;
-    const PhaseFunction& phase = world.medium.phases[hit.volume->group];
-    state.ray.origin = state.scatter_point = state.ray.at(hit.t);
-    out.indirect += light(state, phase, rng);
-    turn(state, phase, rng);
-  }
+  if (mean_component(weight) > 0)
+    walks.push_back(tracer_.start(target, walk_rng, {point.position, camera.ray.direction},
+                                  weight * (total / mean_component(weight)),
+                                  medium.phases[medium.volumes[volume].group]));
 }
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
-/// rest by walks from points drawn from it.
-void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, Rng rng, std::size_t target,
-                          PassImage& image) const {
+/// rest by walks from points drawn from it, which are left under way.
+void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+                          Scratch& scratch, std::size_t target, PassImage& image) const {
   const World& world = input_.world;
+  Rng rng(key, RngStage::path, pixel);
   DepthProfile& profile = scratch.profile;
   profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
                 static_cast<float>(world.settings.cutoff));
@@ -172,20 +92,16 @@ void PathEstimator::trace(const CameraRay& camera, Scratch& scratch, Rng rng, st
   if (profile.empty() || !scatters_ ||
       (world.settings.max_bounces && *world.settings.max_bounces < 1))
     return;
-  Outputs out;
-  out.direct = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_, rng,
-                            scratch.counts.shadow_rays);
+  image.direct[target] = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_,
+                                      rng, scratch.counts.shadow_rays);
   DistanceSampler distances(world.medium, camera.ray, profile);
-  const float share = 1 / static_cast<float>(splits_);
-  Outputs walks;
   for (int i = 0; i < splits_; ++i) {
-    const float u = (static_cast<float>(i) + rng.uniform()) * share;
+    const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(splits_);
     const int c = world.medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
+    const Rng walk_rng(key, RngStage::walk, pixel * static_cast<std::size_t>(splits_) + i);
     if (distances.opacity(c) > 0)
-      scatter_first(camera, distances.sample(u, c), rng, walks);
+      begin_walk(camera, distances.sample(u, c), target, rng, walk_rng, scratch.walks);
   }
-  image.direct[target] = out.direct + walks.direct * share;
-  image.indirect[target] = walks.indirect * share;
   scratch.counts.camera_walks += static_cast<std::uint64_t>(splits_);
 }
 
@@ -201,8 +117,30 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   Rng jitter(key, RngStage::camera, pixel);
   const double x = static_cast<double>(pixel % width) + static_cast<double>(jitter.uniform());
   const double y = static_cast<double>(pixel / width) + static_cast<double>(jitter.uniform());
-  trace(camera_ray(input_.world, camera, x, y), scratch, Rng(key, RngStage::path, pixel), target,
-        image);
+  trace(camera_ray(input_.world, camera, x, y), key, pixel, scratch, target, image);
+  take_turns(scratch.walks, walks_under_way, image);
+}
+
+/// Lets the walks take turns until no more than `most` are under way. Walks of several pixels:
+/// while one waits for its voxels to come from memory, others compute.
+void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
+                               PassImage& image) const {
+  const float share = 1 / static_cast<float>(splits_);
+  while (walks.size() > most && !input_.stopped())
+    for (std::size_t i = 0; i < walks.size();) {
+      PathWalk& walk = walks[i];
+      if (tracer_.step(walk)) {
+        ++i;
+        continue;
+      }
+      image.direct[walk.target] += walk.direct * share;
+      image.indirect[walk.target] += walk.indirect * share;
+      if (&walk != &walks.back())
+        walk = std::move(walks.back());
+      walks.pop_back();
+    }
+  if (most == 0)
+    walks.clear(); // where the render was stopped
 }
 
 std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
@@ -210,10 +148,15 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
   PassImage image;
   image.resize(static_cast<int>(pixels.size()), 1);
   tbb::enumerable_thread_specific<Scratch> scratches;
-  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
-    if (!input_.stopped())
-      render_pixel(pass_key, pixels[i], scratches.local(), i, image);
-  });
+  // Ranges that do not depend on the threads, so that sums do not either.
+  const tbb::blocked_range<std::size_t> all(0, pixels.size(), walks_under_way);
+  const auto render = [&](const tbb::blocked_range<std::size_t>& range) {
+    Scratch& scratch = scratches.local();
+    for (std::size_t i = range.begin(); i < range.end() && !input_.stopped(); ++i)
+      render_pixel(pass_key, pixels[i], scratch, i, image);
+    take_turns(scratch.walks, 0, image);
+  };
+  tbb::parallel_for(all, render, tbb::simple_partitioner());
   std::vector<Rgb> result;
   for (std::size_t i = 0; i < pixels.size(); ++i)
     result.push_back(image.direct[i] + image.indirect[i] + image.background[i]);
@@ -233,6 +176,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
         render_pixel(pass_key, pixel, scratch, pixel, image);
       }
+    take_turns(scratch.walks, 0, image);
   });
   for (const Scratch& scratch : scratches) {
     statistics.depth_profiles += scratch.counts.depth_profiles;

@@ -2,15 +2,13 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
-#include "math/rng.h"
+#include "estimators/path_walk.h"
 #include "transport/distance_sampling.h"
 
 namespace vdbeam {
 
 /// Unbiased volumetric path tracing: the camera ray scatters by its depth profile (forced,
-/// stratified), later flights by delta tracking (spectral tracking where the extinction is
-/// chromatic, Kutz et al. 2017), next-event estimation at every collision, multiple importance
-/// sampling for lights that a scattered ray can meet. The truth that the others are held against.
+/// stratified, several times), then WalkTracer goes on. The truth that the others are held against.
 class PathEstimator : public Estimator {
 public:
   explicit PathEstimator(const EstimatorInput& input);
@@ -21,27 +19,23 @@ public:
   std::vector<Rgb> radiance(int pass, const std::vector<std::size_t>& pixels) const;
 
 private:
-  struct Outputs;
-  struct State;
   struct Scratch;
 
   RngKey key(int pass) const;
   void render_pixel(const RngKey& key, std::size_t pixel, Scratch& scratch, std::size_t target,
                     PassImage& image) const;
-  void trace(const CameraRay& camera, Scratch& scratch, Rng rng, std::size_t target,
-             PassImage& image) const;
-  void scatter_first(const CameraRay& camera, const ScatterPoint& point, Rng& rng,
-                     Outputs& out) const;
-  void turn(State& state, const PhaseFunction& phase, Rng& rng) const;
-  void walk(State& state, Rng& rng, Outputs& out) const;
-  Rgb escape(const State& state) const;
-  Rgb light(const State& state, const PhaseFunction& phase, Rng& rng) const;
+  void trace(const CameraRay& camera, const RngKey& key, std::size_t pixel, Scratch& scratch,
+             std::size_t target, PassImage& image) const;
+  void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
+                  const Rng& walk_rng, std::vector<PathWalk>& walks) const;
+  void take_turns(std::vector<PathWalk>& walks, std::size_t most, PassImage& image) const;
 
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
-  bool scatters_ = false;         ///< some light may be scattered at all
-  int direct_samples_ = 1;        ///< shadow-ray samples per camera ray
-  int splits_ = 1;                ///< walks per camera ray
+  WalkTracer tracer_;
+  bool scatters_ = false;  ///< some light may be scattered at all
+  int direct_samples_ = 1; ///< shadow-ray samples per camera ray
+  int splits_ = 1;         ///< walks per camera ray
 };
 
 } // namespace vdbeam

@@ -27,14 +27,17 @@ public:
       enter_cell();
   }
 
-  /// The next tentative collision; t is infinity where the ray leaves first.
-  Collision next(Rng& rng) {
+  /// Goes to the next tentative collision; false where the ray leaves first. The density there is
+  /// only asked for: memory needs longer to deliver it than all the rest takes, and a caller with
+  /// several walks can go on with another one meanwhile.
+  bool advance(Rng& rng) {
     float tau = -std::log(rng.uniform_positive());
     while (!walk_.done()) {
       const float available = majorant_ * (walk_.t_exit() - t_);
       if (tau < available) {
         t_ = std::min(t_ + tau / majorant_, walk_.t_exit());
-        return collide();
+        locate();
+        return true;
       }
       tau -= available;
       t_ = walk_.t_exit();
@@ -42,8 +45,18 @@ public:
       if (!walk_.done())
         enter_cell();
     }
-    return {};
+    return false;
   }
+
+  /// The tentative collision to which advance() went.
+  Collision collision() const {
+    const float density =
+        cube_ ? sample_cube(cube_, offset_.x, offset_.y, offset_.z) : uniform_density_;
+    return {t_, std::min(density * volume_->extinction, majorant_), majorant_, volume_};
+  }
+
+  /// The next tentative collision; t is infinity where the ray leaves first.
+  Collision next(Rng& rng) { return advance(rng) ? collision() : Collision(); }
 
 private:
   void enter_cell() {
@@ -51,19 +64,29 @@ private:
     majorant_ = volume_->extinction * volume_->majorants[volume_->field.cell_offset(c.x, c.y, c.z)];
   }
 
-  Collision collide() const {
+  /// Finds the lattice cube of the point.
+  void locate() {
     const Vec3<int>& c = walk_.cell();
     const std::int32_t entry = volume_->field.cell(c.x, c.y, c.z);
-    float density;
-    if (entry >= 0) {
-      const Vec3f corner{static_cast<float>(8 * c.x), static_cast<float>(8 * c.y),
-                         static_cast<float>(8 * c.z)};
-      const Vec3f p = min(max(local_origin_ + local_direction_ * t_ - corner, Vec3f(0)), Vec3f(8));
-      density = sample_brick(volume_->field.brick(entry), p.x, p.y, p.z);
-    } else {
-      density = volume_->field.uniform_value(entry);
+    if (entry < 0) {
+      cube_ = nullptr;
+      uniform_density_ = volume_->field.uniform_value(entry);
+      return;
     }
-    return {t_, std::min(density * volume_->extinction, majorant_), majorant_, volume_};
+    constexpr int width = DensityField::brick_width;
+    cube_ = volume_->field.brick(entry);
+    constexpr int strides[3] = {width * width, width, 1};
+    for (int a = 0; a < 3; ++a) {
+      const float corner = static_cast<float>(8 * c[a]);
+      const float x = std::clamp(local_origin_[a] + local_direction_[a] * t_ - corner, 0.0f, 8.0f);
+      const int i = std::min(static_cast<int>(x), 7);
+      cube_ += i * strides[a];
+      offset_[a] = x - static_cast<float>(i);
+    }
+    __builtin_prefetch(cube_);
+    __builtin_prefetch(cube_ + width + 1);
+    __builtin_prefetch(cube_ + width * width);
+    __builtin_prefetch(cube_ + width * width + width + 1);
   }
 
   const Volume* volume_;
@@ -71,6 +94,10 @@ private:
   CellWalk walk_;
   float t_;
   float majorant_ = 0;
+  const float* cube_ =
+      nullptr;   ///< lower corner of the point's lattice cube; null in a uniform cell
+  Vec3f offset_; ///< of the point in that cube
+  float uniform_density_ = 0;
 };
 
 /// Tentative collisions of all volumes: independent Poisson processes superpose, so the nearest of
@@ -87,10 +114,13 @@ public:
     }
   }
 
-  Collision next(Rng& rng) { return others_.empty() ? first_.next(rng) : next_of_several(rng); }
+  /// As VolumeTracker's.
+  bool advance(Rng& rng) { return others_.empty() ? first_.advance(rng) : advance_several(rng); }
+  Collision collision() const { return others_.empty() ? first_.collision() : pending_[nearest_]; }
+  Collision next(Rng& rng) { return advance(rng) ? collision() : Collision(); }
 
 private:
-  Collision next_of_several(Rng& rng) {
+  bool advance_several(Rng& rng) {
     if (pending_.empty()) {
       pending_.push_back(first_.next(rng));
       for (VolumeTracker& other : others_)
@@ -102,7 +132,7 @@ private:
     for (std::size_t i = 1; i < pending_.size(); ++i)
       if (pending_[i].t < pending_[nearest_].t)
         nearest_ = i;
-    return pending_[nearest_];
+    return pending_[nearest_].volume != nullptr;
   }
 
   VolumeTracker first_;

@@ -50,13 +50,18 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
     linear_sigma += volume.channel_scale * (length > 0 ? piece / length : sigma);
     weights_[v] = volume.albedo * volume.channel_scale * (piece > 0 ? sigma : 0);
   }
+  const int channels = medium_.chromatic ? 3 : 1;
   float pdf = 0;
-  for (int c = 0; c < 3; ++c)
+  Rgb transmittance;
+  for (int c = 0; c < channels; ++c) {
+    transmittance[c] = std::exp(-tau[c]);
     if (opacity(c) > 0)
-      pdf += linear_sigma[c] * std::exp(-linear_tau[c]) / opacity(c) / 3;
+      pdf += linear_sigma[c] * std::exp(-linear_tau[c]) / opacity(c) / static_cast<float>(channels);
+  }
+  if (!medium_.chromatic)
+    transmittance = Rgb(transmittance.x);
   for (Rgb& weight : weights_)
-    for (int c = 0; c < 3; ++c)
-      weight[c] = pdf > 0 ? weight[c] * std::exp(-tau[c]) / pdf : 0;
+    weight *= pdf > 0 ? transmittance / pdf : Rgb(0);
   return {t, pdf, ray_.at(t), &weights_};
 }
 

@@ -20,23 +20,16 @@ Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end) {
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng) {
-  if (medium.empty())
-    return Rgb(1);
+bool RatioTracking::attenuate(Rng& rng) {
   constexpr float roulette_below = 0.1f;
-  MediumTracker tracker(medium, ray, 0, t_end);
-  Rgb weight(1);
-  for (Collision hit = tracker.next(rng); hit.t < t_end; hit = tracker.next(rng)) {
-    const float ratio = hit.sigma_t / hit.majorant;
-    weight *= Rgb(1) - hit.volume->channel_scale * ratio;
-    const float largest = max_component(weight);
-    if (largest < roulette_below) {
-      if (rng.uniform() * roulette_below >= largest)
-        return Rgb(0);
-      weight *= roulette_below / largest;
-    }
-  }
-  return weight;
+  const Collision hit = tracker_.collision();
+  weight_ *= Rgb(1) - hit.volume->channel_scale * (hit.sigma_t / hit.majorant);
+  const float largest = max_component(weight_);
+  if (largest >= roulette_below)
+    return true;
+  const bool survives = rng.uniform() * roulette_below < largest;
+  weight_ = survives ? weight_ * (roulette_below / largest) : Rgb(0);
+  return survives;
 }
 
 } // namespace vdbeam

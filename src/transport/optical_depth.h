@@ -1,7 +1,6 @@
 #pragma once
 
-#include "math/rng.h"
-#include "transport/medium.h"
+#include "transport/delta_tracking.h"
 
 namespace vdbeam {
 
@@ -132,7 +131,21 @@ void walk_segments(const Volume& volume, const Ray& ray, float t_begin, float t_
 Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end);
 
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
-/// little is left.
-Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng);
+/// little is left, a collision at a time. Requires a medium that is not empty.
+class RatioTracking {
+public:
+  RatioTracking(const Medium& medium, const Ray& ray, float t_end)
+      : tracker_(medium, ray, 0, t_end) {}
+
+  /// Goes to the next tentative collision; false where there is none and the estimate is complete.
+  bool advance(Rng& rng) { return tracker_.advance(rng); }
+  /// Passes that collision; false where nothing is left.
+  bool attenuate(Rng& rng);
+  const Rgb& transmittance() const { return weight_; }
+
+private:
+  MediumTracker tracker_;
+  Rgb weight_{1, 1, 1};
+};
 
 } // namespace vdbeam

@@ -5,6 +5,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
+#include <optional>
+
 namespace vdbeam {
 
 namespace {
@@ -33,34 +36,43 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
   return first;
 }
 
+/// A light path under way: it stands at the tentative collision that its tracker has gone to.
+struct LightPath {
+  Rng rng;
+  Rgb flux;
+  Ray ray;
+  std::size_t light;
+  int bounces = 0;
+  LengthRoulette length;
+  MediumTracker tracker;
+};
+
 /// Traces one chunk of paths into one list.
 class PathTracer {
 public:
   PathTracer(const World& world, const PhotonPassSettings& settings)
       : world_(world), settings_(settings) {}
 
-  /// Path `number` of the pass, the `index`-th of `light_paths` from its light.
-  void trace(std::uint64_t number, std::size_t light, std::uint64_t index,
-             std::uint64_t light_paths) {
-    Rng rng(settings_.key, RngStage::photon, number);
-    const double place = (static_cast<double>(index) + static_cast<double>(rng.uniform())) /
-                         static_cast<double>(light_paths);
-    const EmittedPhoton photon = world_.lights[light].emit(place, rng);
-    Rgb flux = photon.flux / static_cast<float>(light_paths);
-    if (!(max_component(flux) > 0))
-      return;
-    Ray ray = photon.ray;
-    LengthRoulette length;
-    for (int bounces = 0; !stopped(); ++bounces) {
-      if (settings_.max_bounces && bounces >= *settings_.max_bounces)
-        return;
-      const bool storable = bounces > 0 || !settings_.skip_first_flight[light];
-      const Collision hit = fly(ray, flux, storable, length, rng);
-      if (hit.volume == nullptr || !survive_scattering(hit.volume->albedo, flux, rng))
-        return;
-      const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-      const PhaseFunction& phase = world_.medium.phases[hit.volume->group];
-      ray = {ray.at(hit.t), phase.sample(ray.direction, u_lobe, u, v)};
+  /// The paths `begin` to `end` of a pass, of which light i sends first[i] to first[i + 1]. Several
+  /// are under way at a time and take turns at every collision, so that one path computes while the
+  /// voxels of the others are on their way from memory.
+  void trace(std::uint64_t begin, std::uint64_t end, const std::vector<std::uint64_t>& first) {
+    constexpr std::size_t paths_under_way = 6;
+    std::array<std::optional<LightPath>, paths_under_way> paths;
+    std::size_t light = 0;
+    std::uint64_t next = begin;
+    for (bool any = true; any && !stopped();) {
+      any = false;
+      for (std::optional<LightPath>& path : paths) {
+        if (path && !collide(*path))
+          path.reset();
+        for (; !path && next < end; ++next) {
+          while (next >= first[light + 1])
+            ++light;
+          emit(path, next, light, next - first[light], first[light + 1] - first[light]);
+        }
+        any = any || path;
+      }
     }
   }
 
@@ -70,25 +82,52 @@ public:
 private:
   bool stopped() const { return settings_.stop && settings_.stop->load(std::memory_order_relaxed); }
 
-  /// To the next real collision, storing on the way.
-  Collision fly(const Ray& ray, Rgb& flux, bool storable, LengthRoulette& length, Rng& rng) {
+  bool may_store(const LightPath& path) const {
+    return path.bounces > 0 || !settings_.skip_first_flight[path.light];
+  }
+
+  /// Path `number` of the pass, the `index`-th of `light_paths` from its light, up to its first
+  /// tentative collision; none where it meets nothing.
+  void emit(std::optional<LightPath>& path, std::uint64_t number, std::size_t light,
+            std::uint64_t index, std::uint64_t light_paths) const {
+    Rng rng(settings_.key, RngStage::photon, number);
+    const double place = (static_cast<double>(index) + static_cast<double>(rng.uniform())) /
+                         static_cast<double>(light_paths);
+    const EmittedPhoton photon = world_.lights[light].emit(place, rng);
+    const Rgb flux = photon.flux / static_cast<float>(light_paths);
+    if (!(max_component(flux) > 0) || (settings_.max_bounces && *settings_.max_bounces <= 0))
+      return;
+    path.emplace(rng, flux, photon.ray, light, 0, LengthRoulette(),
+                 MediumTracker(world_.medium, photon.ray, 0, infinity));
+    if (!path->tracker.advance(path->rng))
+      path.reset();
+  }
+
+  /// Stores, scatters or passes on, and goes to the next tentative collision. False where the path
+  /// has ended.
+  bool collide(LightPath& path) {
     const Medium& medium = world_.medium;
-    MediumTracker tracker(medium, ray, 0, infinity);
-    while (true) {
-      const Collision hit = tracker.next(rng);
-      if (hit.volume == nullptr)
-        return hit;
-      if (storable && settings_.store == PhotonStore::fluence)
-        store(ray, hit, flux / total_majorant(ray, hit), rng);
-      const bool real = collide_really(hit, medium.chromatic, flux, rng);
-      if (!length.survive(flux, rng))
-        return {};
-      if (!real)
-        continue;
+    const Collision hit = path.tracker.collision();
+    const bool storable = may_store(path);
+    if (storable && settings_.store == PhotonStore::fluence)
+      store(path, hit, path.flux / total_majorant(path.ray, hit));
+    const bool real = collide_really(hit, medium.chromatic, path.flux, path.rng);
+    if (!path.length.survive(path.flux, path.rng))
+      return false;
+    if (real) {
       if (storable && settings_.store == PhotonStore::scatter)
-        store(ray, hit, flux * hit.volume->albedo, rng);
-      return hit;
+        store(path, hit, path.flux * hit.volume->albedo);
+      if (!survive_scattering(hit.volume->albedo, path.flux, path.rng))
+        return false;
+      ++path.bounces;
+      if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
+        return false;
+      const float u_lobe = path.rng.uniform(), u = path.rng.uniform(), v = path.rng.uniform();
+      const PhaseFunction& phase = medium.phases[hit.volume->group];
+      path.ray = {path.ray.at(hit.t), phase.sample(path.ray.direction, u_lobe, u, v)};
+      path.tracker = MediumTracker(medium, path.ray, 0, infinity);
     }
+    return path.tracker.advance(path.rng);
   }
 
   /// Rate of tentative collisions at the point: the majorants of overlapping volumes add.
@@ -110,15 +149,15 @@ private:
     return (*settings_.keep_by_cell)[index][volume.cell_at(point)];
   }
 
-  void store(const Ray& ray, const Collision& hit, const Rgb& power, Rng& rng) {
+  void store(LightPath& path, const Collision& hit, const Rgb& power) {
     ++collisions;
-    const Vec3f point = ray.at(hit.t);
+    const Vec3f point = path.ray.at(hit.t);
     const float share = keep(*hit.volume, point);
-    if (share < 1 && rng.uniform() >= share)
+    if (share < 1 && path.rng.uniform() >= share)
       return;
     photons.position.push_back(point);
     if (settings_.directions)
-      photons.direction.push_back(ray.direction);
+      photons.direction.push_back(path.ray.direction);
     photons.power.push_back(power * settings_.factor / share);
   }
 
@@ -150,18 +189,9 @@ PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings)
   std::vector<PathTracer> tracers(chunks, PathTracer(world, settings));
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, chunks, 1),
                     [&](const tbb::blocked_range<std::uint64_t>& range) {
-                      for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
-                        if (settings.stop && settings.stop->load(std::memory_order_relaxed))
-                          return;
-                        const std::uint64_t end = std::min(paths, (chunk + 1) * paths_per_chunk);
-                        std::size_t light = 0;
-                        for (std::uint64_t path = chunk * paths_per_chunk; path < end; ++path) {
-                          while (path >= first[light + 1])
-                            ++light;
-                          tracers[chunk].trace(path, light, path - first[light],
-                                               first[light + 1] - first[light]);
-                        }
-                      }
+                      for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk)
+                        tracers[chunk].trace(chunk * paths_per_chunk,
+                                             std::min(paths, (chunk + 1) * paths_per_chunk), first);
                     });
   std::uint64_t collisions = 0;
   std::size_t stored = 0;

@@ -82,15 +82,6 @@ inline float sample_cube(const float* p, float fx, float fy, float fz) {
   return c0 + fx * (c1 - c0);
 }
 
-/// The trilinear value in a brick at cell-local coordinates, 0 <= x, y, z <= 8.
-inline float sample_brick(const float* brick, float x, float y, float z) {
-  constexpr int width = DensityField::brick_width;
-  const int i = std::min(static_cast<int>(x), 7), j = std::min(static_cast<int>(y), 7),
-            k = std::min(static_cast<int>(z), 7);
-  return sample_cube(brick + (i * width + j) * width + k, x - static_cast<float>(i),
-                     y - static_cast<float>(j), z - static_cast<float>(k));
-}
-
 inline float DensityField::sample(const Vec3f& local) const {
   if (!(local.x >= 0 && local.y >= 0 && local.z >= 0 && local.x < limit_.x && local.y < limit_.y &&
         local.z < limit_.z))
