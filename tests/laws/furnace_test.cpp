@@ -149,7 +149,7 @@ TEST_P(BeamFurnace, HasNoBiasInside) {
     MemoryScene scene = heterogeneous_medium
                             ? probe(test::closed_field(cells, noise), cells, GetParam())
                             : probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, GetParam());
-    const test::PassMeans means = test::render_passes(scene, EstimatorType::beam, 24);
+    const test::PassMeans means = test::render_passes(scene, EstimatorType::beam, 32);
     expect_one(means);
     EXPECT_LT(means.total[0].error(), GetParam().power);
   }
@@ -197,7 +197,7 @@ TEST(BeamFurnaceKernels, RimOfTheMedium) {
     scene.scene.render.photons = 20000;
     scene.scene.render.kernel = KernelRadius::fixed;
     scene.scene.render.radius = 0.05;
-    const test::PassMeans means = test::render_passes(scene, estimator, 16);
+    const test::PassMeans means = test::render_passes(scene, estimator, 24);
     expect_one(means, 0.01);
     EXPECT_LT(means.total[0].error(), 0.005);
   }

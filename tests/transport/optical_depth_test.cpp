@@ -229,6 +229,13 @@ TEST(OpticalDepth, OverlappingChromaticVolumesAdd) {
   }
 }
 
+Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng) {
+  RatioTracking tracking(medium, ray, t_end);
+  while (tracking.advance(rng) && tracking.attenuate(rng)) {
+  }
+  return tracking.transmittance();
+}
+
 TEST(RatioTracking, MeanIsTheTransmittance) {
   const Subject random(random_medium(), 6), sparse(sparse_medium(), 6);
   const Overlap overlap;
