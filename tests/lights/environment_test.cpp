@@ -187,13 +187,16 @@ TEST(EnvironmentImage, SamplesFollowTheDensity) {
     total += e;
   for (double& e : expected)
     e *= samples / total;
+  int across_edges = 0;
   Rng rng({}, RngStage::test, 7);
   for (int i = 0; i < samples; ++i) {
     const float u = rng.uniform(), v = rng.uniform();
     const IncidentSample s = made.light->sample_incident({}, u, v);
-    EXPECT_NEAR(s.pdf, made.light->incident_pdf({}, s.wi), 1e-3f * s.pdf);
+    // Where rounding takes the direction across a pixel's edge, the density is the neighbour's.
+    across_edges += std::abs(s.pdf - made.light->incident_pdf({}, s.wi)) > 1e-3f * s.pdf;
     counts[bin(s.wi)] += 1;
   }
+  EXPECT_LT(across_edges, 10); // 48 edges of 1e-6 in u + v: 5 of 100,000 at most
   EXPECT_GT(chi_squared_test(counts, expected), 1e-3);
 }
 
