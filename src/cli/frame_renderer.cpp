@@ -157,10 +157,17 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   context.output = output(loaded.frame);
   context.reference = substitute_frame(files.reference, loaded.frame);
   const bool complete = result.stopped_by != "stop";
+  std::optional<FrameError> lost_preview;
   if (complete) {
     add_metadata(result.image, loaded, result);
-    if (!files.preview.empty())
-      write_image(result.image, substitute_frame(files.preview, loaded.frame), {options_.exposure});
+    // The image comes last, for it says that the frame is done; yet no preview is worth an image.
+    try {
+      if (!files.preview.empty())
+        write_image(result.image, substitute_frame(files.preview, loaded.frame),
+                    {options_.exposure});
+    } catch (const FrameError& problem) {
+      lost_preview = problem;
+    }
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure});
     remove_checkpoint(loaded.frame);
@@ -170,6 +177,8 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   if (!files.report.empty())
     write_json(report_json(loaded.scene, result, context),
                substitute_frame(files.report, loaded.frame));
+  if (lost_preview)
+    throw *lost_preview;
 }
 
 void FrameRenderer::write_black(const LoadedFrame& loaded) const {

@@ -24,6 +24,8 @@ namespace {
     remedy = "; free some space or write elsewhere";
   else if (error == EACCES || error == EPERM || error == EROFS)
     remedy = "; write to a folder that you own";
+  else if (error == EIO || error == ESTALE || error == ETIMEDOUT)
+    remedy = "; the disk or its network mount fails: check it or write elsewhere";
   throw FrameError(fmt::format("{}: cannot be written: {}{}", path, std::strerror(error), remedy));
 }
 

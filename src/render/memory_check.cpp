@@ -1,6 +1,7 @@
 #include "render/memory_check.h"
 
 #include "scene/cgroups.h"
+#include "scene/farm_grants.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -32,8 +33,9 @@ std::string gigabytes(std::uint64_t bytes) {
 std::uint64_t granted_memory() {
   std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  if (const std::uint64_t limit = cgroup_limits().memory; limit > 0)
-    bytes = std::min(bytes, limit);
+  for (const std::uint64_t limit : {cgroup_limits().memory, farm_memory()})
+    if (limit > 0)
+      bytes = std::min(bytes, limit);
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);

@@ -4,8 +4,8 @@
 
 namespace vdbeam {
 
-/// Bytes that this machine grants the process: its memory, or less where a control group or a limit
-/// on the address space says so.
+/// Bytes that this machine grants the process: its memory, or less where a control group, the farm
+/// (SLURM_MEM_PER_NODE, SLURM_MEM_PER_CPU) or a limit on the address space says so.
 std::uint64_t granted_memory();
 
 /// Throws InputError, with what it would take and a remedy, where the photons of a pass or the

@@ -1,5 +1,6 @@
 #include "scene/cgroups.h"
 
+#include "scene/farm_grants.h"
 #include "scene/threads.h"
 #include "scene_fixture.h"
 
@@ -79,6 +80,28 @@ TEST(Threads, FarmGrantsThem) {
   unsetenv("SLURM_CPUS_PER_TASK");
   unsetenv("CUE_THREADS");
   EXPECT_GE(thread_count(settings), 1);
+}
+
+TEST(FarmMemory, IsTheJobsOnThisNode) {
+  for (const char* name : {"SLURM_MEM_PER_NODE", "SLURM_MEM_PER_CPU", "SLURM_CPUS_ON_NODE"})
+    unsetenv(name);
+  EXPECT_EQ(farm_memory(), 0u);
+  setenv("SLURM_MEM_PER_CPU", "500", 1);
+  EXPECT_EQ(farm_memory(), 0u); // of how many is not known
+  setenv("SLURM_CPUS_ON_NODE", "4", 1);
+  EXPECT_EQ(farm_memory(), 2000u << 20);
+  setenv("SLURM_MEM_PER_NODE", "0", 1); // all that the node has
+  EXPECT_EQ(farm_memory(), 2000u << 20);
+  setenv("SLURM_MEM_PER_NODE", "lots", 1);
+  EXPECT_EQ(farm_memory(), 2000u << 20);
+  setenv("SLURM_MEM_PER_NODE", "300", 1);
+  EXPECT_EQ(farm_memory(), 300u << 20);
+  setenv("SLURM_MEM_PER_NODE", "4294967295", 1);
+  EXPECT_GT(farm_memory(), std::uint64_t(1) << 50);
+  unsetenv("SLURM_MEM_PER_NODE");
+  setenv("SLURM_MEM_PER_CPU", "4294967295", 1);
+  setenv("SLURM_CPUS_ON_NODE", "4294967295", 1);
+  EXPECT_GT(farm_memory(), std::uint64_t(1) << 50);
 }
 
 } // namespace

@@ -69,6 +69,12 @@ TEST(Memory, ThisMachineGrantsSome) {
   EXPECT_LT(granted_memory(), std::uint64_t(1) << 50);
 }
 
+TEST(Memory, AJobOfSlurmHasItsShare) {
+  setenv("SLURM_MEM_PER_NODE", "64", 1);
+  EXPECT_EQ(granted_memory(), std::uint64_t(64) << 20);
+  unsetenv("SLURM_MEM_PER_NODE");
+}
+
 /// A scene of a small VDB in `folder`.
 Scene file_scene(const TempFolder& folder) {
   VolumeOptions options;
