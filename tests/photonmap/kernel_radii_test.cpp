@@ -45,6 +45,23 @@ float exact_radius(const PhotonBlocks& blocks, std::size_t photon, std::size_t k
   return std::sqrt(squares[k]);
 }
 
+/// Distance to the farthest photon of the same cell, of which all have one radius and stand
+/// together.
+float cell_reach(const PhotonBlocks& blocks, std::size_t photon) {
+  const auto same = [&](std::size_t i) {
+    return blocks.at(i, PhotonBlocks::radius) == blocks.at(photon, PhotonBlocks::radius);
+  };
+  std::size_t first = photon, last = photon;
+  while (first > 0 && same(first - 1))
+    --first;
+  while (last + 1 < blocks.count() && same(last + 1))
+    ++last;
+  float reach = 0;
+  for (std::size_t i = first; i <= last; ++i)
+    reach = std::max(reach, length(blocks.position(i) - blocks.position(photon)));
+  return reach;
+}
+
 Vec3f in_cube(Rng& rng) {
   return {rng.uniform(), rng.uniform(), rng.uniform()};
 }
@@ -78,7 +95,10 @@ struct RadiiCase {
 class KernelRadii : public testing::TestWithParam<RadiiCase> {};
 
 /// Against exact neighbours of 300 photons: the median of 300 ratios whose spread is at most 10 %
-/// is known to 0.7 % (one standard error), a k-th neighbour's own bias is 1 / (3 k).
+/// is known to 0.7 % (one standard error), a k-th neighbour's own bias is 1 / (3 k). A cell that
+/// spans a gap between clusters, of which there are some in a thousand, has the neighbours of a
+/// place in the gap: no radius differs from that of exact neighbours by more than the way to such a
+/// place, which holds of every photon and any set.
 TEST_P(KernelRadii, AreThoseOfNeighbours) {
   const RadiiCase& param = GetParam();
   PhotonBlocks blocks = ordered_blocks(40000, param.make);
@@ -86,15 +106,18 @@ TEST_P(KernelRadii, AreThoseOfNeighbours) {
   std::vector<float> ratios;
   for (std::size_t i = 0; i < 300; ++i) {
     const std::size_t photon = i * 133;
-    ratios.push_back(blocks.at(photon, PhotonBlocks::radius) /
-                     exact_radius(blocks, photon, static_cast<std::size_t>(param.neighbours)));
+    const float radius = blocks.at(photon, PhotonBlocks::radius);
+    const float exact = exact_radius(blocks, photon, static_cast<std::size_t>(param.neighbours));
+    const float reach = cell_reach(blocks, photon);
+    ASSERT_LT(radius, 1.05f * (exact + reach)) << photon;
+    ASSERT_GT(radius + reach, 0.95f * exact) << photon;
+    ratios.push_back(radius / exact);
   }
   std::sort(ratios.begin(), ratios.end());
   EXPECT_NEAR(ratios[150], 1, param.bias);
   EXPECT_GT(ratios[15], param.least);
   EXPECT_LT(ratios[285], 1.2);
-  EXPECT_GT(ratios.front(), 0.4);
-  EXPECT_LT(ratios.back(), 1.8);
+  EXPECT_LT(ratios[294], 1.3);
 }
 
 /// 32 photons are two of the cells that radii come from: coarse, and granted more.

@@ -89,10 +89,14 @@ inline double disc(KernelShape shape, double s) {
 struct Sum {
   double value[3] = {};
   double magnitude[3] =
-      {};               ///< of the terms with the kernel at its greatest: what rounding relates to
-  double doubt[3] = {}; ///< terms so near an edge that rounding decides whether they count
+      {};                ///< of the terms with the kernel at its greatest: what rounding relates to
+  double doubt[3] = {};  ///< terms so near an edge that rounding decides whether they count
+  double leeway[3] = {}; ///< bound of what photons change that are seen a little off (see Sharing)
   std::uint64_t contributions = 0, doubtful = 0;
 };
+
+/// Single-precision coordinates of size 1 to 2, turned into another frame.
+constexpr double position_rounding = 5e-7;
 
 /// How near an edge is too near to tell, in s and in knots.
 struct Edges {
@@ -125,9 +129,34 @@ struct RayWeights {
   std::function<double(std::size_t group, int channel, int knot)> at;
 };
 
+/// Of a ray that shares knots, distances and a linear phase function with the cone of rays around
+/// it; all 0 for a ray on its own.
+struct Sharing {
+  double square = 0; ///< squared tangent of the ray's angle with the cone's axis
+  double phase = 0;  ///< relative error of a linear phase function
+
+  /// Along the axis a photon at distance t, off the ray by up to r, has another coordinate than
+  /// along the ray: t / sqrt(1 + square), less or more by up to r times the tangent.
+  double shift(double t, double r) const {
+    return std::abs(t) * square / 2 + r * std::sqrt(square) + position_rounding;
+  }
+};
+
+/// Bound of the change of disc(s) times weight where the weight may be off by `slope` and the
+/// distance is measured in the plane across the axis: s grows by the share `square` at most, the
+/// kernel's area by half of it.
+inline double greatest_change(KernelShape shape, double s, double weight, double slope,
+                              const Sharing& sharing) {
+  constexpr double steepest[] = {0, 1, 2, 3}; // of the kernel by s, relative to its greatest value
+  const double top = disc(shape, 0), value = std::abs(disc(shape, s));
+  const double kernel = steepest[static_cast<int>(shape)] * top * s * sharing.square;
+  return std::abs(weight) * (kernel + value * (sharing.square / 2 + sharing.phase)) +
+         slope * (value + kernel);
+}
+
 inline Sum ray_sum(const TestMap& map, const PlacedPhotons& placed, const Vec3d& unnormalised,
                    const std::vector<PhaseFunction>& phases, const RayWeights& weights,
-                   const Edges& edges) {
+                   const Edges& edges, const Sharing& sharing = {}) {
   Sum sum;
   const Vec3d direction = normalize(unnormalised);
   const PhotonBlocks& blocks = map.blocks;
@@ -144,19 +173,25 @@ inline Sum ray_sum(const TestMap& map, const PlacedPhotons& placed, const Vec3d&
     const int k = std::clamp(static_cast<int>(f), 0, weights.knots - 2);
     const double fraction = std::clamp(f - k, 0.0, 1.0), area = radius * radius;
     const double cosine = -dot(direction, placed.direction[i]);
+    const double shift = sharing.shift(dot(q, direction), radius) / weights.step;
     sum.contributions += !doubtful;
     sum.doubtful += doubtful;
     for (std::size_t g = 0; g < phases.size(); ++g)
       for (int c = 0; c < std::max(blocks.channels(), weights.channels); ++c) {
-        const double w0 = weights.at(g, c % weights.channels, k),
-                     w1 = weights.at(g, c % weights.channels, k + 1);
+        const auto weight = [&](int knot) {
+          return weights.at(g, c % weights.channels, std::clamp(knot, 0, weights.knots - 1));
+        };
+        const double w = weight(k) + fraction * (weight(k + 1) - weight(k));
         const double factor =
             (blocks.has_directions() ? phase(phases[g], cosine) : 1 / (4 * M_PI)) *
-            (w0 + fraction * (w1 - w0)) *
             blocks.at(i, PhotonBlocks::power + c % blocks.channels()) / area;
-        const double term = disc(map.shape, s) * factor;
+        const double term = disc(map.shape, s) * factor * w;
         (doubtful ? sum.doubt : sum.value)[c] += doubtful ? std::abs(term) : term;
-        sum.magnitude[c] += disc(map.shape, 0) * factor;
+        sum.magnitude[c] += disc(map.shape, 0) * factor * w;
+        double slope = 0; // greatest within a knot, which `shift` is less than
+        for (int j = k - 1; j <= k + 1; ++j)
+          slope = std::max(slope, std::abs(weight(j + 1) - weight(j)));
+        sum.leeway[c] += factor * greatest_change(map.shape, s, w, slope * shift, sharing);
       }
   }
   return sum;
@@ -216,7 +251,41 @@ inline BeamTile make_tile(const TileOptions& options, const std::vector<PhaseFun
   return tile;
 }
 
-inline std::vector<Sum> tile_sums(const TestMap& map, const BeamTile& tile, const Edges& edges) {
+/// What the rays of each sub-tile share where they do: the cone is that about their mean direction.
+inline std::vector<Sharing> tile_sharing(const BeamTile& tile) {
+  std::vector<Sharing> sharing(BeamTile::ray_count);
+  const auto direction = [&](int ray) {
+    return normalize(Vec3d{tile.du[ray], tile.dv[ray], tile.dw[ray]});
+  };
+  for (int s = 0; s < BeamTile::subtile_count; ++s) {
+    Vec3d mean;
+    double widest = 0;
+    for (int r = 16 * s; r < 16 * s + 16; ++r)
+      mean += direction(r);
+    for (int r = 16 * s; r < 16 * s + 16; ++r) {
+      const double cosine = dot(direction(r), normalize(mean));
+      sharing[r].square = 1 / (cosine * cosine) - 1;
+      widest = std::max(widest, std::sqrt(sharing[r].square));
+    }
+    // The second-order term of each lobe; where it is above 1e-3 nothing is linear.
+    double error = 0;
+    for (const PhaseFunction& phase : *tile.phases)
+      for (int i = 0; i < phase.lobe_count(); ++i) {
+        const double g = std::abs(phase.lobe(i).g), width = widest / (1 - g);
+        error = std::max(error,
+                         2 * g * width * width + std::abs(phase.lobe(i).alpha) * widest * widest);
+      }
+    for (int r = 16 * s; r < 16 * s + 16; ++r)
+      sharing[r].phase = error < 1e-3 ? error : 0;
+  }
+  return sharing;
+}
+
+/// `shared`: whether the rays of a sub-tile are so near to each other that they share.
+inline std::vector<Sum> tile_sums(const TestMap& map, const BeamTile& tile, const Edges& edges,
+                                  bool shared = false) {
+  const std::vector<Sharing> sharing =
+      shared ? tile_sharing(tile) : std::vector<Sharing>(BeamTile::ray_count);
   const auto turn = [&](const Vec3f& p) {
     return Vec3d{dot(Vec3d(tile.axis_u), Vec3d(p)), dot(Vec3d(tile.axis_v), Vec3d(p)),
                  dot(Vec3d(tile.axis_w), Vec3d(p))};
@@ -231,9 +300,10 @@ inline std::vector<Sum> tile_sums(const TestMap& map, const BeamTile& tile, cons
       const std::size_t row = g * static_cast<std::size_t>(tile.weight_channels) + c;
       return tile.weights[profile.offset + (row * profile.knots + k) * 16 + ray % 16];
     };
-    sums.push_back(ray_sum(
-        map, placed, {tile.du[ray], tile.dv[ray], tile.dw[ray]}, *tile.phases,
-        {profile.t_begin, profile.step, profile.knots, tile.weight_channels, weight}, edges));
+    sums.push_back(
+        ray_sum(map, placed, {tile.du[ray], tile.dv[ray], tile.dw[ray]}, *tile.phases,
+                {profile.t_begin, profile.step, profile.knots, tile.weight_channels, weight}, edges,
+                sharing[static_cast<std::size_t>(ray)]));
   }
   return sums;
 }
