@@ -27,7 +27,7 @@ int choose_splits(const EstimatorInput& input) {
   pilot.max_bounces = std::min(input.world.settings.max_bounces.value_or(16), 16);
   pilot.key = {input.world.settings.seed, input.frame, ~std::uint64_t(0)};
   const double collisions = trace_photons(input.world, pilot).mean_collisions;
-  return std::clamp(static_cast<int>(std::lround(24 / (1 + collisions))), 4, 16);
+  return std::clamp(static_cast<int>(std::lround(48 / (1 + collisions))), 4, 32);
 }
 
 std::vector<bool> lights_with_shadow_rays(const LightSet& lights) {
@@ -44,9 +44,9 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
       tracer_(input.world, shadow_rays_) {
   for (const Volume& volume : input_.world.medium.volumes)
     scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
-  const int samples = input_.world.settings.direct_samples;
-  direct_samples_ = samples > 0 ? samples : 4;
   splits_ = choose_splits(input);
+  const int samples = input_.world.settings.direct_samples;
+  direct_samples_ = samples > 0 ? samples : std::max(4, splits_ / 4);
 }
 
 /// What a thread keeps from pixel to pixel.
