@@ -97,8 +97,13 @@ private:
     const Rgb flux = photon.flux / static_cast<float>(light_paths);
     if (!(max_component(flux) > 0) || (settings_.max_bounces && *settings_.max_bounces <= 0))
       return;
-    path.emplace(rng, flux, photon.ray, light, 0, LengthRoulette(),
-                 MediumTracker(world_.medium, photon.ray, 0, infinity));
+    path = LightPath{rng,
+                     flux,
+                     photon.ray,
+                     light,
+                     0,
+                     LengthRoulette(),
+                     MediumTracker(world_.medium, photon.ray, 0, infinity)};
     if (!path->tracker.advance(path->rng))
       path.reset();
   }

@@ -127,6 +127,7 @@ TEST(Limits, WhatPhotonsDoNotResolveIsNoted) {
   const TempFolder folder;
   Scene scene = file_scene(folder);
   scene.render.passes = 1;
+  scene.image = {1, 1}; // in such depths a ray takes seconds
   EXPECT_FALSE(noted(scene, "mean free paths"));
   scene.volumes[0].extinction = 1e5;
   EXPECT_TRUE(noted(scene, "mean free paths"));
