@@ -24,8 +24,18 @@ import os
 import sys
 from pathlib import Path
 
-from error_curves import report as reports
-from error_curves import runner
+
+def stop_without(missing):
+    """Ends the program where a Python module is missing."""
+    sys.exit(f"error_vs_time.py: the Python module {missing.name} is missing; Debian has python3-numpy and "
+             "python3-matplotlib for /usr/bin/python3")
+
+
+try:
+    from error_curves import report as reports
+    from error_curves import runner
+except ModuleNotFoundError as problem:
+    stop_without(problem)
 
 ROOT = Path(__file__).resolve().parent.parent
 ESTIMATORS = ("beam", "march", "path")
@@ -67,7 +77,8 @@ def parse_arguments(arguments):
     parser.add_argument("--option", action="append", default=[], metavar="=--OPTION",
                         help="passed on to `vdbeam render`, such as --option=--threads=2")
     parser.add_argument("--peers", action="store_true",
-                        help="compare with Blender's Cycles too, where it is installed")
+                        help="compare with Blender's Cycles and OpenVDB's vdb_render too, where they are "
+                             "installed and can show the scene")
     parser.add_argument("--threads", type=int, default=0, metavar="N",
                         help="for every renderer (default: all cores)")
     parser.add_argument("--plot-only", action="store_true",
@@ -121,24 +132,28 @@ def existing_runs(options):
 
 def run_peers(options, references, runs):
     """Other renderers, on scenes as the reports of vdbeam's runs describe them."""
-    from error_curves import peers
+    from error_curves import peers, vdb_render
 
+    renderers = {"Cycles": peers.run_cycles, "vdb_render": vdb_render.run_vdb_render}
     for scene in options.scenes:
         first = next(run for run in runs if run.scene == scene.stem)
         folder = options.output / "runs"
         report = folder / f"{first.scene}.{first.estimator}.{first.seed}.json"
         settings = json.loads(report.read_text(encoding="utf-8")).get("settings")
-        try:
-            runs += peers.run_cycles(options.binary, scene.stem, settings, references[scene.stem],
-                                     options.seeds, options.time,
-                                     options.threads or os.cpu_count(), folder)
-        except peers.NotWithinMeans as reason:
-            print(f"{scene}: Cycles is left out: {reason}", flush=True)
+        for name, run in renderers.items():
+            try:
+                runs += run(options.binary, scene.stem, settings, references[scene.stem], options.seeds,
+                            options.time, options.threads or os.cpu_count(), folder)
+            except peers.NotWithinMeans as reason:
+                print(f"{scene}: {name} is left out: {reason}", flush=True)
 
 
 def draw(runs, folder, references, noise):
     # Imported here: it takes a second, and a wrong option should not.
-    from error_curves import page, plots
+    try:
+        from error_curves import page, plots
+    except ModuleNotFoundError as problem:
+        stop_without(problem)
 
     for scene in dict.fromkeys(run.scene for run in runs):
         plots.plot_scene(runs, scene, folder / scene, noise.get(scene))

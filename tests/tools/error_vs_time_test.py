@@ -2,6 +2,7 @@
 """tools/error_vs_time.py with a stand-in for the renderer whose error is known: C / seconds."""
 
 import csv
+import os
 import subprocess
 import tempfile
 import unittest
@@ -113,6 +114,19 @@ class ErrorVsTime(unittest.TestCase):
         self.assertIn("medium.g must lie in (-1, 1)", result.stderr)
         for arguments in (["--seeds", "x"], ["--time", "-1"], ["--reference", "sky=a.exr"]):
             self.assertEqual(self.run_tool(*arguments).returncode, 2, arguments)
+
+    def test_missing_modules_are_one_line(self):
+        for name in ("numpy", "matplotlib"):
+            folder = self.folder / name
+            folder.mkdir()
+            (folder / f"{name}.py").write_text(f"raise ModuleNotFoundError('not here', name='{name}')\n",
+                                               encoding="utf-8")
+            result = subprocess.run([TOOL, "--binary", self.binary, "--output", self.output, "--scenes",
+                                     self.folder / "cloud.toml", "--seeds", "1"], capture_output=True,
+                                    text=True, check=False, env={**os.environ, "PYTHONPATH": str(folder)})
+            self.assertEqual(result.returncode, 1)
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertIn(f"module {name} is missing; Debian has python3-numpy", result.stderr)
 
     def test_reports_without_errors_are_refused(self):
         self.assertEqual(self.run_tool("--seeds", "1", scenes=("cloud",)).returncode, 0)

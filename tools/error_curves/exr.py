@@ -1,4 +1,4 @@
-"""R, G, B of the plain EXR files that vdbeam writes: scanlines, ZIP or no compression, half or float,
+"""R, G, B of the plain EXR files that vdbeam and its peers write: scanlines, ZIP or no compression, half or float,
 data window = display window. `vdbeam compare` reads the rest."""
 
 import struct
@@ -85,3 +85,26 @@ def _decode(data):
                     image[row, :, "RGB".index(name)] = np.frombuffer(chunk, kind, width, start)
                 start += width * kind.itemsize
     return image
+
+
+def write_rgb(path, image):
+    """Writes an array [height, width, 3] as floats, without compression."""
+    height, width, _ = image.shape
+
+    def attribute(name, kind, data):
+        return f"{name}\0{kind}\0".encode() + struct.pack("<i", len(data)) + data
+
+    channels = b"".join(name + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in (b"B", b"G", b"R"))
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute("channels", "chlist", channels + b"\0")
+              + attribute("compression", "compression", b"\0") + attribute("dataWindow", "box2i", window)
+              + attribute("displayWindow", "box2i", window) + attribute("lineOrder", "lineOrder", b"\0")
+              + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+              + attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
+              + attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0")
+    lines = [struct.pack("<ii", y, 12 * width) + row.T[::-1].astype("<f4").tobytes()
+             for y, row in enumerate(image)]
+    first = len(header) + 8 * height
+    offsets = struct.pack(f"<{height}Q", *(first + y * len(lines[0]) for y in range(height)))
+    with open(path, "wb") as file:
+        file.write(header + offsets + b"".join(lines))

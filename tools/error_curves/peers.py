@@ -30,6 +30,8 @@ def errors(image, reference):
 
 def check_for_cycles(settings):
     """Raises NotWithinMeans unless the scene can be built in Blender as it is."""
+    if settings["render"]["max_bounces"] is not None:
+        raise NotWithinMeans("a limit of bounces")
     for volume in settings["volume"]:
         if volume["phase"]["type"] not in ("isotropic", "henyey_greenstein"):
             raise NotWithinMeans(f"phase function {volume['phase']['type']}")
