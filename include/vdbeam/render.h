@@ -31,6 +31,7 @@ struct RenderStatistics {
   std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
   std::uint64_t peak_memory = 0; ///< bytes, whole process
   std::size_t bytes_per_photon = 0;
+  double neighbours = 0; ///< photons in an adaptive kernel, as given or chosen
   /// What render.clamp took: sums of radiance over passes, pixels and channels, and pixels of passes.
   double clamp_removed = 0, clamp_total = 0;
   std::uint64_t clamped_pixels = 0;

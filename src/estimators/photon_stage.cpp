@@ -1,5 +1,6 @@
 #include "estimators/photon_stage.h"
 
+#include "estimators/kernel_pilot.h"
 #include "estimators/photon_cache.h"
 #include "estimators/view_importance.h"
 #include "estimators/view_thinning.h"
@@ -18,6 +19,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Where no pilot chooses them.
 constexpr double default_neighbours = 500;
 /// Collisions of one path that are kept on average: more of them tell little that is new.
 constexpr double kept_per_path = 4;
@@ -38,6 +40,17 @@ constexpr int most_direct_samples = 6;
 constexpr float least_importance = 1.0f / 1024;
 constexpr std::uint64_t pilot_paths = 1024;
 constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these.
+constexpr double trial_share = 0.25;
+constexpr double most_trial_paths = 25000;
+constexpr int trial_maps = 4;
+/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones are twice as wide.
+constexpr double trial_neighbours = 1000;
+constexpr double wide_over_narrow = 8;
+/// A narrow kernel holds at most this share of a map, so that a wide one fits.
+constexpr double most_in_kernel = 1.0 / 16;
+/// Fewer photons than these in a pass cannot be told anything by.
+constexpr double fewest_for_trial = 500;
 
 /// The nearest power of the fourth root of two: the same number, and so the same photons, for
 /// frames that differ a little.
@@ -116,6 +129,42 @@ void PhotonStage::choose_counts() {
   if (thins_by_view(settings) && sample.photons.size() > 0)
     choose_thinning(sample);
   paths_ = choose_paths();
+  if (may_try_kernels())
+    choose_neighbours();
+}
+
+/// Where photons may be kept for frames with other views, kernels must not depend on the view
+/// either.
+bool PhotonStage::may_try_kernels() const {
+  const RenderSettings& settings = input_.world.settings;
+  return thins_by_view(settings) && settings.neighbours == 0 &&
+         settings.kernel == KernelRadius::adaptive && settings.store == PhotonStore::fluence &&
+         stored_per_path_ * static_cast<double>(paths_) >= fewest_for_trial;
+}
+
+void PhotonStage::choose_neighbours() {
+  const World& world = input_.world;
+  const double paths = static_cast<double>(paths_), photons = stored_per_path_ * paths;
+  const double trial_paths = std::ceil(std::min(most_trial_paths, trial_share * paths));
+  KernelTrial narrow, wide;
+  narrow.neighbours = std::min(trial_neighbours, most_in_kernel * photons);
+  wide.neighbours = wide_over_narrow * narrow.neighbours;
+  RngKey key;
+  for (std::uint64_t i = 1; i <= trial_maps; ++i) {
+    PhotonPassSettings settings = pass_settings(pilot_pass - i);
+    settings.paths = static_cast<std::uint64_t>(trial_paths);
+    key = settings.key;
+    const PhotonPass pass = trace_photons(world, settings);
+    for (KernelTrial* trial : {&narrow, &wide}) {
+      RadiusSettings radius_settings = radii(0);
+      radius_settings.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
+      trial->maps.push_back(PhotonMap::build(pass.photons, world.grey ? 1 : 3, radius_settings,
+                                             world.settings.kernel_shape));
+    }
+  }
+  const KernelErrors errors =
+      measure_kernels(input_, narrow, wide, albedo_in_power(), sampled_, key, importance_rays_);
+  neighbours_ = best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
 }
 
 std::uint64_t PhotonStage::choose_paths() const {
@@ -216,7 +265,7 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   RadiusSettings radius_settings = radii(pass);
   // The share of kernels inside the medium depends on the camera; all before it does not.
   const KernelShare support = std::exchange(radius_settings.support, nullptr);
-  if (const auto kept = input_.photons ? input_.photons->find(settings) : nullptr) {
+  if (const auto kept = input_.photons ? input_.photons->find(settings, neighbours_) : nullptr) {
     map_ = kept->copy();
     ++statistics.maps_reused;
   } else {
@@ -229,6 +278,7 @@ void PhotonStage::shoot(int pass, RenderStatistics& statistics) {
   statistics.photons_stored += map_.size();
   if (world.settings.kernel == KernelRadius::adaptive)
     statistics.neighbourhoods += map_.size();
+  statistics.neighbours = world.settings.kernel == KernelRadius::adaptive ? neighbours_ : 0;
   if (map_.has_directions())
     statistics.directions += map_.size();
   if (map_.size() > 0)
@@ -252,7 +302,7 @@ void PhotonStage::make_map(const PhotonPassSettings& settings, const RadiusSetti
   statistics.radii += map_.times().radii;
   statistics.build += map_.times().build;
   if (input_.photons && !stopped)
-    input_.photons->keep(settings, map_);
+    input_.photons->keep(settings, neighbours_, map_);
 }
 
 } // namespace vdbeam

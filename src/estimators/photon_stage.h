@@ -35,6 +35,8 @@ private:
   void choose_counts();
   void choose_thinning(const PhotonPass& pilot);
   std::uint64_t choose_paths() const;
+  bool may_try_kernels() const;
+  void choose_neighbours();
   float kernel_reach(const PhotonList& pilot) const;
   PhotonPassSettings pass_settings(std::uint64_t pass) const;
   RadiusSettings radii(int pass) const;

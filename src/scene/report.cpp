@@ -136,6 +136,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   report["seconds"] = seconds_json(result);
   report["peak_memory"] = statistics.peak_memory;
   report["bytes_per_photon"] = statistics.bytes_per_photon;
+  report["neighbours"] = statistics.neighbours;
   report["counts"] = {{"light_paths", statistics.light_paths},
                       {"photons_stored", statistics.photons_stored},
                       {"contributions", statistics.contributions},

@@ -165,21 +165,21 @@ TEST(PhotonCache, KeepsNoMoreThanItMay) {
   settings.paths = 10;
   for (std::uint64_t pass = 0; pass < 5; ++pass) {
     settings.key.pass = pass;
-    cache.keep(settings, map);
+    cache.keep(settings, 10, map);
   }
   EXPECT_EQ(cache.bytes(), 2 * map.bytes());
   settings.key.pass = 1;
-  ASSERT_NE(cache.find(settings), nullptr);
-  EXPECT_EQ(cache.find(settings)->size(), 64u);
+  ASSERT_NE(cache.find(settings, 10), nullptr);
+  EXPECT_EQ(cache.find(settings, 10)->size(), 64u);
   settings.key.pass = 2;
-  EXPECT_EQ(cache.find(settings), nullptr);
+  EXPECT_EQ(cache.find(settings, 10), nullptr);
   // Other photons of a pass replace those that are there.
   settings.key.pass = 1;
   settings.paths = 11;
-  EXPECT_EQ(cache.find(settings), nullptr);
-  cache.keep(settings, map);
+  EXPECT_EQ(cache.find(settings, 10), nullptr);
+  cache.keep(settings, 10, map);
   EXPECT_EQ(cache.bytes(), 2 * map.bytes());
-  EXPECT_NE(cache.find(settings), nullptr);
+  EXPECT_NE(cache.find(settings, 10), nullptr);
 }
 
 } // namespace

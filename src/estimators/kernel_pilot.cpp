@@ -1,0 +1,216 @@
+#include "estimators/kernel_pilot.h"
+
+#include "estimators/beam_weights.h"
+#include "estimators/direct_light.h"
+#include "estimators/pixel_tiles.h"
+#include "estimators/profile_shading.h"
+#include "estimators/tile_rays.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+constexpr int most_tiles = 100;
+/// Of MRSE, in place of 0.01, over the mean brightness: a darker light must not change the kernels.
+constexpr double offset = 0.03;
+/// Bias grows with the neighbours to this power: measured (docs/decisions.md); 2 / 3 where kernels
+/// are small against all that they blur.
+constexpr double bias_power = 0.45;
+/// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
+/// matters little (docs/decisions.md).
+constexpr int balanced_passes = 100;
+/// Radii are those of so many photons or more (docs/performance.md).
+constexpr double fewest_neighbours = 32;
+
+struct Tile {
+  int x0, y0;
+};
+
+/// Tiles spread over the picture; all of them where it is small.
+std::vector<Tile> choose_tiles(const Camera& camera) {
+  const int columns = (camera.width() + tile_width - 1) / tile_width;
+  const int rows = (camera.height() + tile_width - 1) / tile_width;
+  const std::int64_t all = static_cast<std::int64_t>(columns) * rows;
+  const std::int64_t count = std::min<std::int64_t>(all, most_tiles);
+  // Steps along the rows of tiles; the additive recurrence keeps them from lining up in columns.
+  std::vector<Tile> tiles;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const double shift = 0.6180339887498949 * static_cast<double>(i);
+    const double place = (static_cast<double>(i) + shift - std::floor(shift)) *
+                         static_cast<double>(all) / static_cast<double>(count);
+    const auto tile = static_cast<int>(std::min(static_cast<std::int64_t>(place), all - 1));
+    tiles.push_back({tile % columns * tile_width, tile / columns * tile_width});
+  }
+  return tiles;
+}
+
+/// What the tile's rays gather from each map: [map][ray], one channel after another.
+std::vector<std::vector<float>> gather(const std::vector<PhotonMap>& maps, BeamTile& tile) {
+  std::vector<std::vector<float>> pictures;
+  for (const PhotonMap& map : maps) {
+    tile.radiance.assign(static_cast<std::size_t>(map.channels()) * BeamTile::ray_count, 0);
+    map.query(tile);
+    pictures.push_back(tile.radiance);
+  }
+  return pictures;
+}
+
+/// Mean and sum of squared deviations of one value over the maps.
+struct Spread {
+  double mean = 0, squares = 0;
+
+  Spread(const std::vector<std::vector<float>>& pictures, std::size_t i) {
+    const auto count = static_cast<double>(pictures.size());
+    for (const auto& picture : pictures)
+      mean += static_cast<double>(picture[i]) / count;
+    for (const auto& picture : pictures) {
+      const double d = static_cast<double>(picture[i]) - mean;
+      squares += d * d;
+    }
+  }
+};
+
+/// What a tile's rays that meet the medium see.
+struct TileView {
+  std::vector<std::vector<float>> narrow, wide; ///< by map
+  std::vector<std::size_t> places;              ///< of a pixel's channel in a map's picture
+  std::vector<double> known;                    ///< its light that does not come from photons
+  double brightness = 0;                        ///< sum over the pixels
+};
+
+TileView view_tile(const EstimatorInput& input, const Tile& place, const KernelTrial& narrow,
+                   const KernelTrial& wide, bool albedo_in_power,
+                   const std::vector<bool>& sampled_lights, const RngKey& key) {
+  const World& world = input.world;
+  TileRays rays;
+  rays.prepare(world, input.camera, key, place.x0, place.y0);
+  WeightSettings weights;
+  weights.store = world.settings.store;
+  weights.albedo_in_power = albedo_in_power;
+  BeamTile tile;
+  fill_beam_tile(world, input.camera, rays, weights, tile);
+  TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, 0};
+  PassImage beside;
+  beside.resize(TileRays::count, 1);
+  std::uint64_t shadow_rays = 0;
+  const std::size_t channels = view.wide[0].size() / TileRays::count;
+  for (std::size_t i = 0; i < TileRays::count; ++i) {
+    const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
+    if (!ray.inside || ray.profile.empty())
+      continue;
+    shade_profile(world, ray.camera, ray.profile, i, beside);
+    // One sample will do: it only weighs the pixel.
+    Rng rng(key, RngStage::direct, ray.pixel);
+    const Rgb known = beside.background[i] + direct_light(world, ray.camera.ray, ray.profile,
+                                                          sampled_lights, 1, rng, shadow_rays);
+    for (std::size_t c = 0; c < channels; ++c) {
+      view.places.push_back(c * TileRays::count + i);
+      view.known.push_back(
+          static_cast<double>(channels == 1 ? mean_component(known) : known[static_cast<int>(c)]));
+      view.brightness += view.known.back() + Spread(view.wide, view.places.back()).mean;
+    }
+  }
+  return view;
+}
+
+/// Sums over a tile's pixels.
+struct TileSums {
+  double narrow = 0, wide = 0, change = 0;
+
+  TileSums(const TileView& view, double dark) {
+    for (std::size_t i = 0; i < view.places.size(); ++i)
+      add(view, view.places[i], view.known[i], dark);
+  }
+
+private:
+  void add(const TileView& view, std::size_t place, double known, double dark) {
+    const auto count = static_cast<double>(view.narrow.size());
+    const Spread n(view.narrow, place), w(view.wide, place);
+    const double brightness = std::max(0.0, known + w.mean) + dark;
+    const double weight = 1 / (brightness * brightness);
+    narrow += weight * n.squares / (count - 1);
+    wide += weight * w.squares / (count - 1);
+    // The mean over pairs of different maps, of which noise is no part: the square of the sum less
+    // the squares.
+    double sum = 0, squares = 0;
+    for (std::size_t m = 0; m < view.narrow.size(); ++m) {
+      const double d =
+          static_cast<double>(view.wide[m][place]) - static_cast<double>(view.narrow[m][place]);
+      sum += d;
+      squares += d * d;
+    }
+    change += weight * (sum * sum - squares) / (count * (count - 1));
+  }
+};
+
+} // namespace
+
+KernelErrors measure_kernels(const EstimatorInput& input, const KernelTrial& narrow,
+                             const KernelTrial& wide, bool albedo_in_power,
+                             const std::vector<bool>& sampled_lights, const RngKey& key,
+                             std::uint64_t& rays) {
+  const std::vector<Tile> tiles = choose_tiles(input.camera);
+  std::vector<TileView> views(tiles.size());
+  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+    views[i] = view_tile(input, tiles[i], narrow, wide, albedo_in_power, sampled_lights, key);
+  });
+  rays += tiles.size() * TileRays::count;
+  // In the order of the tiles, so that sums are the same for any number of threads.
+  double brightness = 0, pixels = 0;
+  for (const TileView& view : views) {
+    brightness += view.brightness;
+    pixels += static_cast<double>(view.places.size());
+  }
+  KernelErrors errors;
+  if (!(brightness > 0))
+    return errors;
+  std::vector<TileSums> sums;
+  sums.reserve(views.size());
+  for (const TileView& view : views)
+    sums.emplace_back(view, offset * brightness / pixels);
+  for (const TileSums& tile : sums) {
+    errors.noise_narrow += tile.narrow;
+    errors.noise_wide += tile.wide;
+    errors.change += tile.change;
+  }
+  const double mean = errors.change / static_cast<double>(tiles.size());
+  for (const TileSums& tile : sums)
+    errors.change_error += (tile.change - mean) * (tile.change - mean);
+  errors.change_error = std::sqrt(errors.change_error);
+  return errors;
+}
+
+double best_neighbours(const KernelTrial& narrow, const KernelTrial& wide,
+                       const KernelErrors& errors, double paths_share, double alpha) {
+  const double ratio = wide.neighbours / narrow.neighbours;
+  // Where narrow kernels reach no camera ray, photons are too few for any but wide ones.
+  if (!(errors.noise_narrow > 0) || !(errors.noise_wide > 0))
+    return wide.neighbours;
+  const double power =
+      std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
+  double noise = 0, squared_radius = 0;
+  double shrink = 1;
+  for (int pass = 1; pass <= balanced_passes; ++pass) {
+    noise += 1 / shrink;
+    squared_radius += shrink;
+    shrink *= (pass + alpha) / (pass + 1);
+  }
+  noise *= errors.noise_narrow * paths_share / (balanced_passes * balanced_passes);
+  squared_radius /= balanced_passes;
+  // Where no bias stands out of the noise it may still be as large as that.
+  const double change = std::max(errors.change, errors.change_error);
+  if (!(change > 0))
+    return wide.neighbours;
+  const double bias =
+      change * std::pow((std::pow(ratio, bias_power) - 1), -2) * squared_radius * squared_radius;
+  // noise x^-power + bias x^(2 bias_power) is least where its derivative is 0.
+  const double x = std::pow(power * noise / (2 * bias_power * bias), 1 / (power + 2 * bias_power));
+  return std::max(fewest_neighbours, narrow.neighbours * std::clamp(x, 0.1, ratio));
+}
+
+} // namespace vdbeam
