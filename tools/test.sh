@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test, on a bare Debian 12 too. Arguments go to ctest, e.g. -L volume.
-# Exit status: ctest's.
+# With VDBEAM_TEST_SANITIZERS=1 random scenes are rendered under the sanitizers as well, which
+# compiles the library once more. Exit status: ctest's, or 1 where only the sanitizers complain.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source tools/common.sh
@@ -10,6 +11,9 @@ log=build/release/ctest.log
 status=0
 stage test ctest --test-dir build/release --output-on-failure --no-tests=error -j "$(nproc)" \
   --output-log "$log" "$@" || status=$?
+if [[ ${VDBEAM_TEST_SANITIZERS:-} == 1 ]]; then
+  PRESET=asan-ubsan stage sanitizers tools/stress.sh --seconds 30 || status=$((status ? status : 1))
+fi
 
 echo
 printf '%s' "$stage_lines"
