@@ -23,6 +23,7 @@ struct RenderStatistics {
   std::uint64_t lookups = 0;        ///< rays or points gathered from the photon map
   std::uint64_t depth_profiles = 0; ///< camera rays whose optical depth was integrated
   std::uint64_t shadow_rays = 0;    ///< of camera rays' single scattering
+  std::uint64_t emission_rays = 0;  ///< camera rays along which the medium's own light was summed
   std::uint64_t camera_walks = 0;   ///< random walks from camera rays (path)
   std::uint64_t neighbourhoods = 0; ///< photons whose radius follows their neighbours'
   std::uint64_t bias_rays = 0;      ///< camera rays followed by path tracing to tell the bias

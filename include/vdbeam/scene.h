@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/emission_settings.h"
 #include "vdbeam/vec.h"
 
 #include <array>
@@ -43,11 +44,19 @@ struct VolumeSettings {
   Rgb extinction_scale{1, 1, 1};   ///< per-channel factor of the extinction (chromatic media)
   Rgb albedo{1, 1, 1};             ///< sigma_s / sigma_t per channel, in [0, 1]
   PhaseSettings phase;
+  EmissionSettings emission;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+  bool glows() const { return present && emission.glows(); }
+  /// Something absorbs or scatters, or nothing else is there to look at.
+  bool needs_density() const {
+    return present && (extinction * max_component(Vec3d(extinction_scale)) > 0 || !glows());
+  }
 };
 
-enum class LightType { distant, point, spot, environment };
+/// volume: one that glows, which stands among the volumes of a scene and not among its lights.
+enum class LightType { distant, point, spot, environment, volume };
 enum class DirectLight { automatic, sampled, photons };
 
 struct LightSettings {
@@ -112,6 +121,14 @@ struct Scene {
   RenderSettings render;
   bool black = false;                  ///< a volume's file is missing and the frame is to be black
   std::vector<std::string> notes;      ///< for the user: what load_scene chose or found odd
+
+  /// A volume's settings let it glow, in this frame or in another.
+  bool glows() const {
+    for (const VolumeSettings& volume : volumes)
+      if (!volume.emission.intensity.empty() || !volume.emission.temperature.empty())
+        return true;
+    return false;
+  }
 };
 
 } // namespace vdbeam

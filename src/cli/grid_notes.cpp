@@ -54,8 +54,16 @@ bool is_scalar(const GridSummary& grid) {
 std::string rendered_text(const std::string& file, const std::vector<GridSummary>& grids) {
   try {
     const Scene scene = make_default_scene(file, {grids}, {});
-    return fmt::format("grid \"{}\", with extinction {} (vdbeam init shows the whole scene)",
-                       scene.volumes.front().density, scene.volumes.front().extinction);
+    const VolumeSettings& volume = scene.volumes.front();
+    const EmissionSettings& emission = volume.emission;
+    const std::string glow =
+        !volume.glows()
+            ? ""
+            : fmt::format(", \"{}\" glows with strength {}",
+                          emission.intensity.empty() ? emission.temperature : emission.intensity,
+                          emission.scale);
+    return fmt::format("grid \"{}\", with extinction {}{} (vdbeam init shows the whole scene)",
+                       volume.density, volume.extinction, glow);
   } catch (const InputError& error) {
     return fmt::format("nothing: {}", error.what());
   }

@@ -96,18 +96,18 @@ TileView view_tile(const EstimatorInput& input, const Tile& place, const KernelT
   fill_beam_tile(world, input.camera, rays, weights, tile);
   TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, 0};
   PassImage beside;
-  beside.resize(TileRays::count, 1);
-  std::uint64_t shadow_rays = 0;
+  beside.resize(TileRays::count, 1, !world.medium.emitters.empty());
+  std::uint64_t shadow_rays = 0, emission_rays = 0;
   const std::size_t channels = view.wide[0].size() / TileRays::count;
   for (std::size_t i = 0; i < TileRays::count; ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || ray.profile.empty())
       continue;
-    shade_profile(world, ray.camera, ray.profile, i, beside);
+    shade_profile(world, ray.camera, ray.profile, i, beside, emission_rays);
     // One sample will do: it only weighs the pixel.
     Rng rng(key, RngStage::direct, ray.pixel);
-    const Rgb known = beside.background[i] + direct_light(world, ray.camera.ray, ray.profile,
-                                                          sampled_lights, 1, rng, shadow_rays);
+    const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray, ray.profile,
+                                                     sampled_lights, 1, rng, shadow_rays);
     for (std::size_t c = 0; c < channels; ++c) {
       view.places.push_back(c * TileRays::count + i);
       view.known.push_back(

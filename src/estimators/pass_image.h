@@ -13,20 +13,28 @@ struct PassImage {
   std::vector<Rgb> direct;     ///< single scattering of lights estimated by shadow rays
   std::vector<Rgb> indirect;   ///< everything else scattered in the volume
   std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
+  std::vector<Rgb> emission;   ///< the medium's own light, Tr * j; empty where nothing glows
   std::vector<float> opacity;  ///< 1 - Tr of the whole ray (mean over channels)
   /// Opacity times the mean distance [world] of the first collision: integral of Tr sigma_t t dt.
   /// Sum over passes, divided by the sum of opacity, it is the mean depth (AOV volume_Z).
   std::vector<float> depth;
 
-  void resize(int w, int h) {
+  /// `glows`: there is something to hold in `emission`.
+  void resize(int w, int h, bool glows = false) {
     width = w;
     height = h;
     const std::size_t n = static_cast<std::size_t>(w) * h;
     direct.assign(n, {});
     indirect.assign(n, {});
     background.assign(n, {});
+    emission.assign(glows ? n : 0, {});
     opacity.assign(n, 0);
     depth.assign(n, 0);
+  }
+  /// What the pixel shows in all.
+  Rgb total(std::size_t pixel) const {
+    const Rgb sum = direct[pixel] + indirect[pixel] + background[pixel];
+    return emission.empty() ? sum : sum + emission[pixel];
   }
 };
 

@@ -87,7 +87,7 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   DepthProfile& profile = scratch.profile;
   profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
                 static_cast<float>(world.settings.cutoff));
-  shade_profile(world, camera, profile, target, image);
+  shade_profile(world, camera, profile, target, image, scratch.counts.emission_rays);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_ ||
       (world.settings.max_bounces && *world.settings.max_bounces < 1))
@@ -146,7 +146,7 @@ void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
 std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
   const RngKey pass_key = key(pass);
   PassImage image;
-  image.resize(static_cast<int>(pixels.size()), 1);
+  image.resize(static_cast<int>(pixels.size()), 1, !input_.world.medium.emitters.empty());
   tbb::enumerable_thread_specific<Scratch> scratches;
   // Ranges that do not depend on the threads, so that sums do not either.
   const tbb::blocked_range<std::size_t> all(0, pixels.size(), walks_under_way);
@@ -159,7 +159,7 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
   tbb::parallel_for(all, render, tbb::simple_partitioner());
   std::vector<Rgb> result;
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    result.push_back(image.direct[i] + image.indirect[i] + image.background[i]);
+    result.push_back(image.total(i));
   return result;
 }
 
@@ -167,7 +167,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const auto start = std::chrono::steady_clock::now();
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(pass);
-  image.resize(camera.width(), camera.height());
+  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty());
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();
@@ -181,6 +181,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   for (const Scratch& scratch : scratches) {
     statistics.depth_profiles += scratch.counts.depth_profiles;
     statistics.shadow_rays += scratch.counts.shadow_rays;
+    statistics.emission_rays += scratch.counts.emission_rays;
     statistics.camera_walks += scratch.counts.camera_walks;
   }
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;

@@ -1,5 +1,7 @@
 #include "estimators/path_walk.h"
 
+#include "transport/emission.h"
+
 namespace vdbeam {
 
 namespace {
@@ -12,7 +14,7 @@ constexpr float roulette_below = 0.1f;
 PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
                            const Rgb& throughput, const PhaseFunction& phase) const {
   // At its first step there is no shadow ray left to trace.
-  return {target, rng, ray,          throughput,           0, 0, std::nullopt, {}, &phase,
+  return {target, rng, ray,          throughput,           0, 0, std::nullopt, 0, {}, &phase,
           {},     {},  std::nullopt, world_.lights.size(), {}};
 }
 
@@ -27,8 +29,15 @@ bool WalkTracer::step(PathWalk& walk) const {
     return shine(walk);
   }
   const Collision hit = walk.flight->collision();
-  if (!collide_really(hit, world_.medium.chromatic, walk.throughput, walk.rng))
+  // Null collisions leave a grey throughput as it is, so one piece of the flight goes up to the
+  // next real one.
+  const bool chromatic = world_.medium.chromatic;
+  if (glows_ && chromatic)
+    gather_emission(walk, hit.t);
+  if (!collide_really(hit, chromatic, walk.throughput, walk.rng))
     return fly(walk);
+  if (glows_ && !chromatic)
+    gather_emission(walk, hit.t);
   const std::optional<int>& most = world_.settings.max_bounces;
   if (most && walk.bounces >= *most)
     return false;
@@ -70,6 +79,7 @@ void WalkTracer::turn(PathWalk& walk) const {
   walk.phase_pdf = walk.phase->evaluate(dot(walk.ray.direction, direction));
   walk.ray.direction = direction;
   ++walk.bounces;
+  walk.gathered = 0;
   walk.flight.emplace(world_.medium, walk.ray, 0.0f, infinity);
 }
 
@@ -77,8 +87,17 @@ void WalkTracer::turn(PathWalk& walk) const {
 bool WalkTracer::fly(PathWalk& walk) const {
   if (walk.flight->advance(walk.rng))
     return true;
+  if (glows_)
+    gather_emission(walk, infinity);
   (walk.bounces == 1 ? walk.direct : walk.indirect) += escape(walk);
   return false;
+}
+
+/// The medium's own light on the flight, from where it was gathered last to t_end.
+void WalkTracer::gather_emission(PathWalk& walk, float t_end) const {
+  const Rgb light = sample_emission(world_.medium, walk.ray, walk.gathered, t_end, walk.rng);
+  (walk.bounces == 1 ? walk.direct : walk.indirect) += light * walk.throughput;
+  walk.gathered = t_end;
 }
 
 /// Light that a ray meets where it leaves the scene, weighted against next-event estimation.

@@ -18,6 +18,7 @@ struct PathWalk {
   int bounces;
   float phase_pdf; ///< of ray.direction
   std::optional<MediumTracker> flight;
+  float gathered; ///< distance of the flight up to which the medium's own light was taken in
   LengthRoulette length;
   const PhaseFunction* phase; ///< at the last collision
   Rgb direct, indirect;       ///< found so far: light that was scattered once, and more often
@@ -29,12 +30,14 @@ struct PathWalk {
 /// Walks of the path tracer, a collision at a time: flights by delta tracking (spectral tracking
 /// where the extinction is chromatic, Kutz et al. 2017), next-event estimation by ratio tracking at
 /// every collision, multiple importance sampling for lights that a scattered ray can meet (balance
-/// heuristic, Veach and Guibas 1995), Russian roulette.
+/// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own light is gathered along
+/// every flight as far as it goes (track-length estimator).
 class WalkTracer {
 public:
   /// `shadow_rays`: per light, whether next-event estimation finds it.
   WalkTracer(const World& world, std::vector<bool> shadow_rays)
-      : world_(world), shadow_rays_(std::move(shadow_rays)) {}
+      : world_(world), shadow_rays_(std::move(shadow_rays)),
+        glows_(!world.medium.emitters.empty()) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -49,10 +52,12 @@ private:
   bool shine(PathWalk& walk) const;
   void turn(PathWalk& walk) const;
   bool fly(PathWalk& walk) const;
+  void gather_emission(PathWalk& walk, float t_end) const;
   Rgb escape(const PathWalk& walk) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;
+  bool glows_;
 };
 
 } // namespace vdbeam

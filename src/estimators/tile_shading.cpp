@@ -25,11 +25,11 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather) {
   const World& world = input.world;
   const Camera& camera = input.camera;
-  image.resize(camera.width(), camera.height());
+  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty());
   const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
     counts.depth_profiles += ray.profile.empty() ? 0 : 1;
-    shade_profile(world, ray.camera, ray.profile, ray.pixel, image);
+    shade_profile(world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
         direct_light(world, ray.camera.ray, ray.profile, stage.sampled_lights(),
@@ -61,6 +61,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
     statistics.lookups += scratch.statistics.lookups;
     statistics.depth_profiles += scratch.statistics.depth_profiles;
     statistics.shadow_rays += scratch.statistics.shadow_rays;
+    statistics.emission_rays += scratch.statistics.emission_rays;
   }
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
 }

@@ -24,7 +24,8 @@ ClampTally clamp_pass(PassImage& pass, double limit) {
   ClampTally tally;
   for (std::size_t i = 0; i < pass.direct.size(); ++i) {
     const Rgb medium = pass.direct[i] + pass.indirect[i];
-    const double light = sum_of(medium), all = light + sum_of(pass.background[i]);
+    const double glow = pass.emission.empty() ? 0 : sum_of(pass.emission[i]);
+    const double light = sum_of(medium), all = light + sum_of(pass.background[i]) + glow;
     if (!std::isfinite(all))
       continue; // the film counts it as 0 and tells
     tally.total += all;

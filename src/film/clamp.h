@@ -17,7 +17,7 @@ struct ClampTally {
   ClampTally& operator+=(const ClampTally& other);
 };
 
-/// Dims what the medium sends (direct and indirect light together) in every pixel whose largest
+/// Dims what the medium scatters (direct and indirect light together) in every pixel whose largest
 /// channel is above `limit` [radiance] to the limit, in all channels by the same factor, and says
 /// what that took. What is seen through the medium stays.
 ClampTally clamp_pass(PassImage& pass, double limit);

@@ -80,10 +80,10 @@ inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) 
   low_[i] = static_cast<float>(renormalised.error);
 }
 
-Film::Film(int width, int height)
-    : width_(width), height_(height), direct_(3 * pixels()), indirect_(3 * pixels()),
-      background_(3 * pixels()), opacity_(pixels()), depth_(pixels()), depth_passes_(pixels()),
-      squares_(3 * pixels()), history_(width, height) {}
+Film::Film(int width, int height, bool glows)
+    : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
+      background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
+      depth_(pixels()), depth_passes_(pixels()), squares_(3 * pixels()), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -95,16 +95,20 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
   const float* direct = components(pass.direct);
   const float* indirect = components(pass.indirect);
   const float* background = components(pass.background);
+  const float* emission = glows_ && !pass.emission.empty() ? components(pass.emission) : nullptr;
   std::uint64_t invalid = add_values(direct_, direct, 3 * begin, 3 * end);
   invalid += add_values(indirect_, indirect, 3 * begin, 3 * end);
   invalid += add_values(background_, background, 3 * begin, 3 * end);
+  if (emission)
+    invalid += add_values(emission_, emission, 3 * begin, 3 * end);
   invalid += add_values(opacity_, pass.opacity.data(), begin, end);
   invalid += add_values(depth_, pass.depth.data(), begin, end);
   for (std::size_t i = begin; i < end; ++i)
     depth_passes_[i] += finite_or_zero(pass.depth[i]) > 0 ? 1 : 0;
   for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
     const double total = double{finite_or_zero(direct[i])} + finite_or_zero(indirect[i]) +
-                         finite_or_zero(background[i]);
+                         finite_or_zero(background[i]) +
+                         (emission ? finite_or_zero(emission[i]) : 0);
     squares_[i] += total * total;
   }
   return invalid;
@@ -123,10 +127,14 @@ void Film::add(const PassImage& pass, const std::vector<ProbeValue>& probes) {
 
 void Film::merge(const Film& other) {
   check_size(other.width_, other.height_);
+  if (glows_ != other.glows_)
+    throw std::invalid_argument("a film with emission and one without cannot be merged");
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     merge_values(direct_, other.direct_, 3 * begin, 3 * end);
     merge_values(indirect_, other.indirect_, 3 * begin, 3 * end);
     merge_values(background_, other.background_, 3 * begin, 3 * end);
+    if (glows_)
+      merge_values(emission_, other.emission_, 3 * begin, 3 * end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
     for (std::size_t i = begin; i < end; ++i)
@@ -152,6 +160,8 @@ std::vector<FilmPlane> Film::planes() {
     add("direct." + channel, direct_, 3, c);
     add("indirect." + channel, indirect_, 3, c);
     add("background." + channel, background_, 3, c);
+    if (glows_)
+      add("emission." + channel, emission_, 3, c);
     planes.push_back({"squares." + channel, squares_.data() + c, 3});
   }
   add("opacity", opacity_, 1, 0);
@@ -174,6 +184,13 @@ void Film::set_counts(int passes, std::uint64_t invalid_values) {
   shapes_.reset();
 }
 
+double Film::sum(std::size_t i, bool background) const {
+  double sum = direct_.high(i) + indirect_.high(i);
+  if (glows_)
+    sum += emission_.high(i);
+  return background ? sum + background_.high(i) : sum;
+}
+
 Image Film::develop() const {
   Image image;
   image.width = width_;
@@ -184,8 +201,12 @@ Image Film::develop() const {
     image.channels.push_back({name, std::vector<float>(pixels())});
   for (const char* name : {"volume_opacity", "volume_Z"})
     image.channels.push_back({name, std::vector<float>(pixels()), false});
+  if (glows_)
+    for (const char* name : {"volume_emission.R", "volume_emission.G", "volume_emission.B"})
+      image.channels.push_back({name, std::vector<float>(pixels())});
 
   enum : std::size_t { rgb = 0, alpha = 3, volume = 4, direct = 7, indirect = 10, opacity = 13 };
+  constexpr std::size_t emission = 15;
   const double passes = std::max(passes_, 1);
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto set = [&](std::size_t channel, std::size_t i, double sum, double count) {
@@ -194,11 +215,12 @@ Image Film::develop() const {
     for (std::size_t i = begin; i < end; ++i) {
       // The high parts are the correctly rounded sums.
       for (std::size_t c = 0; c < 3; ++c) {
-        const double d = direct_.high(3 * i + c), n = indirect_.high(3 * i + c);
-        set(direct + c, i, d, passes);
-        set(indirect + c, i, n, passes);
-        set(volume + c, i, d + n, passes);
-        set(rgb + c, i, d + n + background_.high(3 * i + c), passes);
+        set(direct + c, i, direct_.high(3 * i + c), passes);
+        set(indirect + c, i, indirect_.high(3 * i + c), passes);
+        set(volume + c, i, sum(3 * i + c, false), passes);
+        set(rgb + c, i, sum(3 * i + c, true), passes);
+        if (glows_)
+          set(emission + c, i, emission_.high(3 * i + c), passes);
       }
       set(alpha, i, opacity_.high(i), passes);
       set(opacity, i, opacity_.high(i), passes);
@@ -215,7 +237,7 @@ double Film::mrse_estimate() const {
   std::vector<double> sums((pixels() + block_size - 1) / block_size);
   for_each_block(pixels(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
-      const double mean = (direct_.high(i) + indirect_.high(i) + background_.high(i)) / n;
+      const double mean = sum(i, true) / n;
       // Rounding may leave a constant with a tiny negative variance.
       const double variance = std::max(0.0, (squares_[i] - n * mean * mean) / (n - 1));
       sums[block] += variance / (n * (mean + 0.01) * (mean + 0.01));

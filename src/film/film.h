@@ -41,14 +41,16 @@ struct FilmPlane {
   std::size_t stride;
 };
 
-/// The mean of passes. It holds 160 bytes per pixel (1.3 GB at 3840 x 2160) whatever the number of
-/// passes, at most 2 MB of their history, and developing it needs 60 more per pixel.
+/// The mean of passes. It holds 160 bytes per pixel (1.3 GB at 3840 x 2160; 196 with emission)
+/// whatever the number of passes, at most 2 MB of their history, and developing it needs 60 (72)
+/// more per pixel.
 ///
 /// Pass values that are not finite count as 0, so that one bad path cannot destroy a frame; see
 /// invalid_values().
 class Film {
 public:
-  Film(int width, int height);
+  /// `glows`: passes may hold emission.
+  Film(int width, int height, bool glows = false);
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
@@ -59,9 +61,10 @@ public:
   int width() const { return width_; }
   int height() const { return height_; }
   int passes() const { return passes_; }
+  bool glows() const { return glows_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
-  static constexpr std::size_t bytes_per_pixel() { return 160; }
+  static constexpr std::size_t bytes_per_pixel(bool glows = false) { return glows ? 196 : 160; }
 
   /// Everything that a film holds per pixel, always in the same order: with these and the two
   /// counts stored and put back, it goes on bit for bit.
@@ -70,8 +73,9 @@ public:
   const std::vector<std::size_t>& probe_pixels() const { return history_.pixels(); }
   void set_counts(int passes, std::uint64_t invalid_values);
 
-  /// R, G, B: direct + indirect + background; A: the mean opacity; and the AOVs volume.* (direct +
-  /// indirect), volume_direct.*, volume_indirect.* (half), volume_opacity and volume_Z (float).
+  /// R, G, B: direct + indirect + emission + background; A: the mean opacity; and the AOVs volume.*
+  /// (direct + indirect + emission), volume_direct.*, volume_indirect.* (half), volume_opacity and
+  /// volume_Z (float), and volume_emission.* (half) of a film that glows.
   /// volume_Z [world] is the mean over the passes that met the volume, 0 where none did. Everything
   /// is black before the first pass.
   Image develop() const;
@@ -90,13 +94,18 @@ private:
   std::uint64_t add_pixels(const PassImage& pass, std::size_t begin, std::size_t end);
   void check_size(int width, int height) const;
 
+  /// Direct + indirect + emission, without (false) or with background: value i of 3 per pixel.
+  double sum(std::size_t i, bool background) const;
+
   int width_, height_;
+  bool glows_;
   int passes_ = 0;
   std::uint64_t invalid_values_ = 0;
   CompensatedSums direct_, indirect_, background_; ///< 3 per pixel
+  CompensatedSums emission_;                       ///< 3 per pixel, none without emission
   CompensatedSums opacity_, depth_;
   std::vector<std::uint32_t> depth_passes_; ///< passes with a depth
-  std::vector<double> squares_; ///< 3 per pixel: sums of (direct + indirect + background)^2
+  std::vector<double> squares_;             ///< 3 per pixel: sums of what passes show, squared
   PassHistory history_;
   struct Shapes {
     std::size_t batches;

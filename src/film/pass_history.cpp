@@ -92,6 +92,8 @@ void PassHistory::add(const PassImage& pass, const std::vector<ProbeValue>& prob
   float* sums = &values_[batch * stride()];
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t pixel = pixels_[i];
+    for (std::size_t c = 0; c < 3 && !pass.emission.empty(); ++c)
+      sums[3 * i + c] += finite_or_zero(pass.emission[pixel][static_cast<int>(c)]);
     for (std::size_t c = 0; c < 3; ++c)
       sums[3 * i + c] += finite_or_zero(pass.direct[pixel][static_cast<int>(c)]) +
                          finite_or_zero(pass.indirect[pixel][static_cast<int>(c)]) +

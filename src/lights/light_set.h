@@ -19,6 +19,8 @@ public:
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
            const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
+  void add(std::unique_ptr<Light> light) { lights_.push_back(std::move(light)); }
+
   std::size_t size() const { return lights_.size(); }
   const Light& operator[](std::size_t i) const { return *lights_[i]; }
   Light& operator[](std::size_t i) { return *lights_[i]; }

@@ -187,7 +187,8 @@ Film read_film(const std::string& path, const FilmFileInfo& info) {
     const Imath::Box2i window = file.header().dataWindow();
     if (!file.isComplete() || window != data_window(info.header))
       fail_damaged(path);
-    Film film(info.header.width, info.header.height);
+    const bool glows = file.header().channels().findChannel("film.emission.R.sum.low") != nullptr;
+    Film film(info.header.width, info.header.height, glows);
     Imf::FrameBuffer pixels;
     visit_slices(film, window, [&](const std::string& name, const Imf::Slice& slice) {
       const Imf::Channel* channel = file.header().channels().findChannel(name);

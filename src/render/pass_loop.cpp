@@ -27,7 +27,7 @@ std::uint64_t peak_memory() {
 /// The part of a pass that lies in the window.
 PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
   PassImage part;
-  part.resize(window.width(), window.height());
+  part.resize(window.width(), window.height(), !pass.emission.empty());
   for (int y = 0; y < window.height(); ++y) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
     const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(y) * part.width;
@@ -37,6 +37,8 @@ PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
     copy(pass.direct, part.direct);
     copy(pass.indirect, part.indirect);
     copy(pass.background, part.background);
+    if (!pass.emission.empty())
+      copy(pass.emission, part.emission);
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }
@@ -49,7 +51,7 @@ PassLoop::PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWind
                    RenderResult& result)
     : scene_(scene), hooks_(hooks), window_(window),
       whole_(window.width() == scene.image.width && window.height() == scene.image.height),
-      result_(result), film_(window.width(), window.height()) {
+      result_(result), film_(window.width(), window.height(), scene.glows()) {
   if (hooks.pass_range)
     first_pass_ = hooks.pass_range->first;
   if (!hooks.checkpoint.path.empty() || !hooks.partial.empty())
@@ -173,9 +175,8 @@ void PassLoop::resume() {
 }
 
 PassRecord PassLoop::estimate_errors() const {
-  const bool unbiased =
-      !scene_.render.clamp &&
-      (scene_.render.estimator == EstimatorType::path || !result_.plan.needs("photons"));
+  const bool unbiased = !scene_.render.clamp && (scene_.render.estimator == EstimatorType::path ||
+                                                 !result_.plan.needs("photons"));
   return error_record(film_, unbiased);
 }
 

@@ -19,6 +19,7 @@ struct Needs {
   bool medium = false, visible = false, scatters = false, photons = false, first_flight = false;
   bool shadow_rays = false, anisotropic = false, chromatic = false, coloured = false;
   bool environment = false, several_bounces = true;
+  bool glows = false, glow_visible = false;
 };
 
 /// Whether single scattering of a light is left to photons (the rule that the renderer follows).
@@ -34,6 +35,12 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
   Needs needs;
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const VolumeSettings& volume = scene.volumes[i];
+    if (volumes[i].glowing_voxels > 0) {
+      needs.glows = true;
+      needs.glow_visible = needs.glow_visible || volumes[i].in_view;
+      needs.coloured =
+          needs.coloured || !volume.emission.temperature.empty() || !is_grey(volume.emission.color);
+    }
     if (volumes[i].empty || !(volume.extinction > 0))
       continue;
     needs.medium = true;
@@ -60,10 +67,14 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
     else
       needs.shadow_rays = true;
   }
+  // What glows shines on what scatters; its photons need no shadow rays.
+  if (scene.render.estimator != EstimatorType::path)
+    needs.first_flight = needs.first_flight || needs.glows;
   needs.coloured = needs.coloured || needs.chromatic;
   const bool photon_estimator = scene.render.estimator != EstimatorType::path;
   const bool bounces = !scene.render.max_bounces || *scene.render.max_bounces > 0;
-  needs.scatters = needs.scatters && needs.visible && !scene.lights.empty() && bounces;
+  const bool lit = !scene.lights.empty() || needs.glows;
+  needs.scatters = needs.scatters && needs.visible && lit && bounces;
   needs.photons =
       photon_estimator && needs.scatters && (needs.several_bounces || needs.first_flight);
   needs.shadow_rays = needs.shadow_rays && needs.scatters;
@@ -99,7 +110,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   const char* const no_scattering = needs.medium && !needs.visible
                                         ? out_of_view
                                         : "nothing scatters: albedo 0, no light, or no bounces";
-  add("read", !scene.volumes.empty(), scene.volumes.empty() ? "no volumes" : "density grids only");
+  add("read", !scene.volumes.empty(),
+      scene.volumes.empty() ? "no volumes"
+      : needs.glows         ? "density and emission grids only"
+                            : "density grids only");
   add("majorants", needs.medium, needs.medium ? "the medium is not empty" : no_medium);
   add("surfaces", false, "no surfaces in the scene");
   add("photons", needs.photons,
@@ -125,6 +139,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       needs.chromatic ? "extinction differs between channels" : "extinction is grey");
   add("depth profiles", needs.visible,
       first_reason({{!needs.medium, no_medium}, {!needs.visible, out_of_view}}));
+  add("emission", needs.glow_visible,
+      first_reason({{!needs.glows, "no volume glows"},
+                    {!needs.glow_visible, "the camera sees nothing of what glows"},
+                    {true, "a volume glows"}}));
   add("shadow rays", needs.shadow_rays,
       first_reason({{!needs.scatters, no_scattering},
                     {!needs.shadow_rays, "every light is left to photons or to escaping rays"}}));
@@ -144,20 +162,21 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
 
   constexpr std::uint64_t bytes_per_voxel = 6; // a brick of 9^3 floats per 8^3 voxels
   for (const VolumeFacts& volume : volumes)
-    plan.volume_bytes += volume.active_voxels * bytes_per_voxel;
+    plan.volume_bytes +=
+        volume.active_voxels * bytes_per_voxel + volume.glowing_voxels * 3 * bytes_per_voxel;
   if (needs.photons)
     plan.photon_bytes = photon_memory(render.photons.value_or(400000), needs.coloured);
-  plan.film_bytes = film_memory(scene.image, scene.image.width, scene.image.height);
+  plan.film_bytes = film_memory(scene.image, scene.image.width, scene.image.height, scene.glows());
   return plan;
 }
 
-std::uint64_t film_memory(const ImageSettings& image, int width, int height) {
+std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows) {
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
-  constexpr std::uint64_t pass = 44, developed = 60;
+  const std::uint64_t pass = glows ? 56 : 44, developed = glows ? 72 : 60;
   return pass * pixels(image.width, image.height) +
-         (Film::bytes_per_pixel() + developed) * pixels(width, height);
+         (Film::bytes_per_pixel(glows) + developed) * pixels(width, height);
 }
 
 namespace {
@@ -179,25 +198,45 @@ Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
 
 } // namespace
 
+namespace {
+
+/// Voxels of the grids that a volume's emission is made from, as their headers say; 0 where one of
+/// them is empty.
+std::uint64_t count_glowing_voxels(const VolumeSettings& volume, Boxd& bounds) {
+  std::uint64_t voxels = 0;
+  if (!volume.glows())
+    return voxels;
+  for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
+    if (name.empty())
+      continue;
+    const GridSummary grid = read_grid_header(volume.file, name);
+    if (grid.active_voxels == 0)
+      return 0;
+    voxels += grid.active_voxels;
+    bounds.extend(visible_bounds(grid, volume.transform));
+  }
+  return voxels;
+}
+
+} // namespace
+
 RenderPlan make_plan(const Scene& scene) {
   std::vector<VolumeFacts> facts;
   Boxd bounds;
   for (const VolumeSettings& volume : scene.volumes) {
     VolumeFacts fact{true, 0};
-    if (volume.present) {
+    if (volume.needs_density()) {
       const GridSummary grid = read_grid_header(volume.file, volume.density);
       fact = {grid.active_voxels == 0, grid.active_voxels};
-      const Boxd visible = visible_bounds(grid, volume.transform);
-      if (!fact.empty) {
-        bounds.extend(visible.lower);
-        bounds.extend(visible.upper);
-      }
+      if (!fact.empty)
+        bounds.extend(visible_bounds(grid, volume.transform));
     }
+    fact.glowing_voxels = count_glowing_voxels(volume, bounds);
     facts.push_back(fact);
   }
   const Camera camera(scene.camera, scene.image, {});
   for (VolumeFacts& fact : facts)
-    fact.in_view = !fact.empty && camera.may_see(bounds);
+    fact.in_view = (!fact.empty || fact.glowing_voxels > 0) && camera.may_see(bounds);
   return plan_stages(scene, facts);
 }
 

@@ -8,7 +8,8 @@ namespace vdbeam {
 struct VolumeFacts {
   bool empty = false;
   std::uint64_t active_voxels = 0;
-  bool in_view = true; ///< false where no camera ray can meet it
+  bool in_view = true;              ///< false where no camera ray can meet it
+  std::uint64_t glowing_voxels = 0; ///< of its emission grids; 0: it does not glow
 };
 
 /// The stages that the scene needs, each with the reason why it runs or is left out, and estimates
@@ -16,7 +17,7 @@ struct VolumeFacts {
 RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes);
 
 /// Bytes of a pass over the picture, and of the film and the picture developed from it where only
-/// `width` x `height` pixels are wanted.
-std::uint64_t film_memory(const ImageSettings& image, int width, int height);
+/// `width` x `height` pixels are wanted. `glows`: with emission.
+std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows = false);
 
 } // namespace vdbeam

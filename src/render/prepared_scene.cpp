@@ -52,7 +52,7 @@ const ReadVolume* find_read(const PreparedScenePtr& previous, const std::string&
 
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read) {
-  if (!volume.present)
+  if (!volume.needs_density())
     return {};
   read.identity = file_identity(volume.file) + "|" + volume.density;
   if (const ReadVolume* known = find_read(previous, read.identity)) {
@@ -62,6 +62,29 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
     return grid;
   }
   return read_density_grid(volume.file, volume.density);
+}
+
+/// Everything that decides an emission field but the contents of the file; its strength does not.
+std::string emission_identity(const VolumeSettings& volume) {
+  std::string text = file_identity(volume.file);
+  Scene scene;
+  scene.volumes.push_back(volume);
+  for (const SceneKey& key : scene_keys())
+    if (key.section == SceneSection::emission && key.name != "scale" && key.name != "color")
+      text += fmt::format("|{}", key.format(key.get(scene, 0)));
+  return text;
+}
+
+EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                           ReadVolume& read) {
+  if (!volume.glows())
+    return {};
+  read.emission_identity = emission_identity(volume);
+  if (previous)
+    for (const ReadVolume& known : previous->volumes)
+      if (known.emission_identity == read.emission_identity)
+        return known.emission;
+  return read_emission_grid(volume.file, volume.emission);
 }
 
 /// Bytes for photons that later frames may use: at most an eighth of the memory, which is less than
@@ -92,11 +115,14 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
     return prepared;
   }
   std::vector<DensityGrid> grids;
+  std::vector<EmissionGrid> emissions;
   int kept = 0;
   for (const VolumeSettings& volume : scene.volumes) {
     ReadVolume read;
     grids.push_back(take_grid(volume, previous, read));
     keep_facts(grids.back(), read);
+    emissions.push_back(take_emission(volume, previous, read));
+    read.emission = emissions.back();
     // As build_world leaves volumes out.
     const bool empty = grids.back().field.empty() ||
                        !(volume.extinction * max_component(volume.extinction_scale) > 0);
@@ -107,7 +133,8 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
   }
   prepared->seconds_read =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  prepared->world = std::make_shared<const World>(build_world(scene, std::move(grids)));
+  prepared->world =
+      std::make_shared<const World>(build_world(scene, std::move(grids), std::move(emissions)));
   prepared->seconds_build = prepared->world->seconds_build;
   return prepared;
 }

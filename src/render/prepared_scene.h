@@ -12,6 +12,9 @@ namespace vdbeam {
 
 /// One volume of a scene as it was read, so that the next frame need not read it again.
 struct ReadVolume {
+  std::string
+      emission_identity; ///< file, its size and time of change, what the emission is made of
+  EmissionGrid emission;
   std::string identity; ///< file, its size and time of change, grid; empty: nothing was read
   DensityGrid facts;    ///< all but the field
   int index = -1;       ///< where the medium holds its field; -1: it is empty

@@ -67,10 +67,12 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   result.statistics.prepare = prepared->seconds_build;
   std::vector<VolumeFacts> facts;
   const Camera camera(scene.camera, scene.image, world.space);
-  for (const std::uint64_t voxels : world.active_voxels)
-    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera)});
+  for (std::size_t i = 0; i < world.active_voxels.size(); ++i) {
+    const std::uint64_t voxels = world.active_voxels[i];
+    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera), world.glowing_voxels[i]});
+  }
   result.plan = plan_stages(scene, facts);
-  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height());
+  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
   check_memory(scene, result.plan, granted_memory());
   for (const std::string& line : limit_notes(scene, world, result.plan))
     note(line);

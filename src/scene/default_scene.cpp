@@ -1,5 +1,6 @@
 #include "scene/default_scene.h"
 
+#include "scene/default_emission.h"
 #include "scene/frame_range.h"
 #include "scene/text.h"
 #include "vdbeam/error.h"
@@ -126,13 +127,6 @@ VolumeShape find_shape(const std::string& path,
   return shape;
 }
 
-double round_to_digits(double x, int digits) {
-  if (!(x > 0) || !std::isfinite(x))
-    return 1;
-  const double unit = std::pow(10, std::floor(std::log10(x)) - (digits - 1));
-  return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
-}
-
 /// Coordinates that people can read: a thousandth of the object's size is precise enough.
 Vec3d round_point(const Vec3d& p, double size) {
   const double steps = std::pow(10, 3 - std::floor(std::log10(size)));
@@ -196,14 +190,15 @@ void frame_camera(Scene& scene, const Boxd& bounds, const FramingWishes& wishes)
   camera.position = round_point(target + towards * distance, size);
 }
 
-void light_scene(Scene& scene, const Vec3d& up_axis) {
+/// `dim`: what glows shows beside a low light only.
+void light_scene(Scene& scene, const Vec3d& up_axis, bool dim) {
   LightSettings sun;
   sun.type = LightType::distant;
   sun.direction = round_point(Viewer(up_axis).direction(-0.55, -0.66, -0.44), 1);
-  sun.irradiance = Rgb(5);
+  sun.irradiance = Rgb(dim ? 0.5f : 5.0f);
   LightSettings sky;
   sky.type = LightType::environment;
-  sky.radiance = Rgb(0.25f);
+  sky.radiance = Rgb(dim ? 0.025f : 0.25f);
   scene.lights = {sun, sky};
 }
 
@@ -227,12 +222,10 @@ Scene make_default_scene(const std::string& path,
   scene.path = path;
   const VolumeShape shape = find_shape(path, summaries, wishes, scene.notes);
   frame_camera(scene, shape.bounds, wishes);
-  light_scene(scene, wishes.up);
 
   VolumeSettings volume;
   volume.file = path;
   volume.density = shape.grid;
-  volume.albedo = Rgb(0.98f);
   volume.phase.type = PhaseType::henyey_greenstein;
   volume.phase.g = 0.5;
   if (shape.mean_depth > 0 && shape.largest_depth > 0) {
@@ -243,6 +236,10 @@ Scene make_default_scene(const std::string& path,
                                       path, volume.extinction,
                                       volume.extinction * shape.mean_depth));
   }
+  volume.emission = default_emission(path, summaries, scene.notes);
+  const bool fire = volume.glows();
+  volume.albedo = Rgb(fire ? 0.7f : 0.98f); // the smoke of a fire is dark
+  light_scene(scene, wishes.up, fire);
   scene.volumes.push_back(volume);
   return scene;
 }

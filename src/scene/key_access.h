@@ -18,6 +18,8 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.volumes[index];
   else if constexpr (std::is_same_v<S, PhaseSettings>)
     return scene.volumes[index].phase;
+  else if constexpr (std::is_same_v<S, EmissionSettings>)
+    return scene.volumes[index].emission;
   else if constexpr (std::is_same_v<S, LightSettings>)
     return scene.lights[index];
   else

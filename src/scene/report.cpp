@@ -96,6 +96,8 @@ Json settings_json(const Scene& scene) {
       const Json value = value_json(key, key.get(scene, i));
       if (key.section == SceneSection::phase)
         settings["volume"][i]["phase"][key.name] = value;
+      else if (key.section == SceneSection::emission)
+        settings["volume"][i]["emission"][key.name] = value;
       else if (key.is_list_item())
         settings[section_name(key.section)][i][key.name] = value;
       else
@@ -144,6 +146,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"camera_rays", statistics.camera_rays},
                       {"depth_profiles", statistics.depth_profiles},
                       {"shadow_rays", statistics.shadow_rays},
+                      {"emission_rays", statistics.emission_rays},
                       {"camera_walks", statistics.camera_walks},
                       {"bias_rays", statistics.bias_rays},
                       {"neighbourhoods", statistics.neighbourhoods},

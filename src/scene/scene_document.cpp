@@ -149,7 +149,7 @@ Scene SceneDocument::scene_at(int frame, MissingFile missing) const {
     scene.render.passes = usual_passes;
   if (scene.volumes.empty())
     scene.notes.push_back(path_ + ": there is no [[volume]]: only lights are rendered");
-  if (scene.lights.empty())
+  if (scene.lights.empty() && !scene.glows())
     scene.notes.push_back(path_ + ": there is no [[light]]: the picture will be black");
   return scene;
 }

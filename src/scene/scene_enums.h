@@ -24,6 +24,13 @@ struct EnumNames<PhaseType> {
        {PhaseType::mie, "mie"}}};
 };
 template <>
+struct EnumNames<EmissionLaw> {
+  static constexpr std::array<std::pair<EmissionLaw, std::string_view>, 3> table{
+      {{EmissionLaw::planck, "planck"},
+       {EmissionLaw::stefan_boltzmann, "stefan_boltzmann"},
+       {EmissionLaw::none, "none"}}};
+};
+template <>
 struct EnumNames<LightType> {
   static constexpr std::array<std::pair<LightType, std::string_view>, 4> table{
       {{LightType::distant, "distant"},

@@ -151,6 +151,26 @@ void add_volume(Table& table) {
       .types({"mie"});
 }
 
+void add_emission(Table& table) {
+  using E = EmissionSettings;
+  table.section(SceneSection::emission);
+  table.add("intensity", &E::intensity,
+            R"(name of a grid that says how strongly it glows ("flame", "heat"); "": evenly)");
+  table.add("temperature", &E::temperature,
+            R"(name of a grid of temperatures, to glow as a black body does; "": the color alone)");
+  table.add("kelvin", &E::kelvin, "kelvin per unit of the temperature grid").above(0);
+  table.add("kelvin_offset", &E::kelvin_offset, "added to the temperature, except where it is 0")
+      .unit("kelvin");
+  table.add("law", &E::law, "how a black body's brightness follows its temperature");
+  table.add("reference", &E::reference, "temperature at which a black body's luminance is 1")
+      .unit("kelvin")
+      .within(100, 100000);
+  table.add("color", &E::color, "factor per channel").at_least(0);
+  table.add("scale", &E::scale, "strength: what 1 of all the above sends out")
+      .unit("radiance / world")
+      .at_least(0);
+}
+
 void add_light(Table& table) {
   using L = LightSettings;
   table.section(SceneSection::light);
@@ -263,6 +283,7 @@ std::vector<SceneKey> make_table() {
   Table table(entries);
   add_image_and_camera(table);
   add_volume(table);
+  add_emission(table);
   add_light(table);
   add_render(table);
   std::vector<SceneKey> keys;

@@ -157,7 +157,7 @@ std::vector<std::string> key_names(SceneSection section) {
     if (key.section == section)
       names.push_back(key.name);
   if (section == SceneSection::volume)
-    names.insert(names.end(), {"phase", "time"});
+    names.insert(names.end(), {"phase", "emission", "time"});
   return names;
 }
 
@@ -171,6 +171,8 @@ std::string section_name(SceneSection section) {
     return "volume";
   case SceneSection::phase:
     return "volume.phase";
+  case SceneSection::emission:
+    return "volume.emission";
   case SceneSection::light:
     return "light";
   case SceneSection::render:
@@ -185,6 +187,8 @@ std::string key_path(const SceneKey& key, std::size_t index) {
     return fmt::format("volume.{}.{}", index, key.name);
   case SceneSection::phase:
     return fmt::format("volume.{}.phase.{}", index, key.name);
+  case SceneSection::emission:
+    return fmt::format("volume.{}.emission.{}", index, key.name);
   case SceneSection::light:
     return fmt::format("light.{}.{}", index, key.name);
   default:
@@ -193,7 +197,8 @@ std::string key_path(const SceneKey& key, std::size_t index) {
 }
 
 std::size_t section_count(const Scene& scene, SceneSection section) {
-  if (section == SceneSection::volume || section == SceneSection::phase)
+  if (section == SceneSection::volume || section == SceneSection::phase ||
+      section == SceneSection::emission)
     return scene.volumes.size();
   return section == SceneSection::light ? scene.lights.size() : 1;
 }

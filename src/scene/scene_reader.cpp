@@ -43,6 +43,8 @@ std::string item_name(SceneSection section, std::size_t index) {
     return fmt::format("volume.{}", index);
   if (section == SceneSection::phase)
     return fmt::format("volume.{}.phase", index);
+  if (section == SceneSection::emission)
+    return fmt::format("volume.{}.emission", index);
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
@@ -126,6 +128,8 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
       read_key(*key, index, *child.node);
     else if (section == SceneSection::volume && child.name == "phase")
       read_phase(index, *child.node);
+    else if (section == SceneSection::volume && child.name == "emission")
+      read_emission(index, *child.node);
     else if (section == SceneSection::volume && child.name == "time")
       continue; // read before, since the file depends on it
     else
@@ -146,9 +150,26 @@ void SceneReader::read_phase(std::size_t index, const toml::node& node) {
         "{}: volume.{}.phase must be a table, e.g. {{ type = \"henyey_greenstein\", g = 0.6 }}, "
         "got {}",
         location_of(node), index, node_text(node)));
-  // read_table would forget the placement of the volume that this phase is a part of.
+  read_part(SceneSection::phase, index, *table);
+}
+
+void SceneReader::read_emission(std::size_t index, const toml::node& node) {
+  const std::string path = fmt::format("volume.{}.emission", index);
+  const auto* table = node.as_table();
+  if (!table)
+    throw InputError(
+        fmt::format("{}: {} must be a table, e.g. {{ intensity = \"flame\", scale = 10 "
+                    "}}, got {}",
+                    location_of(node), path, node_text(node)));
+  locations_[path] = location_of(node);
+  read_part(SceneSection::emission, index, *table);
+}
+
+/// A table inside a volume's.
+void SceneReader::read_part(SceneSection section, std::size_t index, const toml::table& table) {
+  // read_table would forget the placement of the volume.
   const auto placement = placement_;
-  read_table(SceneSection::phase, index, *table);
+  read_table(section, index, table);
   placement_ = placement;
 }
 

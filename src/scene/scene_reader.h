@@ -31,6 +31,8 @@ private:
   void read_list(SceneSection section, const toml::node& node);
   void read_table(SceneSection section, std::size_t index, const toml::table& table);
   void read_phase(std::size_t index, const toml::node& node);
+  void read_emission(std::size_t index, const toml::node& node);
+  void read_part(SceneSection section, std::size_t index, const toml::table& table);
   void read_key(const SceneKey& key, std::size_t index, const toml::node& node);
   void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
   void check_types(SceneSection section, std::size_t index, const toml::table& table) const;

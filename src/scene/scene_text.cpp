@@ -35,7 +35,11 @@ public:
     add_section(SceneSection::camera, 0, "[camera]");
     for (std::size_t i = 0; i < scene_.volumes.size(); ++i) {
       add_section(SceneSection::volume, i, "[[volume]]");
-      text_ += phase_line(i);
+      text_ += part_line(SceneSection::phase, "phase", i);
+      text_ += scene_.glows()
+                   ? part_line(SceneSection::emission, "emission", i)
+                   : "# emission = { intensity = \"flame\", scale = 10 }  # where a grid "
+                     "glows\n";
     }
     for (std::size_t i = 0; i < scene_.lights.size(); ++i)
       add_section(SceneSection::light, i, "[[light]]");
@@ -89,13 +93,16 @@ private:
                        unit);
   }
 
-  std::string phase_line(std::size_t index) const {
+  /// A table inside a volume's, in one line.
+  std::string part_line(SceneSection section, const char* name, std::size_t index) const {
     std::string items;
     for (const SceneKey& key : scene_keys())
-      if (key.section == SceneSection::phase && applies(key, index))
+      if (key.section == section && applies(key, index))
         items += fmt::format("{}{} = {}", items.empty() ? "" : ", ", key.name,
-                             key.format(key.get(scene_, index)));
-    return "phase = { " + items + " }\n";
+                             key.kind == KeyKind::text
+                                 ? quote(std::get<std::string>(key.get(scene_, index)))
+                                 : key.format(key.get(scene_, index)));
+    return fmt::format("{} = {{ {} }}\n", name, items);
   }
 
   const Scene& scene_;

@@ -34,6 +34,17 @@ public:
       fail(fmt::format("volume.{}.transform", index), "must be invertible (no scale may be 0)");
   }
 
+  void check_emission(std::size_t index) const {
+    const EmissionSettings& emission = scene_.volumes[index].emission;
+    if (!emission.intensity.empty() || !emission.temperature.empty())
+      return;
+    for (const SceneKey& key : scene_keys())
+      if (key.section == SceneSection::emission &&
+          key.format(key.get(scene_, index)) != key.default_text())
+        fail(fmt::format("volume.{}.emission", index),
+             "must name the grid that glows: intensity, temperature or both");
+  }
+
   void check_light(std::size_t index) const {
     const LightSettings& light = scene_.lights[index];
     const bool aimed = light.type == LightType::distant || light.type == LightType::spot;
@@ -70,6 +81,8 @@ void validate_consistency(const Scene& scene, const KeyLocator& locate) {
   checker.check_camera();
   for (std::size_t i = 0; i < scene.volumes.size(); ++i)
     checker.check_volume(i);
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    checker.check_emission(i);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     checker.check_light(i);
   checker.check_render();

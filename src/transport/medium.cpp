@@ -13,6 +13,8 @@ std::size_t Medium::bytes() const {
   std::size_t sum = 0;
   for (const Volume& volume : volumes)
     sum += volume.field.bytes() + volume.majorants.bytes();
+  for (const Emitter& emitter : emitters)
+    sum += emitter.field->bytes();
   return sum;
 }
 

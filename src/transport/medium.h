@@ -5,6 +5,7 @@
 #include "phase/phase_function.h"
 #include "transport/cell_walk.h"
 #include "transport/majorant_grid.h"
+#include "volume/emitter.h"
 #include "volume/render_space.h"
 
 #include <array>
@@ -50,11 +51,15 @@ using CellTables = std::vector<std::vector<float>>;
 /// All volumes of a scene; they may overlap, and coefficients add.
 struct Medium {
   std::vector<Volume> volumes;       ///< only those with something in them
+  std::vector<Emitter> emitters;     ///< of the volumes that glow, whether or not they do more
   std::vector<PhaseFunction> phases; ///< one per group of volumes with the same phase function
   Boxf bounds;                       ///< of all that is not empty, render space
   bool chromatic = false;            ///< extinction differs between channels
 
+  /// Nothing absorbs or scatters.
   bool empty() const { return volumes.empty(); }
+  /// There is something to look at.
+  bool visible() const { return !volumes.empty() || !emitters.empty(); }
   bool isotropic() const;
   std::size_t bytes() const;
   /// Part of the ray inside `bounds`; t_begin >= t_end where it misses.

@@ -1,5 +1,7 @@
 #include "transport/world.h"
 
+#include "lights/volume_light.h"
+
 #include <chrono>
 #include <cmath>
 
@@ -22,11 +24,12 @@ Affine to_affine(const std::array<double, 12>& m) {
   return a;
 }
 
-/// Local coordinates of the field -> world.
-Affine local_to_world(const DensityGrid& grid, const VolumeSettings& settings) {
+/// Local coordinates of a field -> world.
+Affine local_to_world(const Vec3<std::int64_t>& origin, const Affine& index_to_world,
+                      const VolumeSettings& settings) {
   Affine shift;
-  shift.translation = Vec3d(grid.field.origin());
-  return to_affine(settings.transform).after(grid.index_to_world).after(shift);
+  shift.translation = Vec3d(origin);
+  return to_affine(settings.transform).after(index_to_world).after(shift);
 }
 
 Boxd mapped_bounds(const Affine& map, const Boxf& box) {
@@ -110,6 +113,40 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
   return volume;
 }
 
+Emitter make_emitter(const EmissionGrid& grid, const VolumeSettings& settings,
+                     const RenderSpace& space) {
+  Emitter emitter;
+  emitter.field = grid.field;
+  emitter.to_render =
+      space.map().after(local_to_world(grid.field->origin(), grid.index_to_world, settings));
+  const Affine inverse = emitter.to_render.inverse();
+  for (int i = 0; i < 3; ++i)
+    emitter.rows[i] = Vec3f(inverse.rows[i]);
+  emitter.translation = Vec3f(inverse.translation);
+  emitter.strength = Rgb(Vec3d(settings.emission.color) * (settings.emission.scale / space.scale));
+  return emitter;
+}
+
+/// Notes and voxels of a volume's emission; returns its bounds in the world.
+Boxd add_emission_facts(World& world, const EmissionGrid& grid, const VolumeSettings& settings) {
+  world.notes.insert(world.notes.end(), grid.notes.begin(), grid.notes.end());
+  world.glowing_voxels.push_back(grid.empty() ? 0 : grid.active_voxels);
+  if (grid.empty())
+    return {};
+  return mapped_bounds(local_to_world(grid.field->origin(), grid.index_to_world, settings),
+                       grid.field->occupied());
+}
+
+/// What glows shines on what scatters.
+void add_volume_lights(World& world) {
+  bool scatters = false;
+  for (const Volume& volume : world.medium.volumes)
+    scatters = scatters || max_component(volume.albedo) > 0;
+  for (const Emitter& emitter : world.medium.emitters)
+    if (scatters)
+      world.lights.add(std::make_unique<VolumeLight>(emitter));
+}
+
 void bound_region(World& world, const Boxd& bounds) {
   world.medium.bounds = {Vec3f(world.space.point(bounds.lower)),
                          Vec3f(world.space.point(bounds.upper))};
@@ -128,25 +165,35 @@ bool grey_scene(const Scene& scene, const World& world) {
   for (const LightSettings& light : scene.lights)
     grey = grey && is_grey(light.irradiance) && is_grey(light.intensity) &&
            is_grey(light.radiance) && light.image.empty();
+  for (const VolumeSettings& volume : scene.volumes)
+    grey = grey && (!volume.glows() ||
+                    (volume.emission.temperature.empty() && is_grey(volume.emission.color)));
   return grey;
 }
 
 } // namespace
 
-World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
+World build_world(const Scene& scene, std::vector<DensityGrid> grids,
+                  std::vector<EmissionGrid> emissions) {
   const auto start = std::chrono::steady_clock::now();
   World world;
   world.settings = scene.render;
   std::vector<Affine> maps;
   Boxd bounds;
+  emissions.resize(grids.size());
   for (std::size_t i = 0; i < grids.size(); ++i) {
     world.notes.insert(world.notes.end(), grids[i].notes.begin(), grids[i].notes.end());
     world.active_voxels.push_back(grids[i].field.empty() ? 0 : grids[i].active_voxels);
-    maps.push_back(local_to_world(grids[i], scene.volumes[i]));
+    maps.push_back(
+        local_to_world(grids[i].field.origin(), grids[i].index_to_world, scene.volumes[i]));
     if (!grids[i].field.empty())
       bounds.extend(mapped_bounds(maps[i], grids[i].field.occupied()));
+    bounds.extend(add_emission_facts(world, emissions[i], scene.volumes[i]));
   }
   world.space = choose_space(bounds);
+  for (std::size_t i = 0; i < grids.size(); ++i)
+    if (!emissions[i].empty())
+      world.medium.emitters.push_back(make_emitter(emissions[i], scene.volumes[i], world.space));
   std::vector<PhaseSettings> known;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VolumeSettings& settings = scene.volumes[i];
@@ -160,9 +207,10 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }
-  if (!world.medium.empty())
+  if (world.medium.visible())
     bound_region(world, bounds);
   world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &world.notes);
+  add_volume_lights(world);
   world.grey = grey_scene(scene, world);
   world.seconds_build = seconds_since(start);
   return world;
@@ -171,11 +219,15 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids) {
 World build_world(const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<DensityGrid> grids;
-  for (const VolumeSettings& volume : scene.volumes)
-    grids.push_back(volume.present ? read_density_grid(volume.file, volume.density)
-                                   : DensityGrid{});
+  std::vector<EmissionGrid> emissions;
+  for (const VolumeSettings& volume : scene.volumes) {
+    grids.push_back(volume.needs_density() ? read_density_grid(volume.file, volume.density)
+                                           : DensityGrid{});
+    emissions.push_back(volume.glows() ? read_emission_grid(volume.file, volume.emission)
+                                       : EmissionGrid{});
+  }
   const double seconds_read = seconds_since(start);
-  World world = build_world(scene, std::move(grids));
+  World world = build_world(scene, std::move(grids), std::move(emissions));
   world.seconds_read = seconds_read;
   return world;
 }

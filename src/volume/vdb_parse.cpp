@@ -33,7 +33,7 @@ std::vector<std::string> grid_names(openvdb::io::File& file) {
 void check_kind(const std::string& path, const std::string& name, const openvdb::GridBase& grid) {
   if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>())
     refuse(path, name,
-           fmt::format("holds {} values, but a density must be a float or half grid",
+           fmt::format("holds {} values, but only float and half grids can be rendered",
                        grid.valueType()));
   const openvdb::math::Transform& transform = grid.transform();
   if (!transform.isLinear())
@@ -66,13 +66,15 @@ float to_float(double value) {
   return static_cast<float>(value);
 }
 
-/// Calls `visit(tile iterator)` for each tile that matters: not 0, or in a level set not outside.
+/// Calls `visit(tile iterator)` for each tile that matters: not 0 nor the background, or in a level
+/// set not outside.
 template <class Tree, class Visit>
 void for_each_tile(const Tree& tree, bool level_set, Visit visit) {
   auto tile = tree.cbeginValueAll();
   tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile)
-    if (level_set ? !(tile.getValue() >= 0) : tile.getValue() != 0)
+    if (level_set ? !(tile.getValue() >= 0)
+                  : tile.getValue() != 0 && tile.getValue() != tree.background())
       visit(tile);
 }
 
@@ -109,8 +111,9 @@ void append_floats(std::vector<float>& to, const double* leaf) {
                  [](double value) { return to_float(value); });
 }
 
+/// Values equal to `background` become 0.
 template <class Leaf>
-void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
+void write_leaves(const std::vector<const Leaf*>& leaves, float background, int descriptor) {
   constexpr std::size_t batch = 64;
   std::vector<float> values;
   std::vector<std::int32_t> origins;
@@ -118,6 +121,8 @@ void write_leaves(const std::vector<const Leaf*>& leaves, int descriptor) {
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     append_floats(values, leaves[i]->buffer().data());
     if (values.size() == batch * leaf_size || i + 1 == leaves.size()) {
+      if (background != 0)
+        std::replace(values.begin(), values.end(), background, 0.0f);
       write_all(descriptor, values.data(), values.size() * sizeof(float));
       values.clear();
     }
@@ -143,7 +148,7 @@ void check_background(const std::string& path, const std::string& name, const Gr
 
 template <class Grid>
 void write_grid(const std::string& path, const std::string& name, const Grid& grid,
-                int descriptor) {
+                Background background, int descriptor) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
   static_assert(Leaf::SIZE == leaf_size);
   RawGridHeader header;
@@ -153,7 +158,8 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
   if (const auto declared = grid.template getMetadata<openvdb::Int64Metadata>(
           openvdb::GridBase::META_FILE_VOXEL_COUNT))
     header.declared_voxels = declared->value();
-  check_background(path, name, grid, level_set);
+  if (level_set || background == Background::refused)
+    check_background(path, name, grid, level_set);
 
   std::vector<const Leaf*> leaves;
   header.active_voxels = active_tile_voxels(grid.tree());
@@ -170,7 +176,7 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
   std::array<char, RawGridHeader::values_offset> page{};
   std::memcpy(page.data(), &header, sizeof header);
   write_all(descriptor, page.data(), page.size());
-  write_leaves(leaves, descriptor);
+  write_leaves(leaves, level_set ? 0 : to_float(grid.background()), descriptor);
   write_all(descriptor, tiles.data(), tiles.size() * sizeof(RawTile));
 }
 
@@ -197,7 +203,8 @@ void require_density_grid(const std::string& path, const std::string& grid_name)
              *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(grid_name)));
 }
 
-void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor) {
+void write_raw_grid(const std::string& path, const std::string& grid_name, Background background,
+                    int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files
   if (!file.hasGrid(grid_name))
@@ -206,9 +213,11 @@ void write_raw_grid(const std::string& path, const std::string& grid_name, int d
   const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
   check_kind(path, grid_name, grid);
   if (grid.isType<openvdb::FloatGrid>())
-    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(grid), descriptor);
+    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(grid), background,
+               descriptor);
   else
-    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(grid), descriptor);
+    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(grid), background,
+               descriptor);
 }
 
 } // namespace vdbeam

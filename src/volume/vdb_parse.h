@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/vdb_reader.h"
+
 #include <string>
 #include <utility>
 
@@ -25,7 +27,8 @@ void require_density_grid(const std::string& path, const std::string& grid_name)
 
 /// Reads one grid and writes it to `descriptor`, laid out as RawGridHeader says. Throws InputError
 /// (no such grid, unsupported type, class, map or background), and whatever OpenVDB throws.
-void write_raw_grid(const std::string& path, const std::string& grid_name, int descriptor);
+void write_raw_grid(const std::string& path, const std::string& grid_name, Background background,
+                    int descriptor);
 
 /// Writes the names of a file's grids, each ended by a line feed.
 void write_grid_names(const std::string& path, int descriptor);

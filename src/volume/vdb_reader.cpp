@@ -91,12 +91,12 @@ Affine to_affine(const std::array<double, 12>& m) {
 } // namespace
 
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
-                              const ReadLimits& limits) {
+                              const ReadLimits& limits, Background background) {
   const std::string label = fmt::format("{}: grid \"{}\"", path, grid_name);
   const GuardLimits guard = guard_limits(check_file(path), limits);
   prepare_openvdb();
-  MappedFile file =
-      run_guarded(path, guard, [&](int output) { write_raw_grid(path, grid_name, output); });
+  MappedFile file = run_guarded(
+      path, guard, [&](int output) { write_raw_grid(path, grid_name, background, output); });
   RawGridHeader header;
   RawGrid raw = view_raw_grid(label, file, header);
   // OpenVDB takes a file that ends just before a tree for an empty tree.

@@ -50,11 +50,16 @@ struct ReadLimits {
   std::uint64_t bytes = std::uint64_t(16) << 30;
 };
 
+/// What becomes of a grid whose value far outside is not 0: a density without end is refused; of
+/// other grids values equal to it count as 0.
+enum class Background { refused, ignored };
+
 /// Reads one float or half grid and bricks it, in parallel.
 /// Throws InputError (missing file or grid, naming the grids there are; unsupported type, class or
 /// map) and FrameError (corrupt file, limits exceeded), each within `limits`.
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
-                              const ReadLimits& limits = {});
+                              const ReadLimits& limits = {},
+                              Background background = Background::refused);
 
 /// What a file's header says of a grid that read_density_grid would read: name, type, class, map,
 /// active voxels and bounds. Takes milliseconds: voxels are read only where the file was written

@@ -40,6 +40,37 @@ void expect_same_bits(const Image& a, const Image& b) {
   }
 }
 
+/// The medium's own light has sums and an AOV of its own, and counts in all that is shown.
+TEST(Film, Emission) {
+  PassImage pass;
+  pass.resize(2, 1, true);
+  pass.direct = {{1, 2, 3}, {}};
+  pass.indirect = {{10, 20, 30}, {}};
+  pass.background = {{100, 200, 300}, {1, 1, 1}};
+  pass.emission = {{0.5f, 0.25f, 0.125f}, {4, 0, INFINITY}};
+  PassImage black; // a pass of a frame in which nothing glows
+  black.resize(2, 1);
+  Film film(2, 1, true);
+  film.add(pass);
+  film.add(black);
+  Film other(2, 1, true);
+  other.add(pass);
+  other.add(black);
+  film.merge(other);
+  const Image image = film.develop();
+  EXPECT_EQ(image.find("volume_emission.R")->data, (std::vector<float>{0.25f, 2}));
+  EXPECT_EQ(image.find("volume_emission.G")->data, (std::vector<float>{0.125f, 0}));
+  EXPECT_EQ(image.find("volume.R")->data, (std::vector<float>{5.75f, 2}));
+  EXPECT_EQ(image.find("R")->data, (std::vector<float>{55.75f, 2.5f}));
+  EXPECT_EQ(film.invalid_values(), 2u);
+  EXPECT_GT(film.mrse_estimate(), 0);
+  EXPECT_EQ(Film(2, 1).develop().find("volume_emission.R"), nullptr);
+  Film none(2, 1);
+  EXPECT_THROW(film.merge(none), std::invalid_argument);
+  // As many planes as a film without, and a double and a float for each channel.
+  EXPECT_EQ(film.planes().size(), none.planes().size() + 6);
+}
+
 TEST(Film, DevelopsSumsOfOutputs) {
   PassImage pass;
   pass.resize(2, 1);

@@ -1,84 +1,15 @@
 // The render plan as a value, and counters that prove that what is left out did not run.
-#include "estimators/camera_ray.h"
-#include "estimators/estimator.h"
-#include "render/plan.h"
-#include "support/memory_scene.h"
+#include "render/plan_outcome.h"
 #include "support/temp_folder.h"
-#include "transport/camera.h"
 #include "vdbeam/error.h"
 #include "volume_factory.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
-#include <set>
 
 namespace vdbeam {
 namespace {
 
 using namespace test;
-using Names = std::set<std::string>;
-
-/// What a scene needs and what one pass of it did.
-struct Outcome {
-  Names needed;
-  RenderPlan plan;
-  RenderStatistics statistics;
-  PassImage image;
-};
-
-Outcome run(const MemoryScene& scene) {
-  Outcome result;
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  std::vector<VolumeFacts> facts;
-  for (const std::uint64_t voxels : world.active_voxels)
-    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera)});
-  result.plan = plan_stages(scene.scene, facts);
-  for (const PlanStage& stage : result.plan.stages) {
-    EXPECT_FALSE(stage.reason.empty()) << stage.name;
-    if (stage.needed)
-      result.needed.insert(stage.name);
-  }
-  make_estimator(scene.scene.render.estimator, {world, camera, 1})
-      ->render_pass(0, result.image, result.statistics);
-  return result;
-}
-
-/// Every stage that the plan leaves out has a counter of 0, and every one that it keeps ran.
-void expect_plan_kept(const Outcome& run) {
-  const RenderStatistics& s = run.statistics;
-  const auto expect = [&](const char* stage, std::uint64_t count) {
-    if (run.plan.needs(stage))
-      EXPECT_GT(count, 0u) << stage << " was planned";
-    else
-      EXPECT_EQ(count, 0u) << stage << " was left out";
-  };
-  expect("photons", s.light_paths);
-  expect("map", s.photons_stored);
-  expect("map", s.bytes_per_photon);
-  expect("map", s.lookups);
-  expect("map", s.contributions);
-  expect("photon importance", s.importance_rays);
-  expect("neighbours", s.neighbourhoods);
-  expect("photon directions", s.directions);
-  expect("depth profiles", s.depth_profiles);
-  expect("shadow rays", s.shadow_rays);
-  expect("paths", s.camera_walks);
-}
-
-MemoryScene base() {
-  MemoryScene scene;
-  VolumeSettings& volume = scene.add_box(Vec3d(-0.5), Vec3d(0.5));
-  volume.extinction = 2;
-  volume.albedo = Rgb(0.9f);
-  volume.phase = henyey_greenstein(0.5);
-  scene.add_light(LightType::distant);
-  scene.look({0, 0, 3}, {0, 0, 0}, 12, 8, 8);
-  scene.scene.render.photons = 2000;
-  return scene;
-}
-
 TEST(Plan, SunlitVolume) {
   const Outcome r = run(base());
   EXPECT_EQ(r.needed,
@@ -320,6 +251,15 @@ TEST(MakePlan, ReadsHeadersOnly) {
   EXPECT_TRUE(make_plan(scene).needs("photons"));
 
   scene.volumes[0].density = "flame";
+  EXPECT_THROW(make_plan(scene), InputError);
+  // Emission alone needs no density grid, and no other grid than its own.
+  scene.volumes[0].extinction = 0;
+  scene.volumes[0].emission.intensity = "density";
+  const RenderPlan glow = make_plan(scene);
+  EXPECT_TRUE(glow.needs("emission"));
+  EXPECT_FALSE(glow.needs("majorants"));
+  EXPECT_FALSE(glow.needs("photons"));
+  scene.volumes[0].emission.temperature = "temperature";
   EXPECT_THROW(make_plan(scene), InputError);
   scene.volumes[0].present = false;
   EXPECT_FALSE(make_plan(scene).needs("majorants"));

@@ -34,7 +34,7 @@ TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
   text << stream.rdbuf();
   for (const SceneSection section :
        {SceneSection::image, SceneSection::camera, SceneSection::volume, SceneSection::phase,
-        SceneSection::light, SceneSection::render})
+        SceneSection::emission, SceneSection::light, SceneSection::render})
     EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
         << "docs/scene.md lacks this table of " << section_name(section) << ":\n"
         << key_table_markdown(section);

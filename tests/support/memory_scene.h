@@ -69,6 +69,7 @@ inline Affine turn(const Vec3d& axis, double degrees) {
 struct MemoryScene {
   Scene scene;
   std::vector<DensityGrid> grids;
+  std::vector<EmissionGrid> emissions;
 
   VolumeSettings& add(DensityField field, const Affine& index_to_world) {
     DensityGrid grid;
@@ -81,6 +82,18 @@ struct MemoryScene {
   /// A homogeneous box of density 1.
   VolumeSettings& add_box(const Vec3d& lower, const Vec3d& upper) {
     return add(uniform_field({1, 1, 1}, 1), box_map({1, 1, 1}, lower, upper));
+  }
+  /// Lets the last volume glow, with the intensity `field`.
+  EmissionSettings& glow(DensityField field, const Affine& index_to_world) {
+    DensityGrid grid;
+    grid.active_voxels = 1;
+    grid.field = std::move(field);
+    grid.index_to_world = index_to_world;
+    EmissionSettings& settings = scene.volumes.back().emission;
+    settings.intensity = "flame";
+    emissions.resize(grids.size());
+    emissions.back() = make_emission(settings, grid, {}, "memory", std::uint64_t(1) << 30);
+    return settings;
   }
   LightSettings& add_light(LightType type) {
     LightSettings light;
@@ -96,7 +109,7 @@ struct MemoryScene {
     scene.camera.fov = fov;
     scene.image = {width, height};
   }
-  World world() const { return build_world(scene, grids); }
+  World world() const { return build_world(scene, grids, emissions); }
 };
 
 inline PhaseSettings henyey_greenstein(double g) {

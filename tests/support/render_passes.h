@@ -18,7 +18,7 @@ struct PassMeans {
 };
 
 inline Rgb pixel_total(const PassImage& image, std::size_t i) {
-  return image.direct[i] + image.indirect[i] + image.background[i];
+  return image.total(i);
 }
 
 inline void add_means(std::array<Samples, 3>& samples, const std::vector<Rgb>& values) {

@@ -68,9 +68,9 @@ TEST_F(ReadErrors, long_lists_of_grids_are_cut) {
 
 TEST_F(ReadErrors, unsupported_grids) {
   EXPECT_EQ(refusal(make("vector")),
-            ": grid \"density\" holds vec3s values, but a density must be a float or half grid");
+            ": grid \"density\" holds vec3s values, but only float and half grids can be rendered");
   EXPECT_EQ(refusal(make("integer")),
-            ": grid \"density\" holds int32 values, but a density must be a float or half grid");
+            ": grid \"density\" holds int32 values, but only float and half grids can be rendered");
   EXPECT_EQ(refusal(make("frustum")),
             ": grid \"density\" has a NonlinearFrustumMap, not an affine transform; resample it to "
             "a uniform grid");

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <string>
+
+namespace vdbeam {
+
+/// How the brightness of a black body follows its temperature.
+enum class EmissionLaw { planck, stefan_boltzmann, none };
+
+/// Light that a volume sends out by itself: j(x) = scale * color * intensity(x) * blackbody(x)
+/// [radiance / world], where intensity is 1 without an intensity grid and blackbody is 1 without a
+/// temperature grid (docs/physics.md).
+struct EmissionSettings {
+  std::string intensity;   ///< grid name; empty: none
+  std::string temperature; ///< grid name; empty: none
+  double kelvin = 1;       ///< temperature [K] = kelvin * grid value + kelvin_offset
+  double kelvin_offset = 0;
+  EmissionLaw law = EmissionLaw::planck;
+  double reference = 1500; ///< the temperature [K] at which the blackbody's luminance is 1
+  Rgb color{1, 1, 1};
+  double scale = 1; ///< radiance per world unit
+
+  /// Anything may glow at all.
+  bool glows() const {
+    return (!intensity.empty() || !temperature.empty()) && scale > 0 && max_component(color) > 0;
+  }
+};
+
+} // namespace vdbeam

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vdbeam/scene.h"
+#include "volume/vdb_reader.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// How a bare VDB glows, from the summaries of the files that decide: by its flame grid ("flame",
+/// "flames", "fire", "heat", "burn"), in the colours of its temperature grid if there is one; or by
+/// a temperature grid that is plainly in kelvin. No emission where there is neither. `notes` takes
+/// what was chosen; `path` is for them.
+EmissionSettings default_emission(const std::string& path,
+                                  const std::vector<std::vector<GridSummary>>& summaries,
+                                  std::vector<std::string>& notes);
+
+/// The nearest number of so many digits; 1 for what is not above 0 and finite.
+double round_to_digits(double x, int digits);
+
+} // namespace vdbeam
