@@ -58,6 +58,12 @@ double in_steps(double number) {
   return number > 0 ? std::exp2(std::round(4 * std::log2(number)) / 4) : 0;
 }
 
+/// The nearest of 34, 170, 850, 4250, ...: what the pilot finds scatters by a factor of 1.7 either
+/// way, and kernels that changed with that from frame to frame would flicker.
+double in_kernel_steps(double neighbours) {
+  return 850 * std::pow(5, std::round(std::log(neighbours / 850) / std::log(5)));
+}
+
 /// Camera rays of a pass that meet the medium, from a coarse sample.
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
@@ -164,7 +170,9 @@ void PhotonStage::choose_neighbours() {
   }
   const KernelErrors errors =
       measure_kernels(input_, narrow, wide, albedo_in_power(), sampled_, key, importance_rays_);
-  neighbours_ = best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
+  const double best =
+      best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
+  neighbours_ = std::min(wide.neighbours, in_kernel_steps(best));
 }
 
 std::uint64_t PhotonStage::choose_paths() const {
