@@ -15,6 +15,7 @@ struct PassMeans {
   std::array<Samples, 3> total, direct, indirect, background;
   Samples opacity, depth;
   std::vector<Rgb> pixels; ///< mean over the passes, direct + indirect + background
+  RenderStatistics statistics;
 };
 
 inline Rgb pixel_total(const PassImage& image, std::size_t i) {
@@ -38,10 +39,9 @@ inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes
   const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, 1});
   PassMeans means;
   PassImage image;
-  RenderStatistics statistics;
   std::vector<Vec3d> sums;
   for (int pass = 0; pass < passes; ++pass) {
-    estimator->render_pass(pass, image, statistics);
+    estimator->render_pass(pass, image, means.statistics);
     std::vector<Rgb> total;
     for (std::size_t i = 0; i < image.direct.size(); ++i)
       total.push_back(pixel_total(image, i));
