@@ -71,7 +71,7 @@ void PassLoop::note(const std::string& line) {
 void PassLoop::run(Estimator& estimator, BiasProbe* probe) {
   if (!hooks_.checkpoint.path.empty() && hooks_.checkpoint.resume)
     resume();
-  start_ = last_attempt_ = Clock::now();
+  last_attempt_ = Clock::now();
   PassImage image;
   while (!finished()) {
     estimator.render_pass(next_pass(), image, result_.statistics);

@@ -48,7 +48,8 @@ private:
   RenderResult& result_;
   Film film_;
   int first_pass_ = 0;
-  Clock::time_point start_;
+  /// Seconds count from here, so that what an estimator tries out before its first pass is in them.
+  Clock::time_point start_ = Clock::now();
   double earlier_seconds_ = 0; ///< of the passes that came from a checkpoint
   std::uint64_t photons_before_ = 0;
   Clock::time_point last_attempt_; ///< to write a checkpoint

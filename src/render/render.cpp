@@ -80,8 +80,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
   const EstimatorInput input{world, camera, key, window, hooks.stop, prepared->photons.get()};
-  const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   PassLoop loop(scene, hooks, window, result);
+  const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   std::optional<BiasProbe> probe;
   if (result.plan.needs("bias"))
     probe.emplace(input, window, loop.probe_pixels(), scene.render.bias_rays);
