@@ -8,8 +8,8 @@ import re
 import sys
 
 # A folder of src includes only from itself and from the folders before it.
-LAYERS = ["math", "volume", "phase", "lights", "photonmap", "transport", "estimators", "film",
-          "output", "scene", "render", "farm", "cli"]
+LAYERS = ["text", "math", "machine", "image", "volume", "phase", "lights", "photonmap", "transport",
+          "estimators", "film", "compare", "scene", "report", "render", "farm", "cli"]
 LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
 CODE = {".h", ".cpp", ".py", ".sh", ".cmake"}

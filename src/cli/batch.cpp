@@ -1,8 +1,8 @@
 #include "cli/batch.h"
 
 #include "cli/signals.h"
-#include "scene/frame_range.h"
-#include "scene/threads.h"
+#include "machine/threads.h"
+#include "text/frame_range.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 

@@ -1,7 +1,7 @@
 #include "cli/batch_summary.h"
 
-#include "scene/frame_range.h"
-#include "scene/report.h"
+#include "report/report.h"
+#include "text/frame_range.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,6 @@
 #include "cli/batch_values.h"
 
-#include "scene/text.h"
-#include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <charconv>

@@ -1,6 +1,6 @@
 #include "cli/commands.h"
-#include "scene/frame_range.h"
-#include "scene/toml_value.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"

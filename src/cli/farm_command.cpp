@@ -2,11 +2,10 @@
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "farm/engines.h"
-#include "output/atomic_file.h"
-#include "output/output_formats.h"
-#include "scene/frame_range.h"
-#include "scene/text.h"
-#include "scene/toml_value.h"
+#include "image/output_formats.h"
+#include "machine/atomic_file.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "cli/commands.h"
 #include "cli/grid_notes.h"
-#include "scene/text.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "volume/vdb_reader.h"
 

@@ -1,8 +1,8 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
-#include "output/atomic_file.h"
+#include "machine/atomic_file.h"
 #include "scene/scene_document.h"
-#include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 

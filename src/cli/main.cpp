@@ -1,6 +1,6 @@
 #include "cli/commands.h"
+#include "report/versions.h"
 #include "scene/scene_keys.h"
-#include "scene/versions.h"
 #include "vdbeam/error.h"
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
-#include "output/output_formats.h"
+#include "image/output_formats.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
 

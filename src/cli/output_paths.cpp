@@ -1,7 +1,7 @@
 #include "cli/output_paths.h"
 
-#include "scene/frame_range.h"
-#include "scene/toml_value.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <filesystem>

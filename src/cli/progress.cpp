@@ -1,6 +1,6 @@
 #include "cli/progress.h"
 
-#include "scene/text.h"
+#include "text/text.h"
 
 #include <algorithm>
 #include <cmath>

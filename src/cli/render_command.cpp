@@ -4,9 +4,9 @@
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
-#include "output/output_formats.h"
-#include "scene/frame_range.h"
-#include "scene/toml_value.h"
+#include "image/output_formats.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "cli/scene_options.h"
 
-#include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "estimators/pass_image.h"
-#include "estimators/pixel_window.h"
+#include "image/pass_image.h"
+#include "image/pixel_window.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 

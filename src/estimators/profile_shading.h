@@ -1,7 +1,7 @@
 #pragma once
 
 #include "estimators/camera_ray.h"
-#include "estimators/pass_image.h"
+#include "image/pass_image.h"
 #include "transport/depth_profile.h"
 
 namespace vdbeam {

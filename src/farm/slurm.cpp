@@ -1,5 +1,5 @@
 #include "farm/engines.h"
-#include "scene/frame_range.h"
+#include "text/frame_range.h"
 #include "vdbeam/error.h"
 
 #include <cmath>

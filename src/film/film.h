@@ -1,8 +1,8 @@
 #pragma once
 
-#include "estimators/pass_image.h"
 #include "film/error_estimate.h"
 #include "film/pass_history.h"
+#include "image/pass_image.h"
 #include "vdbeam/image.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/pass_image.h"
+#include "image/pass_image.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "render/film_file.h"
 
-#include "output/exr_stream.h"
-#include "scene/frame_range.h"
+#include "image/exr_stream.h"
+#include "text/frame_range.h"
 #include "vdbeam/error.h"
 
 #include <ImfChannelList.h>

@@ -1,7 +1,7 @@
 #include "render/memory_check.h"
 
-#include "scene/cgroups.h"
-#include "scene/farm_grants.h"
+#include "machine/cgroups.h"
+#include "machine/farm_grants.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "render/error_record.h"
 #include "render/film_file.h"
-#include "scene/frame_range.h"
-#include "scene/image_metadata.h"
+#include "report/image_metadata.h"
+#include "text/frame_range.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
 

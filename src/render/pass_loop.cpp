@@ -2,7 +2,7 @@
 
 #include "film/clamp.h"
 #include "render/error_record.h"
-#include "scene/image_metadata.h"
+#include "report/image_metadata.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
 #include "vdbeam/scene_file.h"

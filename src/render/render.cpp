@@ -2,12 +2,12 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
+#include "machine/threads.h"
 #include "render/limit_notes.h"
 #include "render/memory_check.h"
 #include "render/pass_loop.h"
 #include "render/plan.h"
 #include "render/prepared_scene.h"
-#include "scene/threads.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 

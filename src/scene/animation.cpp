@@ -1,6 +1,7 @@
 #include "scene/animation.h"
 
 #include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

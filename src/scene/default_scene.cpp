@@ -1,8 +1,8 @@
 #include "scene/default_scene.h"
 
 #include "scene/default_emission.h"
-#include "scene/frame_range.h"
-#include "scene/text.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

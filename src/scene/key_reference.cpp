@@ -1,5 +1,5 @@
 #include "scene/scene_keys.h"
-#include "scene/text.h"
+#include "text/text.h"
 
 #include <array>
 #include <fmt/format.h>

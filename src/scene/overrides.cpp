@@ -1,6 +1,7 @@
 #include "scene/overrides.h"
 
 #include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <charconv>

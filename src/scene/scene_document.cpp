@@ -1,9 +1,10 @@
 #include "scene/scene_document.h"
 
 #include "scene/default_scene.h"
-#include "scene/frame_range.h"
 #include "scene/scene_reader.h"
 #include "scene/toml_value.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 

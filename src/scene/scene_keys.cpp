@@ -1,6 +1,6 @@
 #include "scene/scene_keys.h"
 
-#include "scene/text.h"
+#include "text/text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "scene/scene_reader.h"
 
 #include "scene/animation.h"
-#include "scene/frame_range.h"
-#include "scene/text.h"
 #include "scene/toml_value.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

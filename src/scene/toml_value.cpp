@@ -1,6 +1,6 @@
 #include "scene/toml_value.h"
 
-#include "scene/text.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <cmath>
@@ -97,15 +97,6 @@ std::string location_of(const toml::node& node) {
   if (is_override(node))
     return one_line(path->substr(1));
   return fmt::format("{}:{}", *path, node.source().begin.line);
-}
-
-std::string one_line(const std::string& text) {
-  constexpr std::size_t longest = 160;
-  std::string result = text.size() > longest ? text.substr(0, longest) + "..." : text;
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      c = ' ';
-  return result;
 }
 
 std::string node_text(const toml::node& node) {

@@ -22,7 +22,4 @@ std::string node_text(const toml::node& node);
 /// `path` names the key in messages.
 KeyValue read_key_value(const SceneKey& key, const std::string& path, const toml::node& node);
 
-/// Text on one line: control characters replaced, cut at some length.
-std::string one_line(const std::string& text);
-
 } // namespace vdbeam

@@ -1,8 +1,8 @@
 #include "scene/volume_time.h"
 
 #include "scene/animation.h"
-#include "scene/text.h"
 #include "scene/toml_value.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/report.h"
+#include "report/report.h"
 #include "scene/scene_document.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"

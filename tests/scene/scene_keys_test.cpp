@@ -1,7 +1,7 @@
 #include "scene/scene_keys.h"
 
-#include "scene/text.h"
 #include "scene_fixture.h"
+#include "text/text.h"
 
 #include <set>
 #include <sstream>

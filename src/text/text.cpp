@@ -1,4 +1,4 @@
-#include "scene/text.h"
+#include "text/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -46,6 +46,15 @@ std::optional<std::string> nearest_word(const std::string& word,
     }
   }
   return best;
+}
+
+std::string one_line(const std::string& text) {
+  constexpr std::size_t longest = 160;
+  std::string result = text.size() > longest ? text.substr(0, longest) + "..." : text;
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      c = ' ';
+  return result;
 }
 
 std::string join_words(const std::vector<std::string>& words, const std::string& conjunction) {

@@ -1,7 +1,7 @@
-#include "scene/image_metadata.h"
+#include "report/image_metadata.h"
 
+#include "report/versions.h"
 #include "scene/scene_enums.h"
-#include "scene/versions.h"
 
 #include <array>
 #include <cmath>

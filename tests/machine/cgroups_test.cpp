@@ -1,8 +1,8 @@
-#include "scene/cgroups.h"
+#include "machine/cgroups.h"
 
-#include "scene/farm_grants.h"
-#include "scene/threads.h"
-#include "scene_fixture.h"
+#include "machine/farm_grants.h"
+#include "machine/threads.h"
+#include "scene/scene_fixture.h"
 
 #include <cstdlib>
 

@@ -1,6 +1,6 @@
 #include "vdbeam/metrics.h"
 
-#include "film/flip.h"
+#include "compare/flip.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>

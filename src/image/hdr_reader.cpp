@@ -1,4 +1,4 @@
-#include "output/image_readers.h"
+#include "image/image_readers.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>

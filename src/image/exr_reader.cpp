@@ -1,5 +1,5 @@
-#include "output/exr_stream.h"
-#include "output/image_readers.h"
+#include "image/exr_stream.h"
+#include "image/image_readers.h"
 #include "vdbeam/error.h"
 
 #include <ImathBox.h>

@@ -1,4 +1,4 @@
-#include "film/flip.h"
+#include "compare/flip.h"
 
 #include "vdbeam/vec.h"
 

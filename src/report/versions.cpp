@@ -1,11 +1,10 @@
-#include "scene/versions.h"
+#include "report/versions.h"
 
 #include "photonmap/photon_map.h"
 #include "vdbeam/version.h"
 #include "volume/vdb_reader.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
-#include <fstream>
 #include <tbb/version.h>
 
 namespace vdbeam {
@@ -18,15 +17,6 @@ std::vector<std::pair<std::string, std::string>> component_versions() {
           {"oneTBB", TBB_runtime_version()},
           {"OpenEXR", OPENEXR_VERSION_STRING},
           {"SIMD", simd_target()}};
-}
-
-std::string cpu_model() {
-  std::ifstream stream("/proc/cpuinfo");
-  for (std::string line; std::getline(stream, line);)
-    if (line.starts_with("model name"))
-      if (const auto colon = line.find(": "); colon != std::string::npos)
-        return line.substr(colon + 2);
-  return "unknown";
 }
 
 } // namespace vdbeam

@@ -1,4 +1,4 @@
-#include "scene/farm_grants.h"
+#include "machine/farm_grants.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/atomic_file.h"
+#include "machine/atomic_file.h"
 #include "vdbeam/image.h"
 
 #include <ImfHeader.h>

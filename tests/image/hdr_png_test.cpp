@@ -1,4 +1,4 @@
-#include "output/output_formats.h"
+#include "image/output_formats.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"

@@ -1,4 +1,4 @@
-#include "scene/frame_range.h"
+#include "text/frame_range.h"
 
 #include "vdbeam/error.h"
 

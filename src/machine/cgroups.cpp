@@ -1,4 +1,4 @@
-#include "scene/cgroups.h"
+#include "machine/cgroups.h"
 
 #include <algorithm>
 #include <cmath>

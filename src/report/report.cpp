@@ -1,9 +1,10 @@
-#include "scene/report.h"
+#include "report/report.h"
 
-#include "output/atomic_file.h"
+#include "machine/atomic_file.h"
+#include "machine/cpu.h"
+#include "machine/threads.h"
+#include "report/versions.h"
 #include "scene/scene_keys.h"
-#include "scene/threads.h"
-#include "scene/versions.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
-#include "scene/threads.h"
+#include "machine/threads.h"
 
-#include "scene/cgroups.h"
-#include "scene/farm_grants.h"
+#include "machine/cgroups.h"
+#include "machine/farm_grants.h"
 
 #include <tbb/info.h>
 

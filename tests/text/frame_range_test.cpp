@@ -1,6 +1,6 @@
-#include "scene/frame_range.h"
+#include "text/frame_range.h"
 
-#include "scene_fixture.h"
+#include "scene/scene_fixture.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "output/exr_stream.h"
+#include "image/exr_stream.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 

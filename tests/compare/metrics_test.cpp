@@ -1,4 +1,4 @@
-#include "film/flip.h"
+#include "compare/flip.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"

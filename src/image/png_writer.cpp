@@ -1,4 +1,4 @@
-#include "output/atomic_file.h"
+#include "machine/atomic_file.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 

@@ -11,6 +11,10 @@ namespace vdbeam {
 std::optional<std::string> nearest_word(const std::string& word,
                                         const std::vector<std::string>& candidates);
 
+/// The text on one line, as messages need it: control characters become spaces, and what exceeds
+/// 160 bytes is cut off and marked by "...".
+std::string one_line(const std::string& text);
+
 /// "a, b and c" (or the last joined by `conjunction`).
 std::string join_words(const std::vector<std::string>& words, const std::string& conjunction);
 

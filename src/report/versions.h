@@ -10,7 +10,4 @@ namespace vdbeam {
 /// ("vdbeam", "0.1.0"), ("OpenVDB", ...), ("oneTBB", ...), ("OpenEXR", ...), ("SIMD", target).
 std::vector<std::pair<std::string, std::string>> component_versions();
 
-/// The CPU that this runs on, as it names itself; "unknown" where the system does not tell.
-std::string cpu_model();
-
 } // namespace vdbeam
