@@ -16,6 +16,7 @@ CommandRun add_plan(CLI::App& app);
 CommandRun add_compare(CLI::App& app);
 CommandRun add_merge(CLI::App& app);
 CommandRun add_farm(CLI::App& app);
+CommandRun add_help(CLI::App& app);
 
 struct Command {
   const char* name;

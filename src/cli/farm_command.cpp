@@ -23,8 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const examples = R"(Examples:
-  vdbeam farm slurm smoke.toml -f 1-100 -o out/smoke.####.exr --job smoke.sbatch && sbatch smoke.sbatch
-  vdbeam farm slurm smoke.toml -f 1-100 -o out/smoke.####.exr --passes 64 --splits 4 --job s.sh && bash s.sh
+  vdbeam farm slurm smoke.toml -f 1-100 -o out/s.####.exr --job s.sbatch && sbatch s.sbatch
+  vdbeam farm slurm smoke.toml -f 1-100 -o s.####.exr --passes 64 --splits 4 --job s.sh && bash s.sh
   vdbeam farm openjd smoke.toml -f 1-100 -o out/smoke.####.exr --chunk 5 --job smoke.json
 docs/farm.md says more, also for OpenCue, Deadline and HTCondor.)";
 
@@ -208,6 +208,7 @@ CommandRun add_farm(CLI::App& app) {
     Choice& choice = *choices->back();
     choice.engine = &engine;
     choice.command = app.add_subcommand(engine.name, engine.description);
+    choice.command->group("Engines");
     declare(*choice.command, choice.options);
   }
   app.footer(examples);

@@ -1,4 +1,7 @@
 #include "cli/commands.h"
+#include "cli/help_format.h"
+#include "cli/terminal.h"
+#include "cli/usage_error.h"
 #include "report/versions.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
@@ -18,7 +21,7 @@ const char* const footer =
   vdbeam init cloud.vdb -o cloud.toml           a scene file to edit
   vdbeam render cloud.toml -o cloud.exr --time 60s --preview cloud.png
   vdbeam render smoke.toml -f 1-24 -o smoke.####.exr
-  vdbeam COMMAND --help                         options and examples of a command
+  vdbeam help COMMAND                           options and examples of a command
   vdbeam --help-scene                           every key of a scene file
 
 Exit codes:
@@ -41,7 +44,7 @@ int fail(std::string line, ExitCode code) {
   for (char& c : line)
     c = c == '\n' || c == '\r' || c == '\v' || c == '\f' ? ' ' : c;
   std::fflush(stdout);
-  fmt::print(stderr, "{}\n", line);
+  fmt::print(stderr, "{}\n", cli::error_line(line));
   return static_cast<int>(code);
 }
 
@@ -51,7 +54,10 @@ int run(int argc, char** argv) {
                "vdbeam");
   app.footer(footer);
   app.require_subcommand(1);
-  app.set_version_flag("--version", version_text);
+  app.formatter(std::make_shared<cli::HelpFormatter>()); // the commands inherit it
+  app.set_version_flag("-v,--version", version_text,
+                       "Print the versions of vdbeam and its libraries");
+  app.set_help_flag("-h,--help", "Print this help");
   app.add_flag_callback(
       "--help-scene", [] { throw CLI::CallForVersion(key_table_text(), 0); },
       "Print every key of a scene file with its unit, range and default");
@@ -59,6 +65,7 @@ int run(int argc, char** argv) {
   std::vector<CLI::App*> subcommands;
   for (const cli::Command& command : cli::commands()) {
     subcommands.push_back(app.add_subcommand(command.name, command.description));
+    subcommands.back()->group("Commands");
     runs.push_back(command.add(*subcommands.back()));
   }
   try {
@@ -66,10 +73,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& request) { // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    const auto used = app.get_subcommands();
-    const std::string name = used.empty() ? "vdbeam" : "vdbeam " + used.front()->get_name();
-    return fail(fmt::format("{}: {}; {} --help shows the options", name, error.what(), name),
-                ExitCode::bad_input);
+    return fail(cli::usage_error(app, {argv + 1, argv + argc}, error), ExitCode::bad_input);
   }
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (subcommands[i]->parsed())

@@ -1,5 +1,6 @@
 #include "cli/progress.h"
 
+#include "cli/terminal.h"
 #include "text/text.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::chrono::seconds heartbeat_interval{10};
 constexpr std::chrono::milliseconds redraw_interval{100};
+/// Erases from the beginning of the line to the end of the screen.
+constexpr const char* erase_line = "\r\x1b[J";
 
 } // namespace
 
@@ -46,7 +49,7 @@ void FarmProgress::failure(const std::string& text) const {
 
 Progress::Progress(std::string title, const RenderSettings& settings, bool quiet)
     : title_(std::move(title)), settings_(settings), quiet_(quiet),
-      terminal_(isatty(STDERR_FILENO) != 0) {}
+      terminal_(is_smart_terminal(STDERR_FILENO)) {}
 
 double Progress::fraction(const PassRecord& record, const RenderSettings& settings) {
   double done = 0;
@@ -72,6 +75,23 @@ std::string Progress::describe(const PassRecord& record, const RenderSettings& s
   return text;
 }
 
+std::string Progress::bar(const std::string& title, const PassRecord& record,
+                          const RenderSettings& settings, int columns) {
+  constexpr int longest_bar = 20, shortest_bar = 5;
+  const std::string head = title.empty() ? "" : title + " ";
+  std::string details = describe(record, settings);
+  // A full line would already move the cursor to the next one.
+  const auto room = [&] { return columns - 1 - static_cast<int>(head.size() + details.size()); };
+  const int width = std::min(longest_bar, room() - 3);
+  if (width >= shortest_bar) {
+    const int filled = static_cast<int>(fraction(record, settings) * width);
+    return fmt::format("{}[{:#<{}}{:.<{}}] {}", head, "", filled, "", width - filled, details);
+  }
+  while (room() < 0 && details.find(", ") != std::string::npos)
+    details.erase(details.rfind(", "));
+  return (head + details).substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
+}
+
 void Progress::line(const std::string& text) {
   if (quiet_)
     return;
@@ -82,7 +102,7 @@ void Progress::line(const std::string& text) {
 
 void Progress::clear_bar() {
   if (bar_shown_)
-    fmt::print(stderr, "\r\x1b[K");
+    fmt::print(stderr, "{}", erase_line);
   bar_shown_ = false;
 }
 
@@ -100,10 +120,10 @@ void Progress::pass(const PassRecord& record) {
   last_ = now;
   if (!terminal_)
     return line(describe(record, settings_));
-  constexpr int width = 20;
-  const int filled = static_cast<int>(fraction(record, settings_) * width);
-  fmt::print(stderr, "\r{}{}[{:#<{}}{:.<{}}] {}\x1b[K", title_, title_.empty() ? "" : " ", "",
-             filled, "", width - filled, describe(record, settings_));
+  // The cursor waits at the bar's beginning: a terminal that is made narrower wraps the bar and
+  // keeps the cursor there, so all of it is still erased.
+  fmt::print(stderr, "{}{}\r", erase_line,
+             bar(title_, record, settings_, terminal_columns(STDERR_FILENO)));
   std::fflush(stderr);
   bar_shown_ = true;
 }

@@ -28,8 +28,8 @@ private:
   double last_ = -1; ///< percent
 };
 
-/// Tells on stderr how a frame comes along: a bar on a terminal; elsewhere a line at the start, one
-/// at the end, and at most one in ten seconds between them, each flushed.
+/// Tells on stderr how a frame comes along: a bar on a terminal; elsewhere, and under TERM=dumb, a
+/// line at the start, one at the end, and at most one in ten seconds between them, each flushed.
 class Progress {
 public:
   /// `title` begins each line, e.g. "frame 7 (3/24)".
@@ -43,6 +43,9 @@ public:
 
   /// Share of the work that is done, by the limit that will be met first, in [0, 1].
   static double fraction(const PassRecord& record, const RenderSettings& settings);
+  /// The same with a bar, on one line of a terminal of this many columns: a narrow one shows less.
+  static std::string bar(const std::string& title, const PassRecord& record,
+                         const RenderSettings& settings, int columns);
   /// "12/64 passes, 3.4s, 12.3s left, error 0.0123".
   static std::string describe(const PassRecord& record, const RenderSettings& settings);
 

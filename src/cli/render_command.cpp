@@ -1,6 +1,7 @@
 #include "cli/batch.h"
 #include "cli/batch_values.h"
 #include "cli/commands.h"
+#include "cli/help_format.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
@@ -22,7 +23,7 @@ namespace {
 const char* const examples = R"(Examples:
   vdbeam render cloud.vdb                                 a bare VDB, to cloud.exr
   vdbeam render cloud.toml -o out.exr --time 60s --preview out.png
-  vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12, -5--1
+  vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12
   vdbeam render cloud.toml --target-error 0.001 --set volume.0.extinction=80
   vdbeam render smoke.toml -f 1-240 -o smoke.####.exr --skip-existing --checkpoint 5m
   vdbeam render cloud.toml --pass-range 0-31 -o part0.exr
@@ -190,6 +191,11 @@ CommandRun add_render(CLI::App& app) {
       ->option_text("FILE.json");
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Say nothing but errors");
   add_batch_options(app, *options);
+  group_options(app, "Output",
+                {"-o", "--preview", "--exposure", "--region", "--reference", "--report"});
+  group_options(app, "Sequences and farms",
+                {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
+                 "--no-resume", "--pass-range", "--summary", "--progress"});
   app.footer(examples);
   return [options] { return run_render(*options); };
 }

@@ -12,6 +12,10 @@ namespace {
 /// Any of these on the command line replaces the whole stop rule of the file.
 constexpr std::array stop_keys{"render.passes", "render.time", "render.target_error"};
 
+bool is_stop_key(const std::string& key) {
+  return std::find(stop_keys.begin(), stop_keys.end(), key) != stop_keys.end();
+}
+
 bool is_number(const std::string& text) {
   return !text.empty() && text.size() < 10 &&
          text.find_first_not_of("0123456789") == std::string::npos;
@@ -27,7 +31,8 @@ void SceneOptions::declare_shorthand(CLI::App& app, const std::string& option,
   app.add_option_function<std::string>(
          option, [this, index](const std::string& value) { shorthands_[index].value = value; },
          description)
-      ->option_text(value_name);
+      ->option_text(value_name)
+      ->group(is_stop_key(key) ? "When to stop" : "Scene");
 }
 
 void SceneOptions::declare(CLI::App& app) {
@@ -40,7 +45,9 @@ void SceneOptions::declare(CLI::App& app) {
   declare_shorthand(app, "--target-error", "render.target_error", "E",
                     "Estimated error (MRSE) to reach");
   declare_shorthand(app, "--estimator", "render.estimator", "NAME", "beam, march or path");
-  app.add_option("--resolution", resolution_, "Size of the picture in pixels")->option_text("WxH");
+  app.add_option("--resolution", resolution_, "Size of the picture in pixels")
+      ->option_text("WxH")
+      ->group("Scene");
   declare_shorthand(app, "--clamp", "render.clamp", "L",
                     "Dim pixels of passes above this radiance; the report tells what it took");
   declare_shorthand(app, "--seed", "render.seed", "N", "Random numbers");
@@ -48,6 +55,7 @@ void SceneOptions::declare(CLI::App& app) {
   app.add_option("--set", sets_, "Set any key of the scene; may be repeated")
       ->option_text("KEY=VALUE")
       ->take_all()
+      ->group("Scene")
       ->allow_extra_args(false);
 }
 
@@ -68,8 +76,7 @@ void SceneOptions::add_resolution(std::vector<Override>& overrides) const {
 SceneDocument SceneOptions::open() const {
   std::vector<Override> overrides;
   const auto is_stop_rule = [](const Shorthand& s) {
-    return !s.value.empty() &&
-           std::find(stop_keys.begin(), stop_keys.end(), s.key) != stop_keys.end();
+    return !s.value.empty() && is_stop_key(s.key);
   };
   if (std::any_of(shorthands_.begin(), shorthands_.end(), is_stop_rule))
     for (const char* key : stop_keys)

@@ -161,6 +161,22 @@ std::string substitute_frame(const std::string& path, int frame) {
   return result + path.substr(position);
 }
 
+std::string frame_pattern_of(const std::string& path) {
+  const std::filesystem::path whole(path);
+  std::string name = whole.stem().string();
+  const std::size_t last = name.find_last_of("0123456789");
+  if (last == std::string::npos)
+    return {};
+  std::size_t first = last;
+  while (first > 0 && is_digit(name[first - 1]))
+    --first;
+  const std::size_t digits = last + 1 - first;
+  // A single # stands for four digits.
+  name.replace(first, digits, digits == 1 ? "%d" : std::string(digits, '#'));
+  std::filesystem::path pattern = whole;
+  return pattern.replace_filename(name + whole.extension().string()).string();
+}
+
 std::vector<int> frames_on_disk(const std::string& pattern) {
   namespace fs = std::filesystem;
   const fs::path path(pattern);

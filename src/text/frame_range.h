@@ -20,6 +20,10 @@ bool has_frame_pattern(const std::string& path);
 /// The path with every such place filled in, as printf's %0Nd would write the number.
 std::string substitute_frame(const std::string& path, int frame);
 
+/// The pattern that a file of a sequence follows: "smoke.0020.vdb" gives "smoke.####.vdb", by the
+/// last digits of its name. Empty for a name without digits.
+std::string frame_pattern_of(const std::string& path);
+
 /// Frames for which a file of this pattern exists, sorted. The pattern must be in the file's name,
 /// not in a folder's; without a pattern, or without such files, the list is empty.
 std::vector<int> frames_on_disk(const std::string& pattern);

@@ -9,7 +9,8 @@ TEST_F(Usage, HelpOfEveryCommandHasExamples) {
   const auto top = run({"--help"});
   EXPECT_EQ(top.code, 0);
   EXPECT_NE(top.out.find("Exit codes:"), std::string::npos);
-  for (const char* command : {"render", "info", "init", "plan", "compare"}) {
+  for (const char* command :
+       {"render", "info", "init", "plan", "compare", "merge", "farm", "help"}) {
     EXPECT_NE(top.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
     const auto help = run({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
@@ -50,6 +51,87 @@ TEST_F(Usage, WrongUseIsBadInputOnOneLine) {
     EXPECT_EQ(result.error_lines(), 1u) << result.error;
     EXPECT_TRUE(result.out.empty()) << result.out;
   }
+}
+
+TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
+  const std::string s = VDBEAM_SOURCE_DIR "/data/smoke/smoke.00";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{},
+       "vdbeam: which command? render, info, init, plan, compare, merge, farm or help; "
+       "vdbeam --help tells what they do\n"},
+      {{"rendr", "x.vdb"},
+       "vdbeam: rendr is not one of its commands, which are render, info, init, plan, compare, "
+       "merge, farm and help; did you mean render?\n"},
+      {{"x.vdb"}, "vdbeam: x.vdb is not a command; to render it: vdbeam render x.vdb\n"},
+      {{"x.toml"}, "vdbeam: x.toml is not a command; to render it: vdbeam render x.toml\n"},
+      {{"--versoin"}, "vdbeam: there is no option --versoin; did you mean --version?\n"},
+      {{"help", "rander"}, "vdbeam help: there is no command rander; did you mean render?\n"},
+      {{"farm"},
+       "vdbeam farm: which command? slurm or openjd; vdbeam farm --help tells what they do\n"},
+      {{"farm", "slrum"},
+       "vdbeam farm: slrum is not one of its commands, which are slurm and "
+       "openjd; did you mean slurm?\n"},
+      {{"farm", "slurm", cloud, "--frmes", "2"},
+       "vdbeam farm slurm: there is no option --frmes; did you mean --frames?\n"},
+      {{"render", cloud, "--tiem", "5s"},
+       "vdbeam render: there is no option --tiem; did you mean --time?\n"},
+      {{"render", cloud, "--tiem=5s"},
+       "vdbeam render: there is no option --tiem; did you mean --time?\n"},
+      {{"render", "--tiem", "5s"},
+       "vdbeam render: there is no option --tiem; did you mean --time?\n"},
+      {{"render", cloud, "-x"},
+       "vdbeam render: there is no option -x; vdbeam render --help lists them all\n"},
+      {{"render"},
+       "vdbeam render: SCENE|VDB is missing: Scene file, or a VDB (#### for the frame "
+       "number)\n"},
+      {{"render", cloud, "--passes"}, "vdbeam render: --passes needs a value: --passes N\n"},
+      {{"render", cloud, "--exposure", "bright"},
+       "vdbeam render: --exposure bright: must be a number\n"},
+      {{"render", cloud, "--on-error", "stpo"},
+       "vdbeam render: --on-error stpo: must be continue or stop; did you mean stop?\n"},
+      {{"render", s + "01.vdb", s + "12.vdb", s + "24.vdb"},
+       "vdbeam render: takes one scene, got 3 files; for a sequence write " +
+           s.substr(0, s.size() - 2) + "####.vdb -f 1,12,24\n"}};
+  for (const auto& [arguments, message] : cases) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.error, message);
+    EXPECT_TRUE(result.out.empty()) << result.out;
+  }
+}
+
+TEST_F(Usage, HelpIsACommandToo) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "render"}).out, run({"render", "--help"}).out);
+  EXPECT_EQ(run({"help", "farm", "slurm"}).out, run({"farm", "slurm", "--help"}).out);
+  EXPECT_EQ(run({"-v"}).out, run({"--version"}).out);
+}
+
+TEST_F(Usage, HelpFitsATerminal) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{},
+                                             {"render"},
+                                             {"info"},
+                                             {"init"},
+                                             {"plan"},
+                                             {"compare"},
+                                             {"merge"},
+                                             {"farm"},
+                                             {"farm", "slurm"},
+                                             {"farm", "openjd"},
+                                             {"help"}}) {
+    std::vector<std::string> words{"help"};
+    words.insert(words.end(), command.begin(), command.end());
+    std::stringstream lines(run(words).out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line); ++count)
+      EXPECT_LE(line.size(), 100u) << line;
+    EXPECT_GT(count, 5u);
+  }
+  const std::string help = run({"help", "render"}).out;
+  for (const char* heading :
+       {"\nWhen to stop:\n", "\nScene:\n", "\nOutput:\n", "\nSequences and farms:\n"})
+    EXPECT_NE(help.find(heading), std::string::npos) << heading;
 }
 
 TEST_F(Usage, BadValuesNameTheirOption) {

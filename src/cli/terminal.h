@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace vdbeam::cli {
+
+/// True where `descriptor` is a terminal that understands escape sequences: not a file, not a pipe,
+/// and TERM is neither unset nor "dumb".
+bool is_smart_terminal(int descriptor);
+
+/// Columns of the terminal now, which a user may change at any time; 80 where it does not tell.
+int terminal_columns(int descriptor);
+
+/// The line in red where stderr is a terminal with colours and NO_COLOR (no-color.org) is not set.
+std::string error_line(const std::string& line);
+
+} // namespace vdbeam::cli
