@@ -7,6 +7,14 @@ namespace {
 
 /// What the queries are compiled for; the others would add nothing (see the queries' sources).
 constexpr std::int64_t compiled = HWY_AVX3 | HWY_AVX2 | HWY_SSE4 | HWY_STATIC_TARGET;
+/// Highway's MulAdd rounds twice on these, once on all others.
+constexpr std::int64_t without_fma = HWY_SSSE3 | HWY_SSE4 | HWY_EMU128 | HWY_SCALAR;
+
+/// The one that queries run on.
+std::int64_t chosen_target() {
+  const std::int64_t targets = hwy::SupportedTargets() & compiled;
+  return targets & -targets;
+}
 
 } // namespace
 
@@ -24,8 +32,11 @@ void confine_simd_targets(std::int64_t targets) {
 }
 
 const char* simd_target() {
-  const std::int64_t targets = hwy::SupportedTargets() & compiled;
-  return hwy::TargetName(targets & -targets);
+  return hwy::TargetName(chosen_target());
+}
+
+bool simd_is_fused() {
+  return (chosen_target() & without_fma) == 0;
 }
 
 } // namespace vdbeam

@@ -19,7 +19,7 @@ namespace vdbeam {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "doubles are stored low half first");
-constexpr const char* film_format = "2";
+constexpr const char* film_format = "3";
 constexpr int largest_side = 65536;
 
 Imath::Box2i data_window(const Image& header) {
@@ -80,6 +80,7 @@ void write_planes(const FilmFileInfo& info, Film& film, AtomicFile& file) {
   Image header = info.header;
   header.metadata.insert_or_assign("vdbeam:film", std::string(film_format));
   header.metadata["vdbeam:passHash"] = info.pass_hash;
+  header.metadata["vdbeam:arithmetic"] = info.arithmetic;
   header.metadata["vdbeam:passSet"] = format_frame_range(info.passes);
   header.metadata["vdbeam:invalidValues"] = std::to_string(info.invalid_values);
   header.numbers["vdbeam:frame"] = info.frame;
@@ -149,6 +150,7 @@ FilmFileInfo parse_info(const Imf::InputFile& file, const std::string& path) {
   header.full_width = display.max.x + 1;
   header.full_height = display.max.y + 1;
   info.pass_hash = text("vdbeam:passHash");
+  info.arithmetic = text("vdbeam:arithmetic");
   info.passes = parse_passes(text("vdbeam:passSet"), path);
   info.invalid_values = parse_count(text("vdbeam:invalidValues"), path);
   const double frame = number("vdbeam:frame");
@@ -162,7 +164,7 @@ FilmFileInfo parse_info(const Imf::InputFile& file, const std::string& path) {
 } // namespace
 
 bool FilmFileInfo::joins(const FilmFileInfo& other) const {
-  return pass_hash == other.pass_hash && frame == other.frame &&
+  return pass_hash == other.pass_hash && frame == other.frame && arithmetic == other.arithmetic &&
          data_window(header) == data_window(other.header) &&
          header.full_width == other.header.full_width &&
          header.full_height == other.header.full_height;

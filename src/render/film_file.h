@@ -9,14 +9,15 @@ namespace vdbeam {
 
 /// What a film on disk belongs to.
 struct FilmFileInfo {
-  Image header;          ///< windows and attributes of the picture, without channels
-  std::string pass_hash; ///< of the scene (vdbeam::pass_hash)
+  Image header;           ///< windows and attributes of the picture, without channels
+  std::string pass_hash;  ///< of the scene (vdbeam::pass_hash)
+  std::string arithmetic; ///< of the machine (arithmetic_fingerprint)
   int frame = 1;
   std::vector<int> passes; ///< sorted; which passes the film holds
   std::uint64_t invalid_values = 0;
   double seconds = 0; ///< spent on rendering them
 
-  /// Same scene, frame and pixels: the passes may be added.
+  /// Same scene, frame, pixels and arithmetic: the passes may be added.
   bool joins(const FilmFileInfo& other) const;
 };
 

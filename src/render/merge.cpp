@@ -42,6 +42,12 @@ void check_same(const Partial& first, const Partial& other) {
     fail(fmt::format("frames {} and {}", first.info.frame, other.info.frame));
   if (other.info.pass_hash != first.info.pass_hash)
     fail("the scenes differ");
+  if (other.info.arithmetic != first.info.arithmetic)
+    throw InputError(
+        fmt::format("{} and {}: were rendered on machines that round differently (one without "
+                    "fused multiply-add, or with another C library); render the passes of one "
+                    "frame on machines of one kind",
+                    first.path, other.path));
   if (!other.info.joins(first.info))
     fail("sizes or regions differ");
 }
@@ -87,7 +93,7 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   image.metadata = header.metadata;
   image.numbers = header.numbers;
   image.matrices = header.matrices;
-  for (const char* name : {"vdbeam:film", "vdbeam:invalidValues"})
+  for (const char* name : {"vdbeam:film", "vdbeam:arithmetic", "vdbeam:invalidValues"})
     image.metadata.erase(name);
   image.metadata["vdbeam:passSet"] = format_frame_range(info.passes);
   image.metadata["vdbeam:stoppedBy"] = "passes";

@@ -1,6 +1,7 @@
 #include "render/pass_loop.h"
 
 #include "film/clamp.h"
+#include "render/arithmetic.h"
 #include "render/error_record.h"
 #include "report/image_metadata.h"
 #include "vdbeam/error.h"
@@ -145,6 +146,10 @@ void PassLoop::resume() {
     return;
   try {
     const FilmFileInfo info = read_film_info(path);
+    if (info.arithmetic != arithmetic_fingerprint())
+      return note(path + ": is a checkpoint of a machine that rounds differently (one of the two "
+                         "lacks fused multiply-add or has another C library); the frame begins "
+                         "anew");
     std::vector<int> expected(info.passes.size());
     std::iota(expected.begin(), expected.end(), first_pass_);
     const bool fits = info.joins(file_info()) && info.passes == expected &&
@@ -249,6 +254,7 @@ void PassLoop::develop() {
 
 FilmFileInfo PassLoop::file_info() const {
   FilmFileInfo info;
+  info.arithmetic = arithmetic_fingerprint();
   info.header.width = window_.width();
   info.header.height = window_.height();
   info.header.x = window_.x0;

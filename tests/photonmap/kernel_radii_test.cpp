@@ -2,8 +2,8 @@
 
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "photonmap/map_queries.h"
 #include "photonmap/photon_order.h"
+#include "photonmap/query_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -197,19 +197,23 @@ TEST(KernelRadiiLimits, SettingsApply) {
   expect_usable(blocks, 0.1799f, 0.1801f);
 }
 
-/// All targets find the same radii, to rounding; those with fused arithmetic to the bit.
+/// All targets find the same radii, to rounding; those with fused multiply-add to the bit.
 TEST(KernelRadiiLimits, TargetsAgree) {
-  PhotonBlocks first = ordered_blocks(20000, at_surface);
-  find_kernel_radii(first, adaptive(300));
-  for (const std::int64_t target : simd_targets()) {
-    confine_simd_targets(target);
-    PhotonBlocks other = ordered_blocks(20000, at_surface);
-    find_kernel_radii(other, adaptive(300));
+  const auto radii = [] {
+    PhotonBlocks blocks = ordered_blocks(20000, at_surface);
+    find_kernel_radii(blocks, adaptive(300));
+    std::vector<float> found;
     for (std::size_t i = 0; i < 20000; ++i)
-      ASSERT_NEAR(other.at(i, PhotonBlocks::radius), first.at(i, PhotonBlocks::radius),
-                  2e-3f * first.at(i, PhotonBlocks::radius));
-  }
-  confine_simd_targets(0);
+      found.push_back(blocks.at(i, PhotonBlocks::radius));
+    return found;
+  };
+  const std::vector<float> first = radii();
+  oracle::on_every_target([&] {
+    const std::vector<float> found = radii();
+    for (std::size_t i = 0; i < found.size(); ++i)
+      ASSERT_NEAR(found[i], first[i], 2e-3f * first[i]);
+  });
+  oracle::expect_same_bits(radii);
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 namespace vdbeam::oracle {
 
 inline PhaseFunction henyey_greenstein(double g) {
@@ -36,6 +38,20 @@ inline void on_every_target(const std::function<void()>& check) {
     check();
   }
   confine_simd_targets(0);
+}
+
+/// Holds `values()` to the same bits on every SIMD target that fuses multiply-add.
+inline void expect_same_bits(const std::function<std::vector<float>()>& values) {
+  std::vector<float> first;
+  on_every_target([&] {
+    if (!simd_is_fused())
+      return;
+    const std::vector<float> found = values();
+    if (first.empty())
+      first = found;
+    ASSERT_EQ(found.size(), first.size());
+    EXPECT_EQ(std::memcmp(found.data(), first.data(), first.size() * sizeof(float)), 0);
+  });
 }
 
 inline std::vector<std::vector<PhaseFunction>> phase_sets() {

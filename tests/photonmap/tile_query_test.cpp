@@ -74,6 +74,11 @@ TEST_P(TileQuery, MatchesOracle) {
             oracle::tile_sums(map, tile, param.edges, param.shared);
         const double allowed = tolerance + oracle::phase_rounding(phase_sets[p]);
         oracle::on_every_target([&] { expect_tile(map, tile, sums, allowed); });
+        oracle::expect_same_bits([&] {
+          std::fill(tile.radiance.begin(), tile.radiance.end(), 0.0f);
+          query_tile(map.view(), tile);
+          return tile.radiance;
+        });
       }
 }
 

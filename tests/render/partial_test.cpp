@@ -1,3 +1,4 @@
+#include "photonmap/map_queries.h"
 #include "render/film_file.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
@@ -101,6 +102,39 @@ TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
   EXPECT_TRUE(error_of({a, longer}).empty());
 }
 
+/// Confines this machine to a SIMD target without fused multiply-add, as an old one would have.
+struct OldMachine {
+  OldMachine() {
+    for (const std::int64_t target : simd_targets()) {
+      confine_simd_targets(target);
+      if (!simd_is_fused())
+        return;
+    }
+  }
+  ~OldMachine() { confine_simd_targets(0); }
+};
+
+TEST_F(Partial, OfMachinesThatRoundDifferentlyAreRefused) {
+  const std::string a = render_range(0, 1);
+  std::string b;
+  {
+    const OldMachine old;
+    ASSERT_FALSE(simd_is_fused());
+    b = render_range(2, 3);
+  }
+  EXPECT_NE(error_of({a, b}).find("round differently"), std::string::npos);
+  // Newer machines agree, whatever their vectors' width.
+  for (const std::int64_t target : simd_targets()) {
+    confine_simd_targets(target);
+    if (!simd_is_fused())
+      continue;
+    const std::string c = render_range(2, 3);
+    confine_simd_targets(0);
+    expect_same_pixels(merge_partials({a, c}), render(small_cloud({"render.passes=4"})).image);
+  }
+  confine_simd_targets(0);
+}
+
 TEST_F(Partial, DamagedAndForeignFilesAreRefusedInOneLine) {
   const std::string path = render_range(0, 0), bytes = test::read_bytes(path);
   const std::string broken = folder_.file("broken.exr");
@@ -199,6 +233,23 @@ TEST(Checkpoint, IsWrittenAtIntervalsOfPassesAndOfSeconds) {
     render(small_cloud(), hooks);
     EXPECT_EQ(read_film_info(hooks.checkpoint.path).passes.size(), by_time ? 6u : 4u);
   }
+}
+
+TEST(Checkpoint, OfAMachineThatRoundsDifferentlyIsNotUsed) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("c.exr");
+  {
+    const OldMachine old;
+    Stopper stopper(2);
+    render(small_cloud(), stopper.hooks(path));
+  }
+  RenderHooks hooks;
+  hooks.checkpoint.path = path;
+  const RenderResult resumed = render(small_cloud(), hooks);
+  EXPECT_EQ(resumed.resumed_passes, 0);
+  ASSERT_FALSE(resumed.notes.empty());
+  EXPECT_NE(resumed.notes.back().find("rounds differently"), std::string::npos);
+  expect_same_pixels(resumed.image, render(small_cloud()).image);
 }
 
 TEST(Checkpoint, OfAnotherSceneOrBrokenIsNotUsed) {
