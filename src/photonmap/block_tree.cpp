@@ -89,9 +89,8 @@ BlockTree build_block_tree(const PhotonBlocks& blocks) {
 BlockTree build_cell_tree(const PhotonBlocks& blocks, std::size_t blocks_per_cell) {
   const std::size_t cells = (blocks.block_count() + blocks_per_cell - 1) / blocks_per_cell;
   return build_tree(cells, [&](std::size_t cell) {
-    Bounds bounds =
-        bound_blocks(blocks, cell * blocks_per_cell,
-                     std::min(blocks.block_count(), (cell + 1) * blocks_per_cell));
+    Bounds bounds = bound_blocks(blocks, cell * blocks_per_cell,
+                                 std::min(blocks.block_count(), (cell + 1) * blocks_per_cell));
     bounds.radius = 0;
     return bounds;
   });

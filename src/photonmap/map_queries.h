@@ -25,5 +25,8 @@ QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& dir
 /// way to confine the queries to some of them (0: all), for tests.
 std::vector<std::int64_t> simd_targets();
 void confine_simd_targets(std::int64_t targets);
+/// Whether the target that queries run on has a fused multiply-add. All that have one give the same
+/// bits.
+bool simd_is_fused();
 
 } // namespace vdbeam

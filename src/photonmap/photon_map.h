@@ -92,7 +92,5 @@ private:
 
 /// Name of the SIMD target that queries run on here, e.g. "AVX3_ZEN4", "AVX2", "SCALAR".
 const char* simd_target();
-/// Whether that target has a fused multiply-add. All targets that have one give the same bits.
-bool simd_is_fused();
 
 } // namespace vdbeam

@@ -11,6 +11,8 @@
 
 #include <hwy/highway.h>
 
+#include <array>
+
 HWY_BEFORE_NAMESPACE();
 namespace vdbeam {
 namespace HWY_NAMESPACE {
@@ -65,6 +67,22 @@ HWY_INLINE V16 kernel_value(const KernelPolynomial& kernel, V16 k) {
   return hn::IfThenElseZero(inside, value);
 }
 
+/// What a lobe has in front of its functions of the cosine, its weight included.
+inline float lobe_scale(const DraineLobe& lobe) {
+  const float g = lobe.g, alpha = lobe.alpha;
+  return lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
+}
+
+/// The scales of a phase function's lobes, for loops that cannot afford a division per photon.
+using LobeScales = std::array<float, 2>;
+
+inline LobeScales lobe_scales(const PhaseFunction& phase) {
+  LobeScales scales{};
+  for (int i = 0; i < phase.lobe_count(); ++i)
+    scales[static_cast<std::size_t>(i)] = lobe_scale(phase.lobe(i));
+  return scales;
+}
+
 /// 1 + g^2 - 2 g cos, kept from rounding below its least value.
 template <class D>
 HWY_INLINE hn::Vec<D> lobe_distance(D d, float g, hn::Vec<D> cosine) {
@@ -82,9 +100,8 @@ HWY_INLINE void phase_line(D d, const PhaseFunction& phase, hn::Vec<D> cosine, h
   for (int i = 0; i < phase.lobe_count(); ++i) {
     const DraineLobe& lobe = phase.lobe(i);
     const float g = lobe.g, alpha = lobe.alpha;
-    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
     const auto x = lobe_distance(d, g, cosine);
-    const auto hg = hn::Div(hn::Set(d, norm), hn::Mul(x, hn::Sqrt(x)));
+    const auto hg = hn::Div(hn::Set(d, lobe_scale(lobe)), hn::Mul(x, hn::Sqrt(x)));
     const auto draine = hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one);
     value = hn::MulAdd(hg, draine, value);
     const auto steepness = hn::Div(hn::Set(d, 3 * g), x);
@@ -113,15 +130,16 @@ HWY_INLINE hn::Vec<D> inverse_three_halves(D d, hn::Vec<D> x) {
 }
 
 template <class D>
-HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, hn::Vec<D> cosine) {
+HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, const LobeScales& scales,
+                                  hn::Vec<D> cosine) {
   const auto one = hn::Set(d, 1.0f);
   auto value = hn::Zero(d);
   for (int i = 0; i < phase.lobe_count(); ++i) {
     const DraineLobe& lobe = phase.lobe(i);
     const float g = lobe.g, alpha = lobe.alpha;
-    const float norm = lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
     const auto x = lobe_distance(d, g, cosine);
-    auto term = hn::Mul(hn::Set(d, norm), inverse_three_halves(d, x));
+    auto term =
+        hn::Mul(hn::Set(d, scales[static_cast<std::size_t>(i)]), inverse_three_halves(d, x));
     if (alpha != 0)
       term = hn::Mul(term, hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one));
     value = hn::Add(value, term);

@@ -1,6 +1,6 @@
 #include "render/arithmetic.h"
 
-#include "photonmap/photon_map.h"
+#include "photonmap/map_queries.h"
 #include "scene/content_hash.h"
 
 #include <fmt/format.h>
