@@ -7,16 +7,16 @@ namespace vdbeam {
 
 void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
   const World& world = input_.world;
-  stage_.shoot(pass, statistics);
-  const int channels = stage_.map().channels();
+  photons_.trace_and_build(pass, statistics);
+  const int channels = photons_.map().channels();
   WeightSettings weights;
   weights.store = world.settings.store;
-  weights.albedo_in_power = stage_.albedo_in_power() || weights.store == PhotonStore::scatter;
-  weights.reach = 4 * stage_.map().mean_radius();
-  shade_tiles(input_, stage_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
+  weights.albedo_in_power = photons_.plan().albedo_in_power;
+  weights.reach = 4 * photons_.map().mean_radius();
+  shade_tiles(input_, photons_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
     scratch.tile.radiance.assign(static_cast<std::size_t>(channels) * BeamTile::ray_count, 0);
-    scratch.statistics.contributions += stage_.map().query(scratch.tile).contributions;
+    scratch.statistics.contributions += photons_.map().query(scratch.tile).contributions;
     const float* radiance = scratch.tile.radiance.data();
     for (int i = 0; i < TileRays::count; ++i)
       if (scratch.rays[i].inside) {

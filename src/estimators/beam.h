@@ -1,6 +1,7 @@
 #pragma once
 
-#include "estimators/photon_stage.h"
+#include "estimators/beam_plan.h"
+#include "estimators/photon_pass.h"
 #include "estimators/tile_rays.h"
 
 namespace vdbeam {
@@ -11,13 +12,14 @@ namespace vdbeam {
 /// to which single scattering of the sampled lights and what is seen through the medium are added.
 class BeamEstimator : public Estimator {
 public:
-  explicit BeamEstimator(const EstimatorInput& input) : input_(input), stage_(input) {}
+  explicit BeamEstimator(const EstimatorInput& input)
+      : input_(input), photons_(input, plan_beam_photons(input), KernelDomain::disc) {}
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
 private:
   EstimatorInput input_;
-  PhotonStage stage_;
+  PhotonPass photons_;
 };
 
 } // namespace vdbeam

@@ -83,15 +83,14 @@ struct TileView {
   double brightness = 0;                        ///< sum over the pixels
 };
 
-TileView view_tile(const EstimatorInput& input, const Tile& place, const KernelTrial& narrow,
-                   const KernelTrial& wide, bool albedo_in_power,
-                   const std::vector<bool>& sampled_lights, const RngKey& key) {
+TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Tile& place,
+                   const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key) {
   const World& world = input.world;
   TileRays rays;
   rays.prepare(world, input.camera, key, place.x0, place.y0);
   WeightSettings weights;
   weights.store = world.settings.store;
-  weights.albedo_in_power = albedo_in_power;
+  weights.albedo_in_power = plan.albedo_in_power;
   BeamTile tile;
   fill_beam_tile(world, input.camera, rays, weights, tile);
   TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, 0};
@@ -107,7 +106,7 @@ TileView view_tile(const EstimatorInput& input, const Tile& place, const KernelT
     // One sample will do: it only weighs the pixel.
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray, ray.profile,
-                                                     sampled_lights, 1, rng, shadow_rays);
+                                                     plan.sampled_lights, 1, rng, shadow_rays);
     for (std::size_t c = 0; c < channels; ++c) {
       view.places.push_back(c * TileRays::count + i);
       view.known.push_back(
@@ -150,14 +149,13 @@ private:
 
 } // namespace
 
-KernelErrors measure_kernels(const EstimatorInput& input, const KernelTrial& narrow,
-                             const KernelTrial& wide, bool albedo_in_power,
-                             const std::vector<bool>& sampled_lights, const RngKey& key,
+KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan,
+                             const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key,
                              std::uint64_t& rays) {
   const std::vector<Tile> tiles = choose_tiles(input.camera);
   std::vector<TileView> views(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-    views[i] = view_tile(input, tiles[i], narrow, wide, albedo_in_power, sampled_lights, key);
+    views[i] = view_tile(input, plan, tiles[i], narrow, wide, key);
   });
   rays += tiles.size() * TileRays::count;
   // In the order of the tiles, so that sums are the same for any number of threads.

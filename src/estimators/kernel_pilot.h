@@ -1,7 +1,6 @@
 #pragma once
 
-#include "estimators/estimator.h"
-#include "photonmap/photon_map.h"
+#include "estimators/photon_plan.h"
 
 #include <cstdint>
 #include <vector>
@@ -14,7 +13,8 @@ struct KernelTrial {
   std::vector<PhotonMap> maps; ///< of independent photon passes
 };
 
-/// What the pictures of two trials tell about kernels, per pixel in units like MRSE; only ratios count.
+/// What the pictures of two trials tell about kernels, per pixel in units like MRSE; only ratios
+/// count.
 struct KernelErrors {
   double noise_narrow = 0, noise_wide = 0; ///< variance of a map of the trial
   double change = 0;       ///< mean square change of the mean picture between the trials, unbiased
@@ -22,11 +22,10 @@ struct KernelErrors {
 };
 
 /// Looks at the trials through some tiles of the camera's picture. Adds to `rays` those that it
-/// shot. `sampled_lights`: those whose single scattering is no matter of photons. A pure function
-/// of its arguments, for any number of threads.
-KernelErrors measure_kernels(const EstimatorInput& input, const KernelTrial& narrow,
-                             const KernelTrial& wide, bool albedo_in_power,
-                             const std::vector<bool>& sampled_lights, const RngKey& key,
+/// shot. `plan`: how the trials' photons were chosen. A pure function of its arguments, for any
+/// number of threads.
+KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan,
+                             const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key,
                              std::uint64_t& rays);
 
 /// Photons in a kernel at which the noise and the bias of a picture together are least. Noise falls

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "transport/medium.h"
+#include "photonmap/photon_map.h"
+#include "transport/camera.h"
+#include "transport/world.h"
 
 namespace vdbeam {
 
@@ -28,5 +30,12 @@ private:
   const Medium* medium_;
   Vec3d camera_;
 };
+
+/// What a kernel is normalised over: the disc across the camera ray, or the ball.
+enum class KernelDomain { disc, ball };
+
+/// The share that photons' powers of a map are to be divided by for this camera; none where the
+/// estimate gains nothing by it. World and camera must outlive it.
+KernelShare boundary_share(const World& world, const Camera& camera, KernelDomain domain);
 
 } // namespace vdbeam

@@ -10,12 +10,12 @@ namespace {
 /// Tr(a) - Tr(b), exactly; with scatter storage Tr times the step's length.
 class RayMarcher {
 public:
-  RayMarcher(const World& world, const PhotonStage& stage) : world_(world), stage_(stage) {
+  RayMarcher(const World& world, const PhotonPass& photons) : world_(world), photons_(photons) {
     float voxel = infinity;
     for (const Volume& volume : world.medium.volumes)
       voxel = std::min(voxel, volume.voxel_size);
     step_ = static_cast<float>(world.settings.step) * voxel;
-    reach_ = world.settings.store == PhotonStore::scatter ? 4 * stage.map().mean_radius() : 0;
+    reach_ = world.settings.store == PhotonStore::scatter ? 4 * photons.map().mean_radius() : 0;
   }
 
   Rgb march(const TileRays::PixelRay& ray, Rng& rng, RenderStatistics& counts) {
@@ -36,7 +36,7 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c = stage_.map().query_point(
+        const QueryCounts c = photons_.map().query_point(
             ray.camera.ray.at(t), ray.camera.ray.direction, medium.phases, gathered_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
@@ -65,7 +65,7 @@ private:
         const float share = piece[c] > 0
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes.size());
-        const float albedo = scatter || stage_.albedo_in_power() ? 1 : volumes[v].albedo[c];
+        const float albedo = photons_.plan().albedo_in_power ? 1 : volumes[v].albedo[c];
         sum[c] += whole * share * albedo * gathered_[volumes[v].group][c];
       }
     }
@@ -73,7 +73,7 @@ private:
   }
 
   const World& world_;
-  const PhotonStage& stage_;
+  const PhotonPass& photons_;
   float step_ = 0, reach_ = 0;
   std::vector<Rgb> gathered_;
 };
@@ -81,10 +81,10 @@ private:
 } // namespace
 
 void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
-  stage_.shoot(pass, statistics);
-  shade_tiles(input_, stage_, pass, image, statistics,
+  photons_.trace_and_build(pass, statistics);
+  shade_tiles(input_, photons_, pass, image, statistics,
               [&](TileScratch& scratch, const RngKey& key) {
-                RayMarcher marcher(input_.world, stage_);
+                RayMarcher marcher(input_.world, photons_);
                 for (int i = 0; i < TileRays::count; ++i) {
                   const TileRays::PixelRay& ray = scratch.rays[i];
                   if (!ray.inside || ray.profile.empty())

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/photon_stage.h"
+#include "estimators/photon_pass.h"
 #include "estimators/tile_rays.h"
 
 namespace vdbeam {
@@ -11,13 +11,14 @@ namespace vdbeam {
 /// as `beam`; only the gather differs.
 class MarchEstimator : public Estimator {
 public:
-  explicit MarchEstimator(const EstimatorInput& input) : input_(input), stage_(input) {}
+  explicit MarchEstimator(const EstimatorInput& input)
+      : input_(input), photons_(input, plan_photons(input), KernelDomain::ball) {}
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
 private:
   EstimatorInput input_;
-  PhotonStage stage_;
+  PhotonPass photons_;
 };
 
 } // namespace vdbeam

@@ -10,19 +10,21 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <chrono>
+#include <utility>
 
 namespace vdbeam {
 
 namespace {
 
 constexpr std::size_t walks_under_way = 16;
+constexpr std::uint64_t pilot_paths = 256;
 
 /// Walks per camera ray: where walks are short, the depth profile that they start from costs more
 /// than they do, so several share it. From the mean length of a few light paths (not followed far:
 /// of long ones it matters only that they are long), never from a clock.
 int choose_splits(const EstimatorInput& input) {
   PhotonPassSettings pilot;
-  pilot.paths = 256;
+  pilot.paths = pilot_paths;
   pilot.skip_first_flight.assign(input.world.lights.size(), true);
   pilot.max_bounces = std::min(input.world.settings.max_bounces.value_or(16), 16);
   pilot.key = {input.world.settings.seed, input.frame, ~std::uint64_t(0)};
@@ -45,6 +47,7 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
   for (const Volume& volume : input_.world.medium.volumes)
     scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
   splits_ = choose_splits(input);
+  uncounted_pilot_paths_ = pilot_paths;
   const int samples = input_.world.settings.direct_samples;
   direct_samples_ = samples > 0 ? samples : std::max(4, splits_ / 4);
 }
@@ -178,6 +181,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
       }
     take_turns(scratch.walks, 0, image);
   });
+  statistics.pilot_paths += std::exchange(uncounted_pilot_paths_, 0);
   for (const Scratch& scratch : scratches) {
     statistics.depth_profiles += scratch.counts.depth_profiles;
     statistics.shadow_rays += scratch.counts.shadow_rays;

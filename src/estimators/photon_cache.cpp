@@ -4,27 +4,27 @@
 
 namespace vdbeam {
 
-std::shared_ptr<const PhotonMap> PhotonCache::find(const PhotonPassSettings& settings,
-                                                   double neighbours) const {
+std::shared_ptr<const PhotonMap> PhotonCache::find(const PhotonPassSettings& photons,
+                                                   const RadiusSettings& radii) const {
   const std::scoped_lock lock(mutex_);
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return entry.neighbours == neighbours && same_photons(entry.settings, settings);
+    return entry.radii == radii && same_photons(entry.photons, photons);
   });
   return found == entries_.end() ? nullptr : found->map;
 }
 
-void PhotonCache::keep(const PhotonPassSettings& settings, double neighbours,
+void PhotonCache::keep(const PhotonPassSettings& photons, const RadiusSettings& radii,
                        const PhotonMap& map) {
   const std::scoped_lock lock(mutex_);
   std::erase_if(entries_, [&](const Entry& entry) {
-    const bool outdated = entry.settings.key == settings.key;
+    const bool outdated = entry.photons.key == photons.key;
     bytes_ -= outdated ? entry.map->bytes() : 0;
     return outdated;
   });
   if (bytes_ + map.bytes() > capacity_)
     return;
-  entries_.push_back({settings, neighbours, std::make_shared<const PhotonMap>(map.copy())});
-  entries_.back().settings.stop = nullptr; // may not live as long
+  entries_.push_back({photons, radii, std::make_shared<const PhotonMap>(map.copy())});
+  entries_.back().photons.stop = nullptr; // may not live as long
   bytes_ += map.bytes();
 }
 

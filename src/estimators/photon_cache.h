@@ -18,17 +18,17 @@ public:
   /// Keeps maps of up to `capacity` bytes in all.
   explicit PhotonCache(std::uint64_t capacity) : capacity_(capacity) {}
 
-  /// The map of these photons with kernels of so many of them; null where it is not there.
-  std::shared_ptr<const PhotonMap> find(const PhotonPassSettings& settings,
-                                        double neighbours) const;
+  /// The map of these photons with kernels of these radii; null where it is not there.
+  std::shared_ptr<const PhotonMap> find(const PhotonPassSettings& photons,
+                                        const RadiusSettings& radii) const;
   /// Keeps a copy, unless there is no room for it. Maps of the same pass with other photons go.
-  void keep(const PhotonPassSettings& settings, double neighbours, const PhotonMap& map);
+  void keep(const PhotonPassSettings& photons, const RadiusSettings& radii, const PhotonMap& map);
   std::uint64_t bytes() const;
 
 private:
   struct Entry {
-    PhotonPassSettings settings;
-    double neighbours;
+    PhotonPassSettings photons;
+    RadiusSettings radii;
     std::shared_ptr<const PhotonMap> map;
   };
 

@@ -20,7 +20,7 @@ double seconds_between(Clock::time_point a, Clock::time_point b) {
 
 } // namespace
 
-void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass, PassImage& image,
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather) {
   const World& world = input.world;
@@ -32,8 +32,8 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
     shade_profile(world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
-        direct_light(world, ray.camera.ray, ray.profile, stage.sampled_lights(),
-                     stage.direct_samples(), rng, counts.shadow_rays);
+        direct_light(world, ray.camera.ray, ray.profile, photons.plan().sampled_lights,
+                     photons.plan().direct_samples, rng, counts.shadow_rays);
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, [&](int x0, int y0, int, int) {
@@ -45,7 +45,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass
       if (scratch.rays[i].inside)
         shade_ray(scratch.rays[i], scratch.statistics);
     const Clock::time_point shaded = Clock::now();
-    if (stage.map().size() > 0)
+    if (photons.map().size() > 0)
       gather(scratch, key);
     scratch.statistics.profile += seconds_between(start, profiled);
     scratch.statistics.direct += seconds_between(profiled, shaded);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "estimators/estimator.h"
-#include "estimators/photon_stage.h"
+#include "estimators/photon_pass.h"
 #include "estimators/tile_rays.h"
 
 #include <functional>
@@ -18,7 +18,7 @@ struct TileScratch {
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
 /// direct light, what is seen through the medium, and the stage times. `gather` adds what the
 /// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics.
-void shade_tiles(const EstimatorInput& input, const PhotonStage& stage, int pass, PassImage& image,
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather);
 

@@ -40,8 +40,8 @@ ViewThinning thin_by_view(const World& world, CellTables importance, const Photo
     (mean_share(values, middle) * per_path < wanted_per_path ? low : high) = middle;
   }
   thinning.stored_per_path = mean_share(values, high) * per_path;
-  thinning.keep = std::move(importance);
-  for (std::vector<float>& table : thinning.keep)
+  thinning.store_probability = std::move(importance);
+  for (std::vector<float>& table : thinning.store_probability)
     for (float& value : table)
       value = std::min(1.0f, value * static_cast<float>(high));
   return thinning;

@@ -5,16 +5,17 @@
 
 namespace vdbeam {
 
-/// Which share of the collisions in each cell become photons, and how many a path leaves.
+/// With which probability the collisions in each cell are stored, and how many photons a path
+/// leaves.
 struct ViewThinning {
-  CellTables keep;
+  CellTables store_probability;
   double stored_per_path = 0;
 };
 
-/// Shares in proportion to what the camera sees of each cell (view_importance), such that a path
-/// leaves `wanted_per_path` photons, or fewer where most of them would go unseen. `pilot` holds all
-/// collisions of a sample of paths, `per_path` on average. Nothing is lost: a photon that is kept
-/// with share s weighs 1 / s.
+/// Probabilities in proportion to what the camera sees of each cell (view_importance), such that a
+/// path leaves `wanted_per_path` photons, or fewer where most of them would go unseen. `pilot`
+/// holds all collisions of a sample of paths, `per_path` on average. Nothing is lost: a photon that
+/// is stored with probability q weighs 1 / q.
 ViewThinning thin_by_view(const World& world, CellTables importance, const PhotonList& pilot,
                           double per_path, double wanted_per_path);
 

@@ -102,8 +102,6 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
 
   start = Clock::now();
   find_kernel_radii(data.blocks, radii);
-  if (radii.support)
-    divide_by_share(data.blocks, radii.support);
   data.times.radii = seconds_since(start);
 
   start = Clock::now();

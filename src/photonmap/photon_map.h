@@ -22,7 +22,8 @@ struct RadiusSettings {
   float scale = 1;          ///< progressive shrinking: applied to adaptive and fixed radii alike
   float min_radius = 0;     ///< clamp after scaling; > 0
   float max_radius = 1e30f; ///< clamp after scaling
-  KernelShare support;      ///< photons' powers are divided by it; empty: 1
+
+  bool operator==(const RadiusSettings&) const = default;
 };
 
 struct MapTimes {
@@ -51,7 +52,7 @@ public:
 
   /// The same map once more.
   PhotonMap copy() const;
-  /// Divides every photon's power by its share: what build does with radii.support.
+  /// Divides every photon's power by its kernel's share.
   void divide_power(const KernelShare& share);
 
   std::size_t size() const;

@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <chrono>
+
 namespace vdbeam {
 namespace {
 
@@ -81,10 +83,13 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
   const EstimatorInput input{world, camera, key, window, hooks.stop, prepared->photons.get()};
   PassLoop loop(scene, hooks, window, result);
+  const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   std::optional<BiasProbe> probe;
   if (result.plan.needs("bias"))
     probe.emplace(input, window, loop.probe_pixels(), scene.render.bias_rays);
+  result.statistics.pilot =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   loop.run(*estimator, probe ? &*probe : nullptr);
   return result;
 }

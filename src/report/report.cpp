@@ -64,19 +64,14 @@ Json passes_json(const RenderResult& result) {
 
 Json seconds_json(const RenderResult& result) {
   const RenderStatistics& s = result.statistics;
-  return {{"read", s.read},
-          {"prepare", s.prepare},
-          {"build", s.build},
-          {"trace", s.trace},
-          {"order", s.order},
-          {"radii", s.radii},
-          {"query", s.query},
-          {"profile", s.profile},
-          {"direct", s.direct},
-          {"path", s.path},
-          {"bias", s.bias},
-          {"write", s.write},
-          {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
+  return {
+      {"read", s.read},       {"prepare", s.prepare},
+      {"build", s.build},     {"pilot", s.pilot},
+      {"trace", s.trace},     {"order", s.order},
+      {"radii", s.radii},     {"query", s.query},
+      {"profile", s.profile}, {"direct", s.direct},
+      {"path", s.path},       {"bias", s.bias},
+      {"write", s.write},     {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
 }
 
 Json machine_json(const Scene& scene) {
@@ -152,6 +147,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"bias_rays", statistics.bias_rays},
                       {"neighbourhoods", statistics.neighbourhoods},
                       {"importance_rays", statistics.importance_rays},
+                      {"pilot_paths", statistics.pilot_paths},
                       {"directions", statistics.directions},
                       {"maps_reused", statistics.maps_reused}};
   if (scene.render.clamp) {

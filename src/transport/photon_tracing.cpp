@@ -147,23 +147,23 @@ private:
     return sum;
   }
 
-  float keep(const Volume& volume, const Vec3f& point) const {
-    if (!settings_.keep_by_cell)
-      return settings_.keep;
+  float store_probability(const Volume& volume, const Vec3f& point) const {
+    if (!settings_.store_probability_by_cell)
+      return settings_.store_probability;
     const auto index = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
-    return (*settings_.keep_by_cell)[index][volume.cell_at(point)];
+    return (*settings_.store_probability_by_cell)[index][volume.cell_at(point)];
   }
 
   void store(LightPath& path, const Collision& hit, const Rgb& power) {
     ++collisions;
     const Vec3f point = path.ray.at(hit.t);
-    const float share = keep(*hit.volume, point);
-    if (share < 1 && path.rng.uniform() >= share)
+    const float probability = store_probability(*hit.volume, point);
+    if (probability < 1 && path.rng.uniform() >= probability)
       return;
     photons.position.push_back(point);
     if (settings_.directions)
       photons.direction.push_back(path.ray.direction);
-    photons.power.push_back(power * settings_.factor / share);
+    photons.power.push_back(power * settings_.albedo / probability);
   }
 
   const World& world_;
@@ -174,18 +174,20 @@ private:
 
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
-  const auto& [paths, store, keep, keep_by_cell, skip_first_flight, max_bounces, directions, factor,
-               key, stop] = a;
+  const auto& [paths, store, store_probability, store_probability_by_cell, skip_first_flight,
+               max_bounces, directions, albedo, key, stop] = a;
   static_cast<void>(stop);
-  const bool same_cells = keep_by_cell == b.keep_by_cell ||
-                          (keep_by_cell && b.keep_by_cell && *keep_by_cell == *b.keep_by_cell);
-  return same_cells && paths == b.paths && store == b.store && keep == b.keep &&
-         skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
-         directions == b.directions && factor == b.factor && key == b.key;
+  const bool same_cells = store_probability_by_cell == b.store_probability_by_cell ||
+                          (store_probability_by_cell && b.store_probability_by_cell &&
+                           *store_probability_by_cell == *b.store_probability_by_cell);
+  return same_cells && paths == b.paths && store == b.store &&
+         store_probability == b.store_probability && skip_first_flight == b.skip_first_flight &&
+         max_bounces == b.max_bounces && directions == b.directions && albedo == b.albedo &&
+         key == b.key;
 }
 
-PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings) {
-  PhotonPass pass;
+TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings) {
+  TracedPhotons pass;
   if (world.medium.empty() || settings.paths == 0)
     return pass;
   const std::vector<std::uint64_t> first = share_paths(world.lights, settings.paths);

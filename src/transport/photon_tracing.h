@@ -12,26 +12,27 @@ namespace vdbeam {
 struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
-  float keep = 1; ///< share of the storable collisions that is kept, each at 1 / keep
-  /// Where given, in place of `keep`: the share by cell, each > 0.
-  std::shared_ptr<const CellTables> keep_by_cell;
+  /// With which probability a storable collision is stored, its power divided by it; > 0.
+  float store_probability = 1;
+  /// Where given, in place of `store_probability`: the probability by cell, each > 0.
+  std::shared_ptr<const CellTables> store_probability_by_cell;
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;
   bool directions = true; ///< false: no phase function needs them
-  Rgb factor{1, 1, 1};    ///< stored powers are multiplied by it
+  Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
   RngKey key;
   /// Becomes true when the result is not wanted any more: it comes soon, and is incomplete.
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// True where trace_photons gives the same photons in the same world. Either may be older than what
-/// its pointers lead to.
+/// True where trace_photons gives the same photons in the same world. `stop` is not compared: the
+/// flag it points to may be gone.
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
-struct PhotonPass {
+struct TracedPhotons {
   PhotonList photons;         ///< power divided by the number of paths already
-  double mean_collisions = 0; ///< storable collisions per path, before `keep`
+  double mean_collisions = 0; ///< storable collisions per path, before thinning
 };
 
 /// Shoots photons from all lights and stores them; parallel, and the same for any number of
@@ -41,6 +42,6 @@ struct PhotonPass {
 /// an unbiased sample of the fluence, whose weight is bounded by the local majorant
 /// (docs/physics.md). Scatter storage: at every real collision the scattered flux (Jensen and
 /// Christensen 1998).
-PhotonPass trace_photons(const World& world, const PhotonPassSettings& settings);
+TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings);
 
 } // namespace vdbeam

@@ -2,7 +2,6 @@
 // pass.
 #include "estimators/kernel_pilot.h"
 
-#include "estimators/photon_stage.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +25,7 @@ double modelled_error(double x, double power, const KernelErrors& errors, double
   const double change = std::pow(std::pow(8, 0.45) - 1, 2);
   double noise = 0, bias = 0;
   for (int pass = 0; pass < 100; ++pass) {
-    const double scale = static_cast<double>(PhotonStage::radius_scale(pass, alpha));
+    const double scale = static_cast<double>(radius_scale(pass, alpha));
     noise += errors.noise_narrow * std::pow(x, -power) / (scale * scale) / 1e4;
     bias += std::sqrt(errors.change / change) * std::pow(x, 0.45) * scale * scale / 100;
   }

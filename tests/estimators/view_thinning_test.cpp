@@ -1,9 +1,9 @@
 // Photons that the camera does not see are stored rarely, and nothing is lost by it.
 #include "estimators/view_thinning.h"
 
-#include "estimators/photon_stage.h"
 #include "estimators/view_importance.h"
 #include "support/render_passes.h"
+#include "transport/photon_tracing.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -31,7 +31,7 @@ MemoryScene noisy_cube(double depth) {
 }
 
 /// All collisions of a sample of paths.
-PhotonPass collisions_of(const World& world, std::uint64_t paths = 2000) {
+TracedPhotons collisions_of(const World& world, std::uint64_t paths = 2000) {
   PhotonPassSettings settings;
   settings.paths = paths;
   settings.skip_first_flight.assign(world.lights.size(), true);
@@ -98,7 +98,7 @@ TEST(ViewImportance, HiddenChannels) {
 
 TEST(ViewThinning, KeepsWhatIsWanted) {
   View view(noisy_cube(60));
-  const PhotonPass pilot = collisions_of(view.world);
+  const TracedPhotons pilot = collisions_of(view.world);
   for (const double wanted : {1.0, 4.0}) {
     const ViewThinning thinning = thin_by_view(view.world, view.importance(0.05f), pilot.photons,
                                                pilot.mean_collisions, wanted);
@@ -107,8 +107,9 @@ TEST(ViewThinning, KeepsWhatIsWanted) {
     settings.paths = 4000;
     settings.key = {7, 1, 3};
     settings.skip_first_flight = {true};
-    settings.keep_by_cell = std::make_shared<const CellTables>(thinning.keep);
-    const PhotonPass pass = trace_photons(view.world, settings);
+    settings.store_probability_by_cell =
+        std::make_shared<const CellTables>(thinning.store_probability);
+    const TracedPhotons pass = trace_photons(view.world, settings);
     const double stored = static_cast<double>(pass.photons.size()) / 4000;
     EXPECT_NEAR(stored, wanted, 0.1 * wanted);
   }
@@ -118,7 +119,7 @@ TEST(ViewThinning, KeepsWhatIsWanted) {
 /// parts of what thinning evenly would store.
 double stored_share(const MemoryScene& scene) {
   View view(scene);
-  const PhotonPass pilot = collisions_of(view.world);
+  const TracedPhotons pilot = collisions_of(view.world);
   const CellTables importance = view.importance(0.05f);
   double sum = 0;
   for (const Vec3f& position : pilot.photons.position)
@@ -141,14 +142,15 @@ TEST(ViewThinning, StoresFewPhotonsOutsideTheView) {
   scene.look({0.4, 0.4, 3}, {0.4, 0.4, 0}, 4, 16, 16);
   View view(scene);
   const float reach = 0.04f;
-  const PhotonPass all = collisions_of(view.world, 4000);
+  const TracedPhotons all = collisions_of(view.world, 4000);
   const ViewThinning thinning =
       thin_by_view(view.world, view.importance(reach), all.photons, all.mean_collisions, 4);
   PhotonPassSettings settings;
   settings.paths = 4000;
   settings.skip_first_flight = {true};
-  settings.keep_by_cell = std::make_shared<const CellTables>(thinning.keep);
-  const PhotonPass kept = trace_photons(view.world, settings);
+  settings.store_probability_by_cell =
+      std::make_shared<const CellTables>(thinning.store_probability);
+  const TracedPhotons kept = trace_photons(view.world, settings);
   const auto outside = [&](const PhotonList& photons) {
     std::size_t count = 0;
     for (const Vec3f& position : photons.position) {

@@ -163,23 +163,25 @@ TEST(PhotonCache, KeepsNoMoreThanItMay) {
   PhotonCache cache(2 * map.bytes());
   PhotonPassSettings settings;
   settings.paths = 10;
+  RadiusSettings radii;
+  radii.neighbours = 10;
   for (std::uint64_t pass = 0; pass < 5; ++pass) {
     settings.key.pass = pass;
-    cache.keep(settings, 10, map);
+    cache.keep(settings, radii, map);
   }
   EXPECT_EQ(cache.bytes(), 2 * map.bytes());
   settings.key.pass = 1;
-  ASSERT_NE(cache.find(settings, 10), nullptr);
-  EXPECT_EQ(cache.find(settings, 10)->size(), 64u);
+  ASSERT_NE(cache.find(settings, radii), nullptr);
+  EXPECT_EQ(cache.find(settings, radii)->size(), 64u);
   settings.key.pass = 2;
-  EXPECT_EQ(cache.find(settings, 10), nullptr);
+  EXPECT_EQ(cache.find(settings, radii), nullptr);
   // Other photons of a pass replace those that are there.
   settings.key.pass = 1;
   settings.paths = 11;
-  EXPECT_EQ(cache.find(settings, 10), nullptr);
-  cache.keep(settings, 10, map);
+  EXPECT_EQ(cache.find(settings, radii), nullptr);
+  cache.keep(settings, radii, map);
   EXPECT_EQ(cache.bytes(), 2 * map.bytes());
-  EXPECT_NE(cache.find(settings, 10), nullptr);
+  EXPECT_NE(cache.find(settings, radii), nullptr);
 }
 
 } // namespace

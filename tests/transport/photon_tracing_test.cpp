@@ -70,7 +70,7 @@ TEST(PhotonTracing, FluenceOfALoneAbsorberIsBeerLambert) {
   const double scale = world.space.scale; // render areas
   for (const float keep : {1.0f, 0.3f}) {
     PhotonPassSettings pass = settings(4000, 0);
-    pass.keep = keep;
+    pass.store_probability = keep;
     const auto sums =
         power_sums(world, pass, 40, [&](const Vec3f& p) { return sigma_at(world, p); });
     test::expect_mean(sums[0], (1 - std::exp(-3.0)) * scale * scale);

@@ -1,0 +1,124 @@
+#include "estimators/beam_plan.h"
+
+#include "estimators/kernel_pilot.h"
+#include "estimators/kernel_support.h"
+#include "estimators/view_importance.h"
+#include "estimators/view_thinning.h"
+
+#include <cmath>
+#include <utility>
+
+namespace vdbeam {
+
+namespace {
+
+/// Where the camera sees nothing of a cell, collisions there are stored with at least this share of
+/// the probability of those that it sees best.
+constexpr float least_importance = 1.0f / 1024;
+/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these.
+constexpr double trial_share = 0.25;
+constexpr double most_trial_paths = 25000;
+constexpr int trial_maps = 4;
+/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more.
+constexpr double trial_neighbours = 1000;
+constexpr double wide_over_narrow = 8;
+/// A narrow kernel holds at most this share of a map, so that a wide one fits.
+constexpr double most_in_kernel = 1.0 / 16;
+/// Below this many photons per pass the trial is too noisy, and the default is used.
+constexpr double fewest_for_trial = 500;
+
+/// The nearest of 34, 170, 850, 4250, ...: what the trial finds scatters by a factor of 1.7 either
+/// way, and kernels that changed with that from frame to frame would flicker.
+double in_kernel_steps(double neighbours) {
+  return 850 * std::pow(5, std::round(std::log(neighbours / 850) / std::log(5)));
+}
+
+bool thins_by_view(const RenderSettings& settings) {
+  return settings.thinning != PhotonThinning::even && !(settings.keep > 0);
+}
+
+/// About the radius that kernels would have without regard to the view.
+float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const PhotonList& pilot) {
+  constexpr std::size_t enough = 8192;
+  const std::size_t stride = (pilot.size() + enough - 1) / enough;
+  PhotonList sample;
+  for (std::size_t i = 0; i < pilot.size(); i += stride) {
+    sample.position.push_back(pilot.position[i]);
+    sample.power.push_back(pilot.power[i]);
+  }
+  RadiusSettings radii = radius_settings(input.world, plan, 0);
+  const double photons =
+      plan.stored_per_path * static_cast<double>(choose_paths(input, plan.stored_per_path));
+  radii.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
+  return PhotonMap::build(std::move(sample), 1, radii, KernelShape::biweight).mean_radius();
+}
+
+/// Stores collisions where the camera sees them.
+void thin_by_view(const EstimatorInput& input, const TracedPhotons& pilot, PhotonPlan& plan) {
+  const double collisions = pilot.mean_collisions;
+  plan.stored_per_path = std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
+  CellTables importance =
+      view_importance(input.world, input.camera, typical_radius(input, plan, pilot.photons),
+                      least_importance, plan.importance_rays);
+  ViewThinning thinning = thin_by_view(input.world, std::move(importance), pilot.photons,
+                                       collisions, plan.stored_per_path);
+  plan.store_probability_by_cell =
+      std::make_shared<const CellTables>(std::move(thinning.store_probability));
+  plan.stored_per_path = thinning.stored_per_path;
+}
+
+/// Where photons may serve frames with other views, kernels must not depend on the view either.
+bool may_try_kernels(const RenderSettings& settings, const PhotonPlan& plan) {
+  return thins_by_view(settings) && settings.neighbours == 0 &&
+         settings.kernel == KernelRadius::adaptive && settings.store == PhotonStore::fluence &&
+         plan.stored_per_path * static_cast<double>(plan.paths) >= fewest_for_trial;
+}
+
+/// The neighbours at which pictures of narrow and wide kernels tell that the error is least.
+double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
+  const World& world = input.world;
+  const KernelShare share = boundary_share(world, input.camera, KernelDomain::disc);
+  const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
+  const double trial_paths = std::ceil(std::min(most_trial_paths, trial_share * paths));
+  KernelTrial narrow, wide;
+  narrow.neighbours = std::min(trial_neighbours, most_in_kernel * photons);
+  wide.neighbours = wide_over_narrow * narrow.neighbours;
+  RngKey key;
+  for (std::uint64_t i = 1; i <= trial_maps; ++i) {
+    PhotonPassSettings settings = pass_settings(input, plan, pilot_pass - i);
+    settings.paths = static_cast<std::uint64_t>(trial_paths);
+    key = settings.key;
+    const TracedPhotons traced = trace_photons(world, settings);
+    plan.pilot_paths += settings.paths;
+    for (KernelTrial* trial : {&narrow, &wide}) {
+      RadiusSettings radii = radius_settings(world, plan, 0);
+      radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
+      trial->maps.push_back(
+          PhotonMap::build(traced.photons, world.grey ? 1 : 3, radii, world.settings.kernel_shape));
+      if (share)
+        trial->maps.back().divide_power(share);
+    }
+  }
+  const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
+  const double best =
+      best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
+  return std::min(wide.neighbours, in_kernel_steps(best));
+}
+
+} // namespace
+
+PhotonPlan plan_beam_photons(const EstimatorInput& input) {
+  const RenderSettings& settings = input.world.settings;
+  PhotonPlan plan = plan_lights(input);
+  if (!plan.needs_map)
+    return plan;
+  const TracedPhotons pilot = trace_pilot(input, plan);
+  if (thins_by_view(settings) && pilot.photons.size() > 0)
+    thin_by_view(input, pilot, plan);
+  plan.paths = choose_paths(input, plan.stored_per_path);
+  if (may_try_kernels(settings, plan))
+    plan.neighbours = try_kernels(input, plan);
+  return plan;
+}
+
+} // namespace vdbeam

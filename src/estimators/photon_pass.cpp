@@ -1,0 +1,80 @@
+#include "estimators/photon_pass.h"
+
+#include "estimators/photon_cache.h"
+
+#include <chrono>
+#include <utility>
+
+namespace vdbeam {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+} // namespace
+
+PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan plan, KernelDomain domain)
+    : input_(input), plan_(std::move(plan)),
+      boundary_share_(boundary_share(input.world, input.camera, domain)) {}
+
+/// The pilot belongs to no pass; its counts go with the first.
+void PhotonPass::count_pilot(RenderStatistics& statistics) {
+  if (std::exchange(pilot_counted_, true))
+    return;
+  statistics.pilot_paths += plan_.pilot_paths;
+  statistics.importance_rays += plan_.importance_rays;
+}
+
+void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
+  const World& world = input_.world;
+  const RadiusSettings radii = radius_settings(world, plan_, pass);
+  if (!plan_.needs_map) {
+    map_ = PhotonMap::build({}, 1, radii, world.settings.kernel_shape);
+    return;
+  }
+  count_pilot(statistics);
+  // Only the boundary's correction depends on the camera.
+  make_map(pass_settings(input_, plan_, static_cast<std::uint64_t>(pass)), radii, statistics);
+  const auto start = Clock::now();
+  if (boundary_share_)
+    map_.divide_power(boundary_share_);
+  statistics.radii += seconds_since(start);
+  statistics.photons_stored += map_.size();
+  const bool adaptive = world.settings.kernel == KernelRadius::adaptive;
+  statistics.neighbourhoods += adaptive ? map_.size() : 0;
+  statistics.neighbours = adaptive ? plan_.neighbours : 0;
+  statistics.directions += map_.has_directions() ? map_.size() : 0;
+  if (map_.size() > 0)
+    statistics.bytes_per_photon = map_.bytes() / map_.size();
+}
+
+/// The map of these photons: an earlier frame's, or a new one.
+void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
+                          RenderStatistics& statistics) {
+  if (const auto kept = input_.photons ? input_.photons->find(settings, radii) : nullptr) {
+    map_ = kept->copy();
+    ++statistics.maps_reused;
+    return;
+  }
+  const auto start = Clock::now();
+  const World& world = input_.world;
+  TracedPhotons traced = trace_photons(world, settings);
+  statistics.trace += seconds_since(start);
+  const bool stopped = input_.stopped();
+  if (stopped)
+    traced = {}; // of an abandoned pass, nobody needs the map
+  statistics.light_paths += settings.paths;
+  map_ = PhotonMap::build(std::move(traced.photons), world.grey ? 1 : 3, radii,
+                          world.settings.kernel_shape);
+  statistics.order += map_.times().order;
+  statistics.radii += map_.times().radii;
+  statistics.build += map_.times().build;
+  if (input_.photons && !stopped)
+    input_.photons->keep(settings, radii, map_);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "estimators/kernel_support.h"
+#include "estimators/photon_plan.h"
+
+namespace vdbeam {
+
+/// The photon side of a pass, for estimators that gather photons: traces them by a plan, builds
+/// their map (or takes it over from another frame) and corrects kernels at the medium's boundary.
+class PhotonPass {
+public:
+  /// `domain`: what the estimator's kernels are normalised over.
+  PhotonPass(const EstimatorInput& input, PhotonPlan plan, KernelDomain domain);
+
+  /// Makes the map of a pass. Radii shrink from pass to pass.
+  void trace_and_build(int pass, RenderStatistics& statistics);
+
+  const PhotonPlan& plan() const { return plan_; }
+  const PhotonMap& map() const { return map_; }
+
+private:
+  void make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
+                RenderStatistics& statistics);
+  void count_pilot(RenderStatistics& statistics);
+
+  EstimatorInput input_;
+  PhotonPlan plan_;
+  KernelShare boundary_share_;
+  bool pilot_counted_ = false;
+  PhotonMap map_;
+};
+
+} // namespace vdbeam

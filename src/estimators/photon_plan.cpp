@@ -1,0 +1,165 @@
+#include "estimators/photon_plan.h"
+
+#include "estimators/camera_ray.h"
+#include "transport/depth_profile.h"
+
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Where no trial chooses them.
+constexpr double default_neighbours = 500;
+/// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
+/// on thin and on thick media (docs/decisions.md). A count, not a clock, so that every machine
+/// chooses the same.
+constexpr double paths_per_hit = 2;
+constexpr double fewest_paths = 10000;
+constexpr double most_photons = 2e6;
+/// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
+/// few.
+constexpr double most_paths_per_photon = 16;
+/// Shadow rays per camera ray: in thin media, where single scattering is most of the light, its
+/// noise is most of the error; in thick ones the photons' noise hides it (docs/decisions.md).
+constexpr double direct_per_path = 12;
+constexpr int most_direct_samples = 6;
+constexpr std::uint64_t pilot_paths = 1024;
+
+/// The nearest power of the fourth root of two: the same number, and so the same photons, for
+/// frames that differ a little.
+double in_steps(double number) {
+  return number > 0 ? std::exp2(std::round(4 * std::log2(number)) / 4) : 0;
+}
+
+/// Camera rays of a pass that meet the medium, from a coarse sample.
+double count_hits(const EstimatorInput& input) {
+  constexpr int samples = 48;
+  const Camera& camera = input.camera;
+  DepthProfile profile;
+  int hits = 0;
+  for (int y = 0; y < samples; ++y)
+    for (int x = 0; x < samples; ++x) {
+      const CameraRay ray = camera_ray(input.world, camera, (x + 0.5) * camera.width() / samples,
+                                       (y + 0.5) * camera.height() / samples);
+      profile.build(input.world.medium, ray.ray, ray.t_begin, ray.t_end, 0.5f);
+      hits += !profile.empty();
+    }
+  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+}
+
+/// All volumes have the same albedo.
+bool common_albedo(const Medium& medium) {
+  for (const Volume& volume : medium.volumes)
+    if (volume.albedo != medium.volumes[0].albedo)
+      return false;
+  return true;
+}
+
+} // namespace
+
+PhotonPlan plan_lights(const EstimatorInput& input) {
+  const World& world = input.world;
+  PhotonPlan plan;
+  bool photons_for_first_flight = false;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    DirectLight direct = world.lights[i].direct;
+    if (direct == DirectLight::automatic)
+      direct = world.settings.direct;
+    if (direct == DirectLight::automatic)
+      direct = world.lights[i].wants_shadow_rays() ? DirectLight::sampled : DirectLight::photons;
+    plan.sampled_lights.push_back(direct == DirectLight::sampled);
+    photons_for_first_flight = photons_for_first_flight || direct == DirectLight::photons;
+  }
+  bool scatters = false;
+  for (const Volume& volume : world.medium.volumes)
+    scatters = scatters || max_component(volume.albedo) > 0;
+  const RenderSettings& settings = world.settings;
+  const bool single_bounce = settings.max_bounces && *settings.max_bounces <= 1;
+  plan.needs_map = scatters && world.lights.size() > 0 && may_see_medium(world, input.camera) &&
+                   (!single_bounce || photons_for_first_flight);
+  plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
+  plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
+  plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
+  return plan;
+}
+
+TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
+  const RenderSettings& settings = input.world.settings;
+  PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
+  pass.paths = pilot_paths;
+  TracedPhotons pilot = trace_photons(input.world, pass);
+  plan.pilot_paths += pass.paths;
+  const double collisions = std::max(1e-3, pilot.mean_collisions);
+  if (settings.direct_samples == 0)
+    plan.direct_samples = std::clamp(
+        static_cast<int>(std::lround(direct_per_path / (1 + collisions))), 1, most_direct_samples);
+  plan.store_probability =
+      settings.keep > 0 ? settings.keep : std::min(1.0, stored_per_path_aim / collisions);
+  plan.stored_per_path = collisions * plan.store_probability;
+  return pilot;
+}
+
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) {
+  const RenderSettings& settings = input.world.settings;
+  double paths = static_cast<double>(settings.photons.value_or(0)) *
+                 std::min(1 / stored_per_path, most_paths_per_photon);
+  if (!settings.photons)
+    paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input))),
+                     most_photons / stored_per_path);
+  return static_cast<std::uint64_t>(std::ceil(paths));
+}
+
+PhotonPlan plan_photons(const EstimatorInput& input) {
+  PhotonPlan plan = plan_lights(input);
+  if (plan.needs_map) {
+    trace_pilot(input, plan);
+    plan.paths = choose_paths(input, plan.stored_per_path);
+  }
+  return plan;
+}
+
+PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
+                                 std::uint64_t pass) {
+  const World& world = input.world;
+  PhotonPassSettings settings;
+  settings.paths = plan.paths;
+  settings.store = world.settings.store;
+  settings.store_probability = static_cast<float>(plan.store_probability);
+  settings.store_probability_by_cell = plan.store_probability_by_cell;
+  settings.skip_first_flight = plan.sampled_lights;
+  settings.max_bounces = world.settings.max_bounces;
+  settings.directions = !world.medium.isotropic();
+  if (plan.albedo_in_power && settings.store == PhotonStore::fluence)
+    settings.albedo = world.medium.volumes[0].albedo;
+  settings.key = {world.settings.seed, input.frame, pass};
+  settings.stop = input.stop;
+  return settings;
+}
+
+float radius_scale(int pass, double alpha) {
+  double squared = 1;
+  for (int i = 1; i <= pass; ++i)
+    squared *= (i + alpha) / (i + 1);
+  return static_cast<float>(std::sqrt(squared));
+}
+
+RadiusSettings radius_settings(const World& world, const PhotonPlan& plan, int pass) {
+  const RenderSettings& settings = world.settings;
+  const float scale = static_cast<float>(world.space.scale);
+  RadiusSettings radii;
+  radii.mode = settings.kernel;
+  radii.fixed_radius = static_cast<float>(settings.radius) * scale;
+  radii.neighbours = static_cast<float>(plan.neighbours);
+  radii.scale = radius_scale(pass, settings.alpha);
+  radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
+  // Kernels as wide as the medium would lose most of its light outside.
+  radii.max_radius = 0.5f * world.region.radius;
+  if (settings.kernel == KernelRadius::fixed)
+    radii.max_radius = infinity;
+  if (settings.max_radius > 0)
+    radii.max_radius = static_cast<float>(settings.max_radius) * scale;
+  return radii;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "estimators/estimator.h"
+#include "photonmap/photon_map.h"
+#include "transport/photon_tracing.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbeam {
+
+/// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
+/// function of the estimator's input (by counts, never by a clock).
+struct PhotonPlan {
+  /// False where no photon could add anything to the picture.
+  bool needs_map = false;
+  /// Per light: single scattering by shadow rays instead of photons.
+  std::vector<bool> sampled_lights;
+  /// Shadow-ray samples per camera ray.
+  int direct_samples = 1;
+  /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
+  /// always in scatter storage, in fluence storage where all volumes have the same albedo.
+  bool albedo_in_power = false;
+  std::uint64_t paths = 0; ///< light paths per pass
+  /// Probability with which a storable collision is stored; by cell where the tables are given.
+  double store_probability = 1;
+  std::shared_ptr<const CellTables> store_probability_by_cell;
+  double stored_per_path = 0; ///< expected photons of a light path
+  double neighbours = 0;      ///< photons in the sphere of an adaptive kernel's radius
+
+  std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
+  std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
+};
+
+/// A plan that does not depend on what is seen of single photons: stored with one probability
+/// everywhere, kernels of the neighbours that are asked for or of a default.
+PhotonPlan plan_photons(const EstimatorInput& input);
+
+/// The parts that plan_photons is made of, for plans that go further.
+///
+/// Chooses the lights that are left to shadow rays, and whether there is anything to map.
+PhotonPlan plan_lights(const EstimatorInput& input);
+/// Traces a few light paths and chooses from the mean number of their collisions how many shadow
+/// rays to send and how many photons to store, everywhere with the same probability. Requires a
+/// plan that needs a map. The photons hold all storable collisions.
+TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
+/// Light paths per pass, from the photons that one of them stores.
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
+
+/// Collisions of one path that are stored on average: more of them tell little that is new.
+inline constexpr double stored_per_path_aim = 4;
+/// The pilots' pass numbers count down from here, far from those of the picture.
+inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+
+/// How photons of a pass are traced and stored.
+PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
+                                 std::uint64_t pass);
+/// How wide the kernels of a pass are.
+RadiusSettings radius_settings(const World& world, const PhotonPlan& plan, int pass);
+/// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
+float radius_scale(int pass, double alpha);
+
+} // namespace vdbeam
