@@ -1,3 +1,4 @@
+#include "support/next_scattering.h"
 #include "transport/delta_tracking.h"
 #include "transport/depth_profile.h"
 #include "transport/scattering.h"
@@ -87,11 +88,11 @@ void delta_tracking(benchmark::State& state) {
     Ray ray = ray_through_ball(rng);
     Rgb weight(1);
     while (true) {
-      const Collision hit = next_scattering(medium, ray, weight, rng);
+      const Collision hit = test::next_scattering(medium, ray, weight, rng);
       if (hit.volume == nullptr)
         break;
       ++collisions;
-      if (!survive_scattering(hit.volume->albedo, weight, rng))
+      if (!absorption_roulette(hit.volume->albedo, weight, rng))
         break;
       const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
       ray = {ray.at(hit.t), phase.sample(ray.direction, u_lobe, u, v)};
@@ -108,7 +109,7 @@ void depth_profiles(benchmark::State& state) {
   Rng rng({}, RngStage::test, 2);
   std::int64_t pieces = 0;
   for (auto _ : state) {
-    profile.build(medium, ray_through_ball(rng), 0, 2, 1e-30f);
+    profile.build(medium, {ray_through_ball(rng), 0, 2}, 1e-30f);
     pieces += static_cast<std::int64_t>(profile.knots());
   }
   state.SetItemsProcessed(pieces);

@@ -145,7 +145,7 @@ private:
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
-        deposit(profile, volumes[v].group, c, interval, ray, scattered * share * albedo);
+        deposit(profile, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
       }
     }
   }
@@ -162,13 +162,13 @@ private:
       }
       const float tr = std::exp(-tau);
       if (!(piece > 0)) {
-        *weight(profile, volumes[0].group, c, knot, ray) += tr;
+        *weight(profile, volumes[0].phase_index, c, knot, ray) += tr;
         continue;
       }
       for (std::size_t v = 0; v < volumes.size(); ++v)
-        *weight(profile, volumes[v].group, c, knot, ray) += tr * volumes[v].albedo[c] *
-                                                            volumes[v].channel_scale[c] *
-                                                            (after_[v] - before_[v]) / piece;
+        *weight(profile, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
+                                                                  volumes[v].channel_scale[c] *
+                                                                  (after_[v] - before_[v]) / piece;
     }
   }
 

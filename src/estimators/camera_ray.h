@@ -7,10 +7,12 @@ namespace vdbeam {
 
 /// A camera ray, begun near the medium so that single precision serves a camera at any distance.
 struct CameraRay {
-  Ray ray;
-  double shift = 0;  ///< distance from the camera to ray.origin
-  float t_begin = 0; ///< part of the ray inside the medium's bounds; t_begin >= t_end: misses
-  float t_end = 0;
+  Segment segment;  ///< the part inside the medium's bounds; empty where the ray misses them
+  double shift = 0; ///< distance from the camera to segment.ray.origin
+
+  const Ray& ray() const { return segment.ray; }
+  /// From the camera to where the ray leaves the scene.
+  Segment whole() const { return {segment.ray, static_cast<float>(-shift), infinity}; }
 };
 
 inline CameraRay camera_ray(const World& world, const Camera& camera, double px, double py) {
@@ -18,10 +20,11 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, double px,
   const Vec3d direction = camera.direction(px, py);
   const Vec3d to_center = Vec3d(world.region.center) - camera.origin();
   result.shift = std::max(0.0, dot(to_center, direction) - 1.001 * world.region.radius);
-  result.ray = {Vec3f(camera.origin() + direction * result.shift), Vec3f(direction)};
-  result.t_end = world.medium.visible() ? infinity : 0;
+  result.segment.ray = {Vec3f(camera.origin() + direction * result.shift), Vec3f(direction)};
   if (world.medium.visible())
-    world.medium.clip(result.ray, result.t_begin, result.t_end);
+    result.segment = world.medium.clip(result.segment);
+  else
+    result.segment.t_end = 0;
   return result;
 }
 

@@ -22,19 +22,19 @@ Rgb scattered_light(const World& world, const Light& light, const PhaseFunction&
     if (p * mis > 0) {
       ++shadow_rays;
       sum += sample.value * (p * mis) *
-             exact_transmittance(world.medium, {point, sample.wi}, sample.distance);
+             exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance});
     }
   }
   if (light.is_delta())
     return sum;
   const float u_lobe = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
   const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
-  const Rgb radiance = light.escaped_radiance(wi);
-  if (max_component(radiance) > 0) {
+  const LightHit hit = light.emitted_radiance({{point, wi}});
+  if (max_component(hit.radiance) > 0) {
     const float p = phase.evaluate(dot(direction, wi));
     const float mis = p / (p + light.incident_pdf(point, wi));
     ++shadow_rays;
-    sum += radiance * mis * exact_transmittance(world.medium, {point, wi}, infinity);
+    sum += hit.radiance * mis * exact_transmittance(world.medium, {{point, wi}, 0, hit.distance});
   }
   return sum;
 }
@@ -101,7 +101,7 @@ private:
     for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
       const Rgb& weight = (*point.weights)[v];
       if (max_component(weight) > 0)
-        sum += weight * scattered_light(world_, light, medium.phases[medium.volumes[v].group],
+        sum += weight * scattered_light(world_, light, medium.phases[medium.volumes[v].phase_index],
                                         point.position, ray_.direction, rng_, shadow_rays_);
     }
     return sum;

@@ -105,7 +105,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
     shade_profile(world, ray.camera, ray.profile, i, beside, emission_rays);
     // One sample will do: it only weighs the pixel.
     Rng rng(key, RngStage::direct, ray.pixel);
-    const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray, ray.profile,
+    const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
                                                      plan.sampled_lights, 1, rng, shadow_rays);
     for (std::size_t c = 0; c < channels; ++c) {
       view.places.push_back(c * TileRays::count + i);

@@ -37,7 +37,7 @@ public:
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
         const QueryCounts c = photons_.map().query_point(
-            ray.camera.ray.at(t), ray.camera.ray.direction, medium.phases, gathered_.data());
+            ray.camera.ray().at(t), ray.camera.ray().direction, medium.phases, gathered_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
         sum += weigh(before, after, step);
@@ -66,7 +66,7 @@ private:
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes.size());
         const float albedo = photons_.plan().albedo_in_power ? 1 : volumes[v].albedo[c];
-        sum[c] += whole * share * albedo * gathered_[volumes[v].group][c];
+        sum[c] += whole * share * albedo * gathered_[volumes[v].phase_index][c];
       }
     }
     return sum;

@@ -76,9 +76,9 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
     left -= mean_component((*point.weights)[++volume]);
   const Rgb& weight = (*point.weights)[volume];
   if (mean_component(weight) > 0)
-    walks.push_back(tracer_.start(target, walk_rng, {point.position, camera.ray.direction},
+    walks.push_back(tracer_.start(target, walk_rng, {point.position, camera.ray().direction},
                                   weight * (total / mean_component(weight)),
-                                  medium.phases[medium.volumes[volume].group]));
+                                  medium.phases[medium.volumes[volume].phase_index]));
 }
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
@@ -88,16 +88,15 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   const World& world = input_.world;
   Rng rng(key, RngStage::path, pixel);
   DepthProfile& profile = scratch.profile;
-  profile.build(world.medium, camera.ray, camera.t_begin, camera.t_end,
-                static_cast<float>(world.settings.cutoff));
+  profile.build(world.medium, camera.segment, static_cast<float>(world.settings.cutoff));
   shade_profile(world, camera, profile, target, image, scratch.counts.emission_rays);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_ ||
       (world.settings.max_bounces && *world.settings.max_bounces < 1))
     return;
-  image.direct[target] = direct_light(world, camera.ray, profile, shadow_rays_, direct_samples_,
+  image.direct[target] = direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_,
                                       rng, scratch.counts.shadow_rays);
-  DistanceSampler distances(world.medium, camera.ray, profile);
+  DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < splits_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(splits_);
     const int c = world.medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;

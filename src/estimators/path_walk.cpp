@@ -13,31 +13,38 @@ constexpr float roulette_below = 0.1f;
 
 PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
                            const Rgb& throughput, const PhaseFunction& phase) const {
-  // At its first step there is no shadow ray left to trace.
-  return {target, rng, ray,          throughput,           0, 0, std::nullopt, 0, {}, &phase,
-          {},     {},  std::nullopt, world_.lights.size(), {}};
+  PathWalk walk(rng, throughput);
+  walk.segment.ray = ray;
+  walk.target = target;
+  walk.phase = &phase;
+  // Before its first flight there is no shadow ray left to trace.
+  walk.light = world_.lights.size();
+  return walk;
 }
 
 bool WalkTracer::step(PathWalk& walk) const {
   if (walk.bounces == 0)
-    return shine(walk);
+    return scatter(walk);
   if (walk.shadow) {
     if (walk.shadow->attenuate(walk.rng) && walk.shadow->advance(walk.rng))
       return true;
     walk.indirect += walk.shadow_value * walk.shadow->transmittance();
     ++walk.light;
-    return shine(walk);
+    return sample_lights(walk);
   }
-  const Collision hit = walk.flight->collision();
-  // Null collisions leave a grey throughput as it is, so one piece of the flight goes up to the
-  // next real one.
-  const bool chromatic = world_.medium.chromatic;
-  if (glows_ && chromatic)
-    gather_emission(walk, hit.t);
-  if (!collide_really(hit, chromatic, walk.throughput, walk.rng))
-    return fly(walk);
-  if (glows_ && !chromatic)
-    gather_emission(walk, hit.t);
+  return step_flight(world_.medium, walk, *this);
+}
+
+/// Null collisions leave a grey throughput as it is, so the light of a flight is gathered in one
+/// piece up to its real collision; a coloured one changes at every collision.
+void WalkTracer::meet(PathWalk& walk, const Collision& hit) const {
+  if (meets_light_ && world_.medium.chromatic)
+    gather_light(walk, hit.t);
+}
+
+bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
+  if (meets_light_ && !world_.medium.chromatic)
+    gather_light(walk, hit.t);
   const std::optional<int>& most = world_.settings.max_bounces;
   if (most && walk.bounces >= *most)
     return false;
@@ -45,63 +52,71 @@ bool WalkTracer::step(PathWalk& walk) const {
   if (!survive_roulette(roulette_below, walk.throughput, walk.rng) ||
       !walk.length.survive(walk.throughput, walk.rng))
     return false;
-  walk.phase = &world_.medium.phases[hit.volume->group];
-  walk.ray.origin = walk.ray.at(hit.t);
+  walk.phase = &world_.medium.phases[hit.volume->phase_index];
+  walk.segment.ray.origin = walk.segment.ray.at(hit.t);
   walk.light = 0;
-  return shine(walk);
+  return sample_lights(walk);
 }
 
-/// Shadow rays from the collision to the lights from walk.light on, then on with the walk.
-bool WalkTracer::shine(PathWalk& walk) const {
+/// Next-event estimation: shadow rays from the collision to the lights from walk.light on, then on
+/// with the walk.
+bool WalkTracer::sample_lights(PathWalk& walk) const {
+  const Ray& ray = walk.segment.ray;
   for (; walk.light < world_.lights.size(); ++walk.light) {
     if (!shadow_rays_[walk.light])
       continue;
     const float u = walk.rng.uniform(), v = walk.rng.uniform();
-    const IncidentSample sample = world_.lights[walk.light].sample_incident(walk.ray.origin, u, v);
+    const IncidentSample sample = world_.lights[walk.light].sample_incident(ray.origin, u, v);
     if (max_component(sample.value) <= 0)
       continue;
-    const float p = walk.phase->evaluate(dot(walk.ray.direction, sample.wi));
+    const float p = walk.phase->evaluate(dot(ray.direction, sample.wi));
     const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
     walk.shadow_value = sample.value * (p * weight) * walk.throughput;
-    walk.shadow.emplace(world_.medium, Ray{walk.ray.origin, sample.wi}, sample.distance);
+    walk.shadow.emplace(world_.medium, Segment{{ray.origin, sample.wi}, 0, sample.distance});
     if (walk.shadow->advance(walk.rng))
       return true;
     walk.indirect += walk.shadow_value;
   }
   walk.shadow.reset();
-  turn(walk);
-  return fly(walk);
+  return scatter(walk);
 }
 
-void WalkTracer::turn(PathWalk& walk) const {
-  const float u_lobe = walk.rng.uniform(), u = walk.rng.uniform(), v = walk.rng.uniform();
-  const Vec3f direction = walk.phase->sample(walk.ray.direction, u_lobe, u, v);
-  walk.phase_pdf = walk.phase->evaluate(dot(walk.ray.direction, direction));
-  walk.ray.direction = direction;
+/// Draws a direction at the collision and begins the next flight.
+bool WalkTracer::scatter(PathWalk& walk) const {
+  const Ray& ray = walk.segment.ray;
+  const Vec3f direction = walk.sample_direction(*walk.phase);
+  walk.phase_pdf = walk.phase->evaluate(dot(ray.direction, direction));
   ++walk.bounces;
   walk.gathered = 0;
-  walk.flight.emplace(world_.medium, walk.ray, 0.0f, infinity);
+  walk.start(world_.medium, {{ray.origin, direction}});
+  return advance_flight(walk, *this);
 }
 
-/// To the flight's next tentative collision, or out of the medium.
-bool WalkTracer::fly(PathWalk& walk) const {
-  if (walk.flight->advance(walk.rng))
-    return true;
-  if (glows_)
-    gather_emission(walk, infinity);
-  (walk.bounces == 1 ? walk.direct : walk.indirect) += escape(walk);
-  return false;
+/// The flight has left the medium.
+void WalkTracer::leave(PathWalk& walk) const {
+  const float t_end = walk.segment.t_end;
+  if (meets_light_)
+    gather_light(walk, t_end);
+  else
+    (walk.bounces == 1 ? walk.direct : walk.indirect) +=
+        lights_met(walk, {walk.segment.ray, 0, t_end});
 }
 
-/// The medium's own light on the flight, from where it was gathered last to t_end.
-void WalkTracer::gather_emission(PathWalk& walk, float t_end) const {
-  const Rgb light = sample_emission(world_.medium, walk.ray, walk.gathered, t_end, walk.rng);
-  (walk.bounces == 1 ? walk.direct : walk.indirect) += light * walk.throughput;
+/// Light that the flight meets, from where it was gathered last to t_end: the medium's own, and
+/// that of the lights.
+void WalkTracer::gather_light(PathWalk& walk, float t_end) const {
+  Rgb& sum = walk.bounces == 1 ? walk.direct : walk.indirect;
+  const Segment piece{walk.segment.ray, walk.gathered, t_end};
+  if (!world_.medium.emitters.empty())
+    sum += sample_emission(world_.medium, piece, walk.rng) * walk.throughput;
+  if (world_.lights.any_extent() || t_end == infinity)
+    sum += lights_met(walk, piece);
   walk.gathered = t_end;
 }
 
-/// Light that a ray meets where it leaves the scene, weighted against next-event estimation.
-Rgb WalkTracer::escape(const PathWalk& walk) const {
+/// The lights that the flight meets within the segment, weighted against next-event estimation.
+Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
+  const Ray& ray = segment.ray;
   Rgb sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     const Light& light = world_.lights[i];
@@ -112,9 +127,8 @@ Rgb WalkTracer::escape(const PathWalk& walk) const {
       continue;
     float weight = 1;
     if (shadow_rays_[i])
-      weight = walk.phase_pdf /
-               (walk.phase_pdf + light.incident_pdf(walk.ray.origin, walk.ray.direction));
-    sum += light.escaped_radiance(walk.ray.direction) * weight;
+      weight = walk.phase_pdf / (walk.phase_pdf + light.incident_pdf(ray.origin, ray.direction));
+    sum += light.emitted_radiance(segment).radiance * weight;
   }
   return sum * walk.throughput;
 }

@@ -1,30 +1,26 @@
 #pragma once
 
+#include "transport/flight.h"
 #include "transport/optical_depth.h"
-#include "transport/scattering.h"
 #include "transport/world.h"
 
 #include <optional>
 
 namespace vdbeam {
 
-/// A path after its first scattering, under way: it stands at a tentative collision of its flight
-/// or, while there is one, of its shadow ray.
-struct PathWalk {
-  std::size_t target; ///< pixel of the image that its light goes to
-  Rng rng;
-  Ray ray;
-  Rgb throughput;
-  int bounces;
-  float phase_pdf; ///< of ray.direction
-  std::optional<MediumTracker> flight;
-  float gathered; ///< distance of the flight up to which the medium's own light was taken in
-  LengthRoulette length;
-  const PhaseFunction* phase; ///< at the last collision
-  Rgb direct, indirect;       ///< found so far: light that was scattered once, and more often
+/// A camera path after its first scattering, under way: it stands at a tentative collision of its
+/// flight or, while there is one, of its shadow ray.
+struct PathWalk : Flight {
+  using Flight::Flight;
+
+  std::size_t target = 0;               ///< pixel of the image that its light goes to
+  const PhaseFunction* phase = nullptr; ///< at the last real collision
+  float phase_pdf = 0;                  ///< of the flight's direction
+  float gathered = 0;   ///< distance of the flight up to which light that it meets was taken in
+  Rgb direct, indirect; ///< found so far: light that was scattered once, and more often
   std::optional<RatioTracking> shadow;
-  std::size_t light; ///< to which the shadow ray goes
-  Rgb shadow_value;  ///< what comes along it, were nothing in the way
+  std::size_t light = 0; ///< to which the shadow ray goes
+  Rgb shadow_value;      ///< what comes along it, were nothing in the way
 };
 
 /// Walks of the path tracer, a collision at a time: flights by delta tracking (spectral tracking
@@ -37,7 +33,7 @@ public:
   /// `shadow_rays`: per light, whether next-event estimation finds it.
   WalkTracer(const World& world, std::vector<bool> shadow_rays)
       : world_(world), shadow_rays_(std::move(shadow_rays)),
-        glows_(!world.medium.emitters.empty()) {}
+        meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -48,16 +44,21 @@ public:
   /// Between two steps memory has time to deliver: callers with several walks let them take turns.
   bool step(PathWalk& walk) const;
 
+  // What happens at the collisions of a flight (step_flight).
+  void meet(PathWalk& walk, const Collision& hit) const;
+  bool pass(const PathWalk&) const { return true; }
+  bool collide(PathWalk& walk, const Collision& hit) const;
+  void leave(PathWalk& walk) const;
+
 private:
-  bool shine(PathWalk& walk) const;
-  void turn(PathWalk& walk) const;
-  bool fly(PathWalk& walk) const;
-  void gather_emission(PathWalk& walk, float t_end) const;
-  Rgb escape(const PathWalk& walk) const;
+  bool sample_lights(PathWalk& walk) const;
+  bool scatter(PathWalk& walk) const;
+  void gather_light(PathWalk& walk, float t_end) const;
+  Rgb lights_met(const PathWalk& walk, const Segment& segment) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;
-  bool glows_;
+  bool meets_light_; ///< flights may meet light before they end
 };
 
 } // namespace vdbeam

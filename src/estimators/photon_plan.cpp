@@ -42,7 +42,7 @@ double count_hits(const EstimatorInput& input) {
     for (int x = 0; x < samples; ++x) {
       const CameraRay ray = camera_ray(input.world, camera, (x + 0.5) * camera.width() / samples,
                                        (y + 0.5) * camera.height() / samples);
-      profile.build(input.world.medium, ray.ray, ray.t_begin, ray.t_end, 0.5f);
+      profile.build(input.world.medium, ray.segment, 0.5f);
       hits += !profile.empty();
     }
   return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
@@ -63,7 +63,7 @@ PhotonPlan plan_lights(const EstimatorInput& input) {
   PhotonPlan plan;
   bool photons_for_first_flight = false;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    DirectLight direct = world.lights[i].direct;
+    DirectLight direct = world.lights.direct(i);
     if (direct == DirectLight::automatic)
       direct = world.settings.direct;
     if (direct == DirectLight::automatic)

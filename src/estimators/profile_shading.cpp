@@ -4,6 +4,36 @@
 
 namespace vdbeam {
 
+namespace {
+
+/// Transmittance from the camera to a place on its ray.
+Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t) {
+  if (profile.empty() || t <= profile.front())
+    return Rgb(1);
+  ProfileCursor cursor(profile);
+  cursor.move_to(t);
+  Rgb tau;
+  for (std::size_t v = 0; v < profile.volume_count(); ++v)
+    tau += medium.volumes[v].channel_scale * cursor.tau(v);
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+}
+
+/// The lights that the camera ray meets, seen through the medium; `tr` is its transmittance.
+Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfile& profile,
+                   const Rgb& tr) {
+  Rgb beyond, sum;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    const LightHit hit = world.lights[i].emitted_radiance(camera.whole());
+    if (hit.distance == infinity)
+      beyond += hit.radiance;
+    else
+      sum += hit.radiance * transmittance_to(world.medium, profile, hit.distance);
+  }
+  return sum + tr * beyond;
+}
+
+} // namespace
+
 void shade_profile(const World& world, const CameraRay& camera, const DepthProfile& profile,
                    std::size_t pixel, PassImage& image, std::uint64_t& emission_rays) {
   Rgb tr(1);
@@ -17,11 +47,11 @@ void shade_profile(const World& world, const CameraRay& camera, const DepthProfi
     image.depth[pixel] =
         static_cast<float>((profile.opacity_depth() + camera.shift * opacity) / world.space.scale);
   }
-  image.background[pixel] = tr * world.lights.escaped_radiance(camera.ray.direction);
-  if (!image.emission.empty() && camera.t_begin < camera.t_end) {
+  image.background[pixel] = lights_through(world, camera, profile, tr);
+  if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;
-    image.emission[pixel] = emission_along(world.medium, camera.ray, profile, camera.t_begin,
-                                           camera.t_end, static_cast<float>(world.settings.cutoff));
+    image.emission[pixel] = emission_along(world.medium, camera.segment, profile,
+                                           static_cast<float>(world.settings.cutoff));
   }
 }
 

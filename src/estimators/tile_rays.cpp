@@ -17,9 +17,10 @@ void TileRays::prepare(const World& world, const Camera& camera, const RngKey& k
     const double jitter_x = rng.uniform(), jitter_y = rng.uniform();
     out.direction = camera.direction(px + jitter_x, py + jitter_y);
     out.camera = camera_ray(world, camera, px + jitter_x, py + jitter_y);
-    const float t_end = out.inside ? out.camera.t_end : out.camera.t_begin;
-    out.profile.build(world.medium, out.camera.ray, out.camera.t_begin, t_end,
-                      static_cast<float>(world.settings.cutoff));
+    Segment segment = out.camera.segment;
+    if (!out.inside)
+      segment.t_end = segment.t_begin;
+    out.profile.build(world.medium, segment, static_cast<float>(world.settings.cutoff));
   }
 }
 

@@ -32,7 +32,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     shade_profile(world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
-        direct_light(world, ray.camera.ray, ray.profile, photons.plan().sampled_lights,
+        direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
                      photons.plan().direct_samples, rng, counts.shadow_rays);
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;

@@ -39,7 +39,7 @@ void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, con
                 const DepthProfile& profile, std::vector<float>& table) {
   const DensityField& field = medium.volumes[volume].field;
   ProfileCursor cursor(profile);
-  CellWalk walk = medium.volumes[volume].walk_cells(ray, profile.front(), profile.back());
+  GridTraversal walk = medium.volumes[volume].traverse({ray, profile.front(), profile.back()});
   for (; !walk.done(); walk.advance()) {
     cursor.move_to(walk.t());
     Rgb tau = hidden;
@@ -106,9 +106,9 @@ CellTables view_importance(const World& world, const Camera& camera, float reach
     for (int column = 0; column < columns; ++column) {
       const CameraRay ray = camera_ray(world, camera, (column + 0.5) * camera.width() / columns,
                                        (row + 0.5) * camera.height() / rows);
-      profile.build(medium, ray.ray, ray.t_begin, ray.t_end, floor);
+      profile.build(medium, ray.segment, floor);
       for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
-        mark_cells(medium, v, hidden, ray.ray, profile, tables[v]);
+        mark_cells(medium, v, hidden, ray.segment.ray, profile, tables[v]);
     }
   });
   rays += static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);

@@ -20,7 +20,7 @@ public:
     return {-direction_, infinity, irradiance_, 0};
   }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
-  Rgb escaped_radiance(const Vec3f&) const override { return {}; }
+  LightHit emitted_radiance(const Segment&) const override { return {}; }
   EmittedPhoton emit(double place, Rng& rng) const override {
     if (mask_.area() <= 0)
       return {{{}, direction_}, {}};
@@ -60,8 +60,8 @@ public:
     return {Vec3f(-cone_.sample(u, v)), infinity, total_, pdf_};
   }
   float incident_pdf(const Vec3f&, const Vec3f& wi) const override { return shows(wi) ? pdf_ : 0; }
-  Rgb escaped_radiance(const Vec3f& direction) const override {
-    return shows(direction) ? radiance_ : Rgb{};
+  LightHit emitted_radiance(const Segment& segment) const override {
+    return {segment.t_end == infinity && shows(segment.ray.direction) ? radiance_ : Rgb()};
   }
   EmittedPhoton emit(double place, Rng& rng) const override {
     return masked() ? emit_through_mask(place, rng) : emit_to_boxes(place, rng);

@@ -26,8 +26,8 @@ bool pierce(const Vec3f& corner, const std::array<Vec3f, 3>& duals, const Vec3f&
 
 } // namespace
 
-EntrySampler::EntrySampler(const std::vector<OrientedBox>& boxes) {
-  for (const OrientedBox& box : boxes) {
+EntrySampler::EntrySampler(const std::vector<Parallelepiped>& boxes) {
+  for (const Parallelepiped& box : boxes) {
     const float volume = dot(box.edges[0], cross(box.edges[1], box.edges[2]));
     if (!(std::abs(volume) > 0))
       continue;

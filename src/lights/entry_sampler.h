@@ -12,7 +12,7 @@ namespace vdbeam {
 class EntrySampler {
 public:
   /// Flat boxes hold no medium and are left out.
-  explicit EntrySampler(const std::vector<OrientedBox>& boxes);
+  explicit EntrySampler(const std::vector<Parallelepiped>& boxes);
 
   struct Entry {
     Vec3f point; ///< where the line first meets a box

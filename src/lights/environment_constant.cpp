@@ -17,7 +17,9 @@ public:
     return {sample_sphere(u, v), infinity, radiance_ * (4 * pi), density};
   }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return density; }
-  Rgb escaped_radiance(const Vec3f&) const override { return radiance_; }
+  LightHit emitted_radiance(const Segment& segment) const override {
+    return {segment.t_end == infinity ? radiance_ : Rgb()};
+  }
   EmittedPhoton emit(double place, Rng& rng) const override {
     const float u_face = static_cast<float>(place), u = rng.uniform(), v = rng.uniform();
     const float u_direction = rng.uniform(), v_direction = rng.uniform();

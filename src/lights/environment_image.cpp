@@ -158,9 +158,11 @@ public:
     const Place place = locate(wi);
     return table_.pdf(place.theta_share, place.turn);
   }
-  Rgb escaped_radiance(const Vec3f& direction) const override {
-    const Place place = locate(direction);
-    return map_.lookup(place.theta_share, place.turn);
+  LightHit emitted_radiance(const Segment& segment) const override {
+    if (segment.t_end < infinity)
+      return {};
+    const Place place = locate(segment.ray.direction);
+    return {map_.lookup(place.theta_share, place.turn)};
   }
   EmittedPhoton emit(double place, Rng& rng) const override {
     const float u_face = static_cast<float>(place), u = rng.uniform(), v = rng.uniform();

@@ -14,6 +14,12 @@ struct IncidentSample {
   float pdf = 0;      ///< per solid angle; 0 for a delta light (no other strategy can hit it)
 };
 
+/// Where a ray meets a light.
+struct LightHit {
+  Rgb radiance;              ///< that leaves the light against the ray; 0: it is not met
+  float distance = infinity; ///< infinity: beyond the scene
+};
+
 /// A photon as it leaves a light, already at the edge of the occupied region.
 struct EmittedPhoton {
   Ray ray;
@@ -29,12 +35,14 @@ public:
   virtual IncidentSample sample_incident(const Vec3f& point, float u, float v) const = 0;
   /// Density with which sample_incident draws `wi`; 0 for delta lights.
   virtual float incident_pdf(const Vec3f& point, const Vec3f& wi) const = 0;
-  /// Radiance seen by a ray that leaves the scene along `direction`; 0 for lights that a ray cannot
-  /// meet (delta lights and local lights).
-  virtual Rgb escaped_radiance(const Vec3f& direction) const = 0;
-  /// One photon aimed at the occupied region. `place`, uniform in [0, 1), says where it starts;
-  /// equal steps of it over a light's photons stratify them and start neighbours close together,
-  /// which the caches of the walk like. The rest is drawn from rng.
+  /// The light as a ray meets it between the segment's ends, whatever else is in the way; never met
+  /// are delta lights. Lights do not stop a ray: what lies behind them is seen too.
+  virtual LightHit emitted_radiance(const Segment& segment) const = 0;
+  /// True where a ray may meet the light at a finite distance.
+  virtual bool has_extent() const { return false; }
+  /// One photon aimed at the occupied region. `place`, uniform in [0, 1), says where it starts:
+  /// in equal steps over a light's photons it stratifies them, and consecutive photons start side
+  /// by side and read the same bricks, which keeps these in cache. The rest is drawn from rng.
   virtual EmittedPhoton emit(double place, Rng& rng) const = 0;
   EmittedPhoton emit(Rng& rng) const {
     const double place = rng.uniform();
@@ -50,8 +58,6 @@ public:
   /// False where scattered rays that escape find the light as well as shadow rays would (a constant
   /// sky), so that the path tracer need not spend any. Never false for a delta light.
   virtual bool wants_shadow_rays() const { return true; }
-
-  DirectLight direct = DirectLight::automatic; ///< how its single scattering is estimated
 };
 
 } // namespace vdbeam

@@ -10,17 +10,14 @@ LightSet::LightSet(const std::vector<LightSettings>& settings, const Vec3d& up,
   const LightContext context{up, space, region, notes};
   for (const LightSettings& light : settings)
     for (const LightKind& kind : light_table())
-      if (kind.type == light.type) {
-        lights_.push_back(kind.make(light, context));
-        lights_.back()->direct = light.direct.value_or(DirectLight::automatic);
-      }
+      if (kind.type == light.type)
+        add(kind.make(light, context), light.direct.value_or(DirectLight::automatic));
 }
 
-Rgb LightSet::escaped_radiance(const Vec3f& direction) const {
-  Rgb sum;
-  for (const std::unique_ptr<Light>& light : lights_)
-    sum += light->escaped_radiance(direction);
-  return sum;
+void LightSet::add(std::unique_ptr<Light> light, DirectLight direct) {
+  any_extent_ = any_extent_ || light->has_extent();
+  lights_.push_back(std::move(light));
+  direct_.push_back(direct);
 }
 
 } // namespace vdbeam

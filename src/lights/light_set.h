@@ -19,17 +19,20 @@ public:
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
            const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
-  void add(std::unique_ptr<Light> light) { lights_.push_back(std::move(light)); }
+  /// `direct`: how its single scattering is to be estimated.
+  void add(std::unique_ptr<Light> light, DirectLight direct = DirectLight::automatic);
 
   std::size_t size() const { return lights_.size(); }
   const Light& operator[](std::size_t i) const { return *lights_[i]; }
-  Light& operator[](std::size_t i) { return *lights_[i]; }
-
-  /// Sum of what all lights show to a ray that leaves the scene.
-  Rgb escaped_radiance(const Vec3f& direction) const;
+  /// How the scene asks for the single scattering of light i.
+  DirectLight direct(std::size_t i) const { return direct_[i]; }
+  /// Some light may be met at a finite distance.
+  bool any_extent() const { return any_extent_; }
 
 private:
   std::vector<std::unique_ptr<Light>> lights_;
+  std::vector<DirectLight> direct_; ///< per light
+  bool any_extent_ = false;
 };
 
 } // namespace vdbeam

@@ -9,7 +9,7 @@ Cone cone_towards(const Vec3d& position, const OccupiedRegion& region) {
     return cone;
   const Vec3d axis = normalize(way);
   double widest = 0;
-  for (const OrientedBox& box : region.boxes)
+  for (const Parallelepiped& box : region.boxes)
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d to = Vec3d(box.corner) - position;
       for (int i = 0; i < 3; ++i)

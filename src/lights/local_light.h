@@ -12,7 +12,7 @@ class LocalLight : public Light {
 public:
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
-  Rgb escaped_radiance(const Vec3f&) const override { return {}; }
+  LightHit emitted_radiance(const Segment&) const override { return {}; }
   EmittedPhoton emit(double place, Rng& rng) const override;
   bool is_delta() const override { return true; }
   const Vec3d* position() const override { return &position_; }

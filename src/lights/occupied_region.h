@@ -8,7 +8,7 @@
 namespace vdbeam {
 
 /// A parallelepiped: the corner and three edges from it.
-struct OrientedBox {
+struct Parallelepiped {
   Vec3f corner;
   std::array<Vec3f, 3> edges;
 };
@@ -17,8 +17,8 @@ struct OrientedBox {
 /// are few and coarse (one per volume, tight around its density); `cells` are fine (one per
 /// non-empty 8^3 cell or small group of them) and serve the lights of fixed direction.
 struct OccupiedRegion {
-  std::vector<OrientedBox> boxes;
-  std::vector<OrientedBox> cells;
+  std::vector<Parallelepiped> boxes;
+  std::vector<Parallelepiped> cells;
   Vec3f center; ///< of a sphere around all boxes
   float radius = 0;
 };

@@ -35,7 +35,7 @@ struct Shadow {
 struct Frame {
   Vec3d origin, x, y, axis;
 
-  Shadow shadow(const OrientedBox& box, double tan_spread, double slack) const {
+  Shadow shadow(const Parallelepiped& box, double tan_spread, double slack) const {
     Shadow s;
     Vec3d center = Vec3d(box.corner) - origin;
     double half_depth = 0;
@@ -129,7 +129,7 @@ std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
 } // namespace
 
 SilhouetteMask::SilhouetteMask(const Vec3f& axis, float tan_spread, const OccupiedRegion& region) {
-  const std::vector<OrientedBox>& cells = region.cells.empty() ? region.boxes : region.cells;
+  const std::vector<Parallelepiped>& cells = region.cells.empty() ? region.boxes : region.cells;
   if (cells.empty())
     return;
   Frame frame{Vec3d(region.center), {}, {}, normalize(Vec3d(axis))};
@@ -139,7 +139,7 @@ SilhouetteMask::SilhouetteMask(const Vec3f& axis, float tan_spread, const Occupi
   shadows.reserve(cells.size());
   Vec2 lower{1e300, 1e300}, upper{-1e300, -1e300};
   double work = 0; // summed area of all shadows' bounding boxes
-  for (const OrientedBox& cell : cells) {
+  for (const Parallelepiped& cell : cells) {
     const Shadow& s = shadows.emplace_back(frame.shadow(cell, tan_spread, slack));
     lower = {std::min(lower.x, s.center.x - s.half.x), std::min(lower.y, s.center.y - s.half.y)};
     upper = {std::max(upper.x, s.center.x + s.half.x), std::max(upper.y, s.center.y + s.half.y)};

@@ -20,7 +20,6 @@ Rgb corner_sum(const Rgb* p) {
 
 VolumeLight::VolumeLight(const Emitter& emitter)
     : emitter_(emitter), cube_volume_(std::abs(emitter.to_render.determinant())) {
-  direct = DirectLight::photons;
   const EmissionField& field = *emitter_.field;
   brick_sums_.resize(field.brick_count() * cube_count);
   tbb::parallel_for(std::size_t{0}, field.brick_count(),

@@ -6,8 +6,9 @@
 namespace vdbeam {
 
 /// A glowing volume as a light: its photons start where it glows, in proportion to how brightly,
-/// and leave in all directions. No shadow ray looks for it, and rays do not meet it where they
-/// leave the scene: what they gather on their way is another's task.
+/// and leave in all directions. No shadow ray looks for it, and rays do not meet it as a light:
+/// they gather what the medium emits along their way (transport/emission.h). To be added to a
+/// LightSet with DirectLight::photons.
 ///
 /// Its power is 4 pi times the integral of j over the volume, exact for the trilinear field.
 class VolumeLight final : public Light {
@@ -18,7 +19,7 @@ public:
     return {{0, 0, 1}, 0, {}, 0};
   }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
-  Rgb escaped_radiance(const Vec3f&) const override { return {}; }
+  LightHit emitted_radiance(const Segment&) const override { return {}; }
   EmittedPhoton emit(double place, Rng& rng) const override;
   Rgb power() const override { return power_; }
   bool is_delta() const override { return false; }

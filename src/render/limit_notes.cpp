@@ -27,7 +27,7 @@ double deepest(const World& world) {
 /// Shortest by longest edge of the flattest box around something that is not empty; 1: a cube.
 double flattest(const World& world) {
   float ratio = 1;
-  for (const OrientedBox& box : world.region.boxes) {
+  for (const Parallelepiped& box : world.region.boxes) {
     const float a = length(box.edges[0]), b = length(box.edges[1]), c = length(box.edges[2]);
     if (const float longest = std::max({a, b, c}); longest > 0)
       ratio = std::min(ratio, std::min({a, b, c}) / longest);

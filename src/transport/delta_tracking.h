@@ -17,17 +17,17 @@ struct Collision {
 /// majorant (Woodcock et al. 1965, with a majorant per cell).
 class VolumeTracker {
 public:
-  VolumeTracker(const Volume& volume, const Ray& ray, float t_begin, float t_end)
-      : volume_(&volume), local_origin_(volume.local_point(ray.origin)),
-        local_direction_(volume.local_vector(ray.direction)),
+  VolumeTracker(const Volume& volume, const Segment& segment)
+      : volume_(&volume), local_origin_(volume.local_point(segment.ray.origin)),
+        local_direction_(volume.local_vector(segment.ray.direction)),
         walk_(local_origin_ * 0.125f, local_direction_ * 0.125f, volume.field.cell_counts(),
-              t_begin, t_end),
+              segment.t_begin, segment.t_end),
         t_(walk_.t()) {
     if (!walk_.done())
       enter_cell();
   }
 
-  /// Goes to the next tentative collision; false where the ray leaves first. The density there is
+  /// Goes to the next tentative collision; false where the segment ends first. The density there is
   /// only asked for: memory needs longer to deliver it than all the rest takes, and a caller with
   /// several walks can go on with another one meanwhile.
   bool advance(Rng& rng) {
@@ -55,7 +55,7 @@ public:
     return {t_, std::min(density * volume_->extinction, majorant_), majorant_, volume_};
   }
 
-  /// The next tentative collision; t is infinity where the ray leaves first.
+  /// The next tentative collision; t is infinity where the segment ends first.
   Collision next(Rng& rng) { return advance(rng) ? collision() : Collision(); }
 
 private:
@@ -91,7 +91,7 @@ private:
 
   const Volume* volume_;
   Vec3f local_origin_, local_direction_;
-  CellWalk walk_;
+  GridTraversal walk_;
   float t_;
   float majorant_ = 0;
   const float* cube_ =
@@ -105,12 +105,11 @@ private:
 /// Requires a medium that is not empty.
 class MediumTracker {
 public:
-  MediumTracker(const Medium& medium, const Ray& ray, float t_begin, float t_end)
-      : first_(medium.volumes[0], ray, t_begin, t_end) {
+  MediumTracker(const Medium& medium, const Segment& segment) : first_(medium.volumes[0], segment) {
     if (medium.volumes.size() > 1) {
       others_.reserve(medium.volumes.size() - 1);
       for (std::size_t i = 1; i < medium.volumes.size(); ++i)
-        others_.emplace_back(medium.volumes[i], ray, t_begin, t_end);
+        others_.emplace_back(medium.volumes[i], segment);
     }
   }
 

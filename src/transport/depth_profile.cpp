@@ -2,18 +2,17 @@
 
 namespace vdbeam {
 
-void DepthProfile::build(const Medium& medium, const Ray& ray, float t_begin, float t_end,
-                         float cutoff) {
+void DepthProfile::build(const Medium& medium, const Segment& segment, float cutoff) {
   t_.clear();
   tau_.clear();
   volumes_ = medium.volumes.size();
-  if (!(t_begin < t_end))
+  if (segment.empty())
     return;
   const float limit = -std::log(std::max(cutoff, 1e-30f));
   if (volumes_ == 1)
-    build_single(medium.volumes[0], ray, t_begin, t_end, limit);
+    build_single(medium.volumes[0], segment, limit);
   else
-    build_several(medium, ray, t_begin, t_end, limit);
+    build_several(medium, segment, limit);
 }
 
 namespace {
@@ -25,11 +24,10 @@ float weakest_channel(const Volume& volume) {
 
 } // namespace
 
-void DepthProfile::build_single(const Volume& volume, const Ray& ray, float t_begin, float t_end,
-                                float limit) {
+void DepthProfile::build_single(const Volume& volume, const Segment& segment, float limit) {
   const float weakest = weakest_channel(volume);
   float sum = 0;
-  walk_segments(volume, ray, t_begin, t_end, [&](float t_a, float t_b, float piece) {
+  for_each_piece(volume, segment, [&](float t_a, float t_b, float piece) {
     if (t_.empty() ? piece > 0 : t_.back() < t_a) { // the start, or an empty stretch
       t_.push_back(t_a);
       tau_.push_back(sum);
@@ -41,23 +39,22 @@ void DepthProfile::build_single(const Volume& volume, const Ray& ray, float t_be
     float t = t_a;
     for (int i = 1; i < parts && sum * weakest < limit; ++i) {
       const float t_next = t_a + (t_b - t_a) * static_cast<float>(i) / static_cast<float>(parts);
-      sum += cube_optical_depth(volume, ray, t, t_next);
+      sum += cube_optical_depth(volume, segment.ray, t, t_next);
       t_.push_back(t_next);
       tau_.push_back(sum);
       t = t_next;
     }
-    sum += t > t_a ? cube_optical_depth(volume, ray, t, t_b) : piece;
+    sum += t > t_a ? cube_optical_depth(volume, segment.ray, t, t_b) : piece;
     t_.push_back(t_b);
     tau_.push_back(sum);
     return sum * weakest < limit;
   });
 }
 
-void DepthProfile::build_several(const Medium& medium, const Ray& ray, float t_begin, float t_end,
-                                 float limit) {
+void DepthProfile::build_several(const Medium& medium, const Segment& segment, float limit) {
   std::vector<DepthProfile> parts(volumes_);
   for (std::size_t v = 0; v < volumes_; ++v) {
-    parts[v].build_single(medium.volumes[v], ray, t_begin, t_end, limit);
+    parts[v].build_single(medium.volumes[v], segment, limit);
     t_.insert(t_.end(), parts[v].t_.begin(), parts[v].t_.end());
   }
   std::sort(t_.begin(), t_.end());
@@ -65,7 +62,7 @@ void DepthProfile::build_several(const Medium& medium, const Ray& ray, float t_b
   tau_.resize(t_.size() * volumes_);
   for (std::size_t v = 0; v < volumes_; ++v) {
     if (!parts[v].empty())
-      read_at_knots(parts[v], medium.volumes[v], ray, v);
+      read_at_knots(parts[v], medium.volumes[v], segment.ray, v);
   }
 }
 

@@ -10,9 +10,9 @@ namespace vdbeam {
 /// phase function or colour can be told apart.
 class DepthProfile {
 public:
-  /// Integrates from t_begin until t_end or until less than `cutoff` of the light is left in every
+  /// Integrates to the segment's end or until less than `cutoff` of the light is left in every
   /// channel. Storage is reused from ray to ray.
-  void build(const Medium& medium, const Ray& ray, float t_begin, float t_end, float cutoff);
+  void build(const Medium& medium, const Segment& segment, float cutoff);
 
   bool empty() const { return t_.size() < 2; }
   std::size_t knots() const { return t_.size(); }
@@ -43,8 +43,8 @@ public:
   float opacity_depth() const;
 
 private:
-  void build_single(const Volume& volume, const Ray& ray, float t_begin, float t_end, float limit);
-  void build_several(const Medium& medium, const Ray& ray, float t_begin, float t_end, float limit);
+  void build_single(const Volume& volume, const Segment& segment, float limit);
+  void build_several(const Medium& medium, const Segment& segment, float limit);
 
   void read_at_knots(const DepthProfile& part, const Volume& volume, const Ray& ray, std::size_t v);
 

@@ -15,8 +15,8 @@ void walk_emitter(const Emitter& emitter, const Vec3f& o, const Vec3f& d, float 
                   float t_end, const Visit& visit) {
   const EmissionField& field = *emitter.field;
   constexpr float inverse = 1.0f / width;
-  for (CellWalk cells(o * inverse, d * inverse, field.cell_counts(), t_begin, t_end); !cells.done();
-       cells.advance()) {
+  for (GridTraversal cells(o * inverse, d * inverse, field.cell_counts(), t_begin, t_end);
+       !cells.done(); cells.advance()) {
     const Vec3<int>& c = cells.cell();
     const std::int32_t entry = field.cell(c.x, c.y, c.z);
     if (entry != DensityField::empty_cell && !visit(c, entry, cells.t(), cells.t_exit()))
@@ -158,15 +158,16 @@ private:
 
 } // namespace
 
-Rgb emission_along(const Medium& medium, const Ray& ray, const DepthProfile& profile, float t_begin,
-                   float t_end, float cutoff) {
+Rgb emission_along(const Medium& medium, const Segment& segment, const DepthProfile& profile,
+                   float cutoff) {
+  const Ray& ray = segment.ray;
   const float limit = -std::log(std::max(cutoff, 1e-30f));
   Rgb sum;
   for (const Emitter& emitter : medium.emitters) {
     const EmissionField& field = *emitter.field;
     const Vec3f o = emitter.local_point(ray.origin), d = emitter.local_vector(ray.direction);
     EmissionIntegral integral(medium, ray, profile, limit);
-    walk_emitter(emitter, o, d, t_begin, t_end,
+    walk_emitter(emitter, o, d, segment.t_begin, segment.t_end,
                  [&](const Vec3<int>& cell, std::int32_t entry, float t_a, float t_b) {
                    const Vec3f corner(cell * width);
                    const auto value = [&](float t) {
@@ -175,8 +176,8 @@ Rgb emission_along(const Medium& medium, const Ray& ray, const DepthProfile& pro
                    };
                    if (entry < 0)
                      return integral.add(t_a, t_b, value);
-                   for (CellWalk cubes(o - corner, d, Vec3<int>(width), t_a, t_b); !cubes.done();
-                        cubes.advance())
+                   for (GridTraversal cubes(o - corner, d, Vec3<int>(width), t_a, t_b);
+                        !cubes.done(); cubes.advance())
                      if (!integral.add(cubes.t(), cubes.t_exit(), value))
                        return false;
                    return true;
@@ -186,12 +187,13 @@ Rgb emission_along(const Medium& medium, const Ray& ray, const DepthProfile& pro
   return sum;
 }
 
-Rgb sample_emission(const Medium& medium, const Ray& ray, float t_begin, float t_end, Rng& rng) {
+Rgb sample_emission(const Medium& medium, const Segment& segment, Rng& rng) {
+  const Ray& ray = segment.ray;
   constexpr int samples = 2; // per cell, at equal distances
   Rgb sum;
   for (const Emitter& emitter : medium.emitters) {
     const Vec3f o = emitter.local_point(ray.origin), d = emitter.local_vector(ray.direction);
-    walk_emitter(emitter, o, d, t_begin, t_end,
+    walk_emitter(emitter, o, d, segment.t_begin, segment.t_end,
                  [&](const Vec3<int>& cell, std::int32_t entry, float t_a, float t_b) {
                    const float step = (t_b - t_a) / samples, start = t_a + rng.uniform() * step;
                    Rgb values;

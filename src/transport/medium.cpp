@@ -18,19 +18,20 @@ std::size_t Medium::bytes() const {
   return sum;
 }
 
-void Medium::clip(const Ray& ray, float& t_begin, float& t_end) const {
+Segment Medium::clip(Segment segment) const {
   for (int a = 0; a < 3; ++a) {
-    const float o = ray.origin[a], d = ray.direction[a];
+    const float o = segment.ray.origin[a], d = segment.ray.direction[a];
     if (d == 0) {
       if (o < bounds.lower[a] || o > bounds.upper[a])
-        t_end = t_begin;
+        segment.t_end = segment.t_begin;
       continue;
     }
     const float near = ((d > 0 ? bounds.lower[a] : bounds.upper[a]) - o) / d;
     const float far = ((d > 0 ? bounds.upper[a] : bounds.lower[a]) - o) / d;
-    t_begin = std::max(t_begin, near);
-    t_end = std::min(t_end, far);
+    segment.t_begin = std::max(segment.t_begin, near);
+    segment.t_end = std::min(segment.t_end, far);
   }
+  return segment;
 }
 
 } // namespace vdbeam

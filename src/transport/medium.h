@@ -3,7 +3,7 @@
 #include "math/affine.h"
 #include "math/ray.h"
 #include "phase/phase_function.h"
-#include "transport/cell_walk.h"
+#include "transport/grid_traversal.h"
 #include "transport/majorant_grid.h"
 #include "volume/emitter.h"
 #include "volume/render_space.h"
@@ -23,7 +23,7 @@ struct Volume {
   float extinction = 1;       ///< per render unit, of the strongest channel
   Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
   Rgb albedo{1, 1, 1};
-  int group = 0;        ///< index into Medium::phases
+  int phase_index = 0;  ///< index into Medium::phases
   float voxel_size = 1; ///< smallest edge of a voxel, render units
 
   Vec3f local_point(const Vec3f& p) const { return local_vector(p) + translation; }
@@ -38,10 +38,10 @@ struct Volume {
   std::size_t cell_at(const Vec3f& p) const;
   /// sigma_t of the strongest channel's majorant at a point; 0 outside.
   float majorant(const Vec3f& p) const;
-  /// The ray in units of the field's 8^3 cells.
-  CellWalk walk_cells(const Ray& ray, float t_begin, float t_end) const {
-    return {local_point(ray.origin) * 0.125f, local_vector(ray.direction) * 0.125f,
-            field.cell_counts(), t_begin, t_end};
+  /// The segment in units of the field's 8^3 cells.
+  GridTraversal traverse(const Segment& segment) const {
+    return {local_point(segment.ray.origin) * 0.125f, local_vector(segment.ray.direction) * 0.125f,
+            field.cell_counts(), segment.t_begin, segment.t_end};
   }
 };
 
@@ -62,8 +62,8 @@ struct Medium {
   bool visible() const { return !volumes.empty() || !emitters.empty(); }
   bool isotropic() const;
   std::size_t bytes() const;
-  /// Part of the ray inside `bounds`; t_begin >= t_end where it misses.
-  void clip(const Ray& ray, float& t_begin, float& t_end) const;
+  /// Part of the segment inside `bounds`; empty where it misses.
+  Segment clip(Segment segment) const;
 };
 
 inline std::size_t Volume::cell_at(const Vec3f& p) const {

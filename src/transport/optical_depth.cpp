@@ -4,14 +4,14 @@
 
 namespace vdbeam {
 
-Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end) {
+Rgb exact_transmittance(const Medium& medium, const Segment& segment) {
   Rgb tau{0, 0, 0};
   for (const Volume& volume : medium.volumes) {
     // The weakest channel decides when nothing is left in any.
     const float weakest =
         std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
     float sum = 0;
-    walk_segments(volume, ray, 0, t_end, [&](float, float, float piece) {
+    for_each_piece(volume, segment, [&](float, float, float piece) {
       sum += piece;
       return sum * weakest < opaque_optical_depth;
     });

@@ -94,16 +94,16 @@ inline float cube_optical_depth(const Volume& volume, const Ray& ray, float t_a,
           volume.density_inside(ray.at(middle + offset)));
 }
 
-/// Calls visit(t_a, t_b, tau) for consecutive pieces of the ray inside `volume`, tau being the
+/// Calls visit(t_a, t_b, tau) for consecutive pieces of the segment inside `volume`, tau being the
 /// exact optical depth of the piece for the strongest channel; empty stretches are skipped. Ends
 /// when visit returns false.
 template <class Visit>
-void walk_segments(const Volume& volume, const Ray& ray, float t_begin, float t_end,
-                   const Visit& visit) {
-  const Vec3f o = volume.local_point(ray.origin), d = volume.local_vector(ray.direction);
+void for_each_piece(const Volume& volume, const Segment& segment, const Visit& visit) {
+  const Vec3f o = volume.local_point(segment.ray.origin);
+  const Vec3f d = volume.local_vector(segment.ray.direction);
   constexpr int width = DensityField::cell_width;
-  for (CellWalk cells(o * (1.0f / width), d * (1.0f / width), volume.field.cell_counts(), t_begin,
-                      t_end);
+  for (GridTraversal cells(o * (1.0f / width), d * (1.0f / width), volume.field.cell_counts(),
+                           segment.t_begin, segment.t_end);
        !cells.done(); cells.advance()) {
     const Vec3<int>& c = cells.cell();
     const std::int32_t entry = volume.field.cell(c.x, c.y, c.z);
@@ -127,15 +127,14 @@ void walk_segments(const Volume& volume, const Ray& ray, float t_begin, float t_
   }
 }
 
-/// Transmittance per channel over [0, t_end], by the exact integral.
-Rgb exact_transmittance(const Medium& medium, const Ray& ray, float t_end);
+/// Transmittance per channel, by the exact integral.
+Rgb exact_transmittance(const Medium& medium, const Segment& segment);
 
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
 /// little is left, a collision at a time. Requires a medium that is not empty.
 class RatioTracking {
 public:
-  RatioTracking(const Medium& medium, const Ray& ray, float t_end)
-      : tracker_(medium, ray, 0, t_end) {}
+  RatioTracking(const Medium& medium, const Segment& segment) : tracker_(medium, segment) {}
 
   /// Goes to the next tentative collision; false where there is none and the estimate is complete.
   bool advance(Rng& rng) { return tracker_.advance(rng); }

@@ -1,6 +1,6 @@
 #include "transport/photon_tracing.h"
 
-#include "transport/scattering.h"
+#include "transport/flight.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -36,15 +36,11 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
   return first;
 }
 
-/// A light path under way: it stands at the tentative collision that its tracker has gone to.
-struct LightPath {
-  Rng rng;
-  Rgb flux;
-  Ray ray;
-  std::size_t light;
-  int bounces = 0;
-  LengthRoulette length;
-  MediumTracker tracker;
+/// A light path under way. Its throughput is flux.
+struct LightPath : Flight {
+  using Flight::Flight;
+
+  std::size_t light = 0;
 };
 
 /// Traces one chunk of paths into one list.
@@ -64,7 +60,7 @@ public:
     for (bool any = true; any && !stopped();) {
       any = false;
       for (std::optional<LightPath>& path : paths) {
-        if (path && !collide(*path))
+        if (path && !step_flight(world_.medium, *path, *this))
           path.reset();
         for (; !path && next < end; ++next) {
           while (next >= first[light + 1])
@@ -75,6 +71,31 @@ public:
       }
     }
   }
+
+  // What happens at the collisions of a flight (step_flight).
+
+  void meet(LightPath& path, const Collision& hit) {
+    if (may_store(path) && settings_.store == PhotonStore::fluence)
+      store(path, hit, path.throughput / total_majorant(path.segment.ray, hit));
+  }
+  bool pass(LightPath& path) const { return path.length.survive(path.throughput, path.rng); }
+  bool collide(LightPath& path, const Collision& hit) {
+    if (!path.length.survive(path.throughput, path.rng))
+      return false;
+    if (may_store(path) && settings_.store == PhotonStore::scatter)
+      store(path, hit, path.throughput * hit.volume->albedo);
+    if (!absorption_roulette(hit.volume->albedo, path.throughput, path.rng))
+      return false;
+    ++path.bounces;
+    if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
+      return false;
+    const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
+    const Vec3f direction = path.sample_direction(phase);
+    path.start(world_.medium, {{path.segment.ray.at(hit.t), direction}});
+    return advance_flight(path, *this);
+  }
+  /// What leaves the medium is lost: nothing else takes photons.
+  void leave(const LightPath&) const {}
 
   PhotonList photons;
   std::uint64_t collisions = 0;
@@ -97,42 +118,11 @@ private:
     const Rgb flux = photon.flux / static_cast<float>(light_paths);
     if (!(max_component(flux) > 0) || (settings_.max_bounces && *settings_.max_bounces <= 0))
       return;
-    path = LightPath{rng,
-                     flux,
-                     photon.ray,
-                     light,
-                     0,
-                     LengthRoulette(),
-                     MediumTracker(world_.medium, photon.ray, 0, infinity)};
-    if (!path->tracker.advance(path->rng))
+    path.emplace(rng, flux);
+    path->light = light;
+    path->start(world_.medium, {photon.ray});
+    if (!advance_flight(*path, *this))
       path.reset();
-  }
-
-  /// Stores, scatters or passes on, and goes to the next tentative collision. False where the path
-  /// has ended.
-  bool collide(LightPath& path) {
-    const Medium& medium = world_.medium;
-    const Collision hit = path.tracker.collision();
-    const bool storable = may_store(path);
-    if (storable && settings_.store == PhotonStore::fluence)
-      store(path, hit, path.flux / total_majorant(path.ray, hit));
-    const bool real = collide_really(hit, medium.chromatic, path.flux, path.rng);
-    if (!path.length.survive(path.flux, path.rng))
-      return false;
-    if (real) {
-      if (storable && settings_.store == PhotonStore::scatter)
-        store(path, hit, path.flux * hit.volume->albedo);
-      if (!survive_scattering(hit.volume->albedo, path.flux, path.rng))
-        return false;
-      ++path.bounces;
-      if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
-        return false;
-      const float u_lobe = path.rng.uniform(), u = path.rng.uniform(), v = path.rng.uniform();
-      const PhaseFunction& phase = medium.phases[hit.volume->group];
-      path.ray = {path.ray.at(hit.t), phase.sample(path.ray.direction, u_lobe, u, v)};
-      path.tracker = MediumTracker(medium, path.ray, 0, infinity);
-    }
-    return path.tracker.advance(path.rng);
   }
 
   /// Rate of tentative collisions at the point: the majorants of overlapping volumes add.
@@ -156,13 +146,13 @@ private:
 
   void store(LightPath& path, const Collision& hit, const Rgb& power) {
     ++collisions;
-    const Vec3f point = path.ray.at(hit.t);
+    const Vec3f point = path.segment.ray.at(hit.t);
     const float probability = store_probability(*hit.volume, point);
     if (probability < 1 && path.rng.uniform() >= probability)
       return;
     photons.position.push_back(point);
     if (settings_.directions)
-      photons.direction.push_back(path.ray.direction);
+      photons.direction.push_back(path.segment.ray.direction);
     photons.power.push_back(power * settings_.albedo / probability);
   }
 

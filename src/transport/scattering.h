@@ -7,7 +7,7 @@ namespace vdbeam {
 /// One decision of spectral tracking (Kutz et al. 2017, history-aware) at a tentative collision:
 /// real or null, in proportion to what each does to the weight, so that no channel's weight can
 /// grow without bound. With grey extinction this is delta tracking's own decision.
-inline bool collide_really(const Collision& hit, bool chromatic, Rgb& weight, Rng& rng) {
+inline bool sample_real_collision(const Collision& hit, bool chromatic, Rgb& weight, Rng& rng) {
   const float ratio = hit.sigma_t / hit.majorant;
   if (!chromatic)
     return rng.uniform() < ratio;
@@ -25,7 +25,7 @@ inline bool collide_really(const Collision& hit, bool chromatic, Rgb& weight, Rn
 
 /// Absorption by Russian roulette: the weight takes the albedo's colour, its strongest channel
 /// keeps its value. False where the path ends.
-inline bool survive_scattering(const Rgb& albedo, Rgb& weight, Rng& rng) {
+inline bool absorption_roulette(const Rgb& albedo, Rgb& weight, Rng& rng) {
   const float before = max_component(weight);
   weight *= albedo;
   const float after = max_component(weight);
@@ -74,17 +74,5 @@ private:
   static constexpr float chance = 0.70710678f;
   std::uint64_t collisions_ = 0, next_ = first;
 };
-
-/// The next real collision along the ray; volume is null where the ray leaves the medium first.
-inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
-  if (medium.empty())
-    return {};
-  MediumTracker tracker(medium, ray, 0, infinity);
-  while (true) {
-    const Collision hit = tracker.next(rng);
-    if (hit.volume == nullptr || collide_really(hit, medium.chromatic, weight, rng))
-      return hit;
-  }
-}
 
 } // namespace vdbeam

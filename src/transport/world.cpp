@@ -53,7 +53,7 @@ RenderSpace choose_space(const Boxd& bounds) {
   return space;
 }
 
-OrientedBox oriented_box(const Affine& local_to_render, const Boxd& local) {
+Parallelepiped parallelepiped(const Affine& local_to_render, const Boxd& local) {
   const Vec3d size = local.size();
   return {Vec3f(local_to_render.point(local.lower)),
           {Vec3f(local_to_render.vector({size.x, 0, 0})),
@@ -64,7 +64,7 @@ OrientedBox oriented_box(const Affine& local_to_render, const Boxd& local) {
 void add_region(OccupiedRegion& region, const DensityField& field, const Affine& local_to_render) {
   const Boxf& occupied = field.occupied();
   region.boxes.push_back(
-      oriented_box(local_to_render, {Vec3d(occupied.lower), Vec3d(occupied.upper)}));
+      parallelepiped(local_to_render, {Vec3d(occupied.lower), Vec3d(occupied.upper)}));
   const Vec3<int> n = field.cell_counts();
   for (int i = 0; i < n.x; ++i)
     for (int j = 0; j < n.y; ++j)
@@ -75,12 +75,12 @@ void add_region(OccupiedRegion& region, const DensityField& field, const Affine&
         const Vec3d upper =
             min(Vec3d(8.0 * i + 8, 8.0 * j + 8, 8.0 * k + 8), Vec3d(occupied.upper));
         if (lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)
-          region.cells.push_back(oriented_box(local_to_render, {lower, upper}));
+          region.cells.push_back(parallelepiped(local_to_render, {lower, upper}));
       }
 }
 
-int group_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings>& known,
-             const PhaseSettings& phase) {
+int phase_index_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings>& known,
+                   const PhaseSettings& phase) {
   for (std::size_t i = 0; i < known.size(); ++i)
     if (known[i].type == phase.type && known[i].g == phase.g && known[i].g2 == phase.g2 &&
         known[i].blend == phase.blend && known[i].droplet_diameter == phase.droplet_diameter)
@@ -137,14 +137,14 @@ Boxd add_emission_facts(World& world, const EmissionGrid& grid, const VolumeSett
                        grid.field->occupied());
 }
 
-/// What glows shines on what scatters.
+/// Adds every emitting volume as a light for the scattering ones.
 void add_volume_lights(World& world) {
   bool scatters = false;
   for (const Volume& volume : world.medium.volumes)
     scatters = scatters || max_component(volume.albedo) > 0;
   for (const Emitter& emitter : world.medium.emitters)
     if (scatters)
-      world.lights.add(std::make_unique<VolumeLight>(emitter));
+      world.lights.add(std::make_unique<VolumeLight>(emitter), DirectLight::photons);
 }
 
 void bound_region(World& world, const Boxd& bounds) {
@@ -203,7 +203,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
     Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale);
-    volume.group = group_of(world.medium.phases, known, settings.phase);
+    volume.phase_index = phase_index_of(world.medium.phases, known, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }

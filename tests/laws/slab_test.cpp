@@ -1,6 +1,7 @@
 #include "laws/adding_doubling.h"
 #include "laws/slab_tables.h"
 #include "support/memory_scene.h"
+#include "support/next_scattering.h"
 #include "support/render_passes.h"
 #include "transport/scattering.h"
 
@@ -57,7 +58,7 @@ struct Escapes {
 void walk(const World& world, Ray ray, Rng& rng, Escapes& escapes) {
   Rgb weight(1);
   while (true) {
-    const Collision hit = next_scattering(world.medium, ray, weight, rng);
+    const Collision hit = test::next_scattering(world.medium, ray, weight, rng);
     if (hit.volume == nullptr) {
       const float z =
           ray.direction.z > 0 ? world.medium.bounds.upper.z : world.medium.bounds.lower.z;
@@ -69,10 +70,10 @@ void walk(const World& world, Ray ray, Rng& rng, Escapes& escapes) {
         ++(ray.direction.z > 0 ? escapes.up : escapes.down);
       return;
     }
-    if (!survive_scattering(hit.volume->albedo, weight, rng))
+    if (!absorption_roulette(hit.volume->albedo, weight, rng))
       return;
     const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-    const PhaseFunction& phase = world.medium.phases[hit.volume->group];
+    const PhaseFunction& phase = world.medium.phases[hit.volume->phase_index];
     ray = {ray.at(hit.t), phase.sample(ray.direction, u_lobe, u, v)};
   }
 }

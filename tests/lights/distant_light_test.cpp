@@ -15,7 +15,7 @@ LightSettings sun(const Vec3d& direction, double radius = 0) {
   return settings;
 }
 
-double projected_area(const OrientedBox& box, const Vec3f& direction) {
+double projected_area(const Parallelepiped& box, const Vec3f& direction) {
   double sum = 0;
   for (int i = 0; i < 3; ++i)
     sum +=
@@ -31,7 +31,7 @@ TEST(DistantLight, DeltaGivesItsIrradianceFromOneDirection) {
   EXPECT_EQ(s.value, Rgb(3, 2, 1));
   EXPECT_EQ(s.pdf, 0);
   EXPECT_TRUE(made.light->is_delta());
-  EXPECT_EQ(made.light->escaped_radiance({0, 1, 0}), Rgb());
+  EXPECT_EQ(escaped_radiance(*made.light, {0, 1, 0}), Rgb());
 }
 
 TEST(DistantLight, RefusesNoDirection) {
@@ -51,7 +51,7 @@ TEST(DistantLight, DiscGivesItsIrradiance) {
       irradiance.add(static_cast<double>(s.value.x * dot(s.wi, facing)));
       if (radius > 0.01) {
         EXPECT_FLOAT_EQ(made.light->incident_pdf({}, s.wi * 0.9999999f), s.pdf);
-        EXPECT_NEAR(made.light->escaped_radiance(s.wi).y * (1 / s.pdf), s.value.y,
+        EXPECT_NEAR(escaped_radiance(*made.light, s.wi).y * (1 / s.pdf), s.value.y,
                     1e-4f * s.value.y);
       }
     }
@@ -64,8 +64,8 @@ TEST(DistantLight, DiscShowsUniformRadianceOnlyInside) {
   const MadeLight made(sun({0, 0, -1}, 10), region_of({cube({}, 1)}));
   const double radius = 10 * std::numbers::pi / 180;
   const auto radiance_at = [&](double angle) {
-    return made.light->escaped_radiance(
-        {0, static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle))});
+    return escaped_radiance(
+        *made.light, {0, static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle))});
   };
   const double expected = 3 / (std::numbers::pi * std::sin(radius) * std::sin(radius));
   EXPECT_NEAR(radiance_at(0).x, expected, 1e-5 * expected);
@@ -77,7 +77,7 @@ TEST(DistantLight, DiscShowsUniformRadianceOnlyInside) {
 TEST(DistantLight, PhotonsCarryIrradianceTimesSilhouette) {
   const Vec3d direction{0.4, -0.7, 0.3};
   const Vec3f unit(normalize(direction));
-  for (const OrientedBox& box : {cube({0.2f, 0.1f, -0.3f}, 0.8f), skew_box()})
+  for (const Parallelepiped& box : {cube({0.2f, 0.1f, -0.3f}, 0.8f), skew_box()})
     for (const double radius : {0.0, 0.27}) {
       const MadeLight made(sun(direction, radius), region_of({box}));
       const Emission emission = emit_many(made, 40000, box, 1);
@@ -105,7 +105,7 @@ TEST(DistantLight, DiscPhotonsCarryTheMasksPower) {
 }
 
 TEST(DistantLight, WideDiscPhotonsGiveTheFluence) {
-  const OrientedBox box = skew_box();
+  const Parallelepiped box = skew_box();
   for (const double radius : {5.0, 30.0, 90.0}) {
     const MadeLight made(sun({0.4, -0.7, 0.3}, radius), region_of({box, cube({0, 0, 0.1f}, 0.3f)}));
     const Emission emission = emit_many(made, 40000, box, 2);
@@ -116,7 +116,7 @@ TEST(DistantLight, WideDiscPhotonsGiveTheFluence) {
 
 // Two overlapping boxes: a line through both counts once.
 TEST(DistantLight, OverlappingBoxesCountOnce) {
-  const OrientedBox a = cube({0, 0, 0}, 1), b = cube({0.5f, 0, 0}, 1);
+  const Parallelepiped a = cube({0, 0, 0}, 1), b = cube({0.5f, 0, 0}, 1);
   for (const double radius : {0.0, 20.0}) {
     const MadeLight made(sun({0, 0, 1}, radius), region_of({a, b}));
     const Emission emission = emit_many(made, 40000, b, 3);
@@ -133,7 +133,7 @@ TEST(DistantLight, CellsNarrowTheAim) {
                   cube({0.4f, 0.4f, 0.3f}, 0.2f)};
   for (const double radius : {0.0, 0.27}) {
     const MadeLight made(sun({0, 0, 1}, radius), region);
-    for (const OrientedBox& cell : region.cells)
+    for (const Parallelepiped& cell : region.cells)
       expect_mean(emit_many(made, 40000, cell, 4).fluence,
                   6 / (1 + std::cos(radius * std::numbers::pi / 180)));
     EXPECT_NEAR(made.light->power().x, 3 * 0.08, 3 * 0.08 * 0.08);
@@ -151,7 +151,7 @@ TEST(DistantLight, CellsNarrowTheAim) {
 // Each cell of a fine rotated grid receives its share: no cell falls between the mask's pixels.
 TEST(DistantLight, MaskCoversEveryCell) {
   OccupiedRegion region = region_of({make_box({}, {0.6f, 0.8f, 0}, {-0.8f, 0.6f, 0}, {0, 0, 1})});
-  const OrientedBox box = region.boxes[0];
+  const Parallelepiped box = region.boxes[0];
   constexpr int n = 12;
   for (int i = 0; i < n * n * n; ++i) {
     const Vec3f index(static_cast<float>(i % n), static_cast<float>(i / n % n),
@@ -188,7 +188,7 @@ TEST(DistantLight, ExtremeIrradianceStaysFinite) {
       EXPECT_LT(flux, 10 * e);
       EXPECT_NEAR(made.light->sample_incident({}, 0.5f, 0.5f).value.x, e, e);
       const Vec3f back = normalize(Vec3f{-1, 1, -1});
-      EXPECT_TRUE(std::isfinite(made.light->escaped_radiance(back).x));
+      EXPECT_TRUE(std::isfinite(escaped_radiance(*made.light, back).x));
     }
 }
 

@@ -7,7 +7,7 @@ namespace {
 using namespace test;
 
 // Area of a union's silhouette by casting a fine grid of lines.
-double silhouette(const std::vector<OrientedBox>& boxes, const Vec3f& direction) {
+double silhouette(const std::vector<Parallelepiped>& boxes, const Vec3f& direction) {
   Vec3f x, y;
   orthonormal_frame(direction, x, y);
   constexpr int n = 800;
@@ -17,7 +17,7 @@ double silhouette(const std::vector<OrientedBox>& boxes, const Vec3f& direction)
     for (int j = 0; j < n; ++j) {
       const auto at = [&](int k) { return static_cast<float>(half * (2 * (k + 0.5) / n - 1)); };
       const Ray ray{x * at(i) + y * at(j) - direction * 10.0f, direction};
-      for (const OrientedBox& box : boxes)
+      for (const Parallelepiped& box : boxes)
         if (chord(box, ray) > 0) {
           ++hits;
           break;
@@ -27,7 +27,8 @@ double silhouette(const std::vector<OrientedBox>& boxes, const Vec3f& direction)
 }
 
 TEST(EntrySampler, MeanWeightIsTheUnionsSilhouette) {
-  const std::vector<OrientedBox> boxes{cube({}, 0.9f), skew_box(), cube({0.3f, 0.3f, 0.2f}, 0.4f)};
+  const std::vector<Parallelepiped> boxes{cube({}, 0.9f), skew_box(),
+                                          cube({0.3f, 0.3f, 0.2f}, 0.4f)};
   const EntrySampler sampler(boxes);
   for (const Vec3f& direction : {Vec3f{0, 0, 1}, normalize(Vec3f{1, 2, -0.5f})}) {
     Average weight;
@@ -38,7 +39,7 @@ TEST(EntrySampler, MeanWeightIsTheUnionsSilhouette) {
       weight.add(static_cast<double>(entry.weight));
       // No box lies behind the entry, and one begins there.
       double behind = 0, ahead = 0;
-      for (const OrientedBox& box : boxes) {
+      for (const Parallelepiped& box : boxes) {
         behind = std::max(behind, chord(box, {entry.point - direction * 2e-5f, -direction}));
         ahead = std::max(ahead, chord(box, {entry.point - direction * 2e-5f, direction}));
       }
@@ -51,7 +52,7 @@ TEST(EntrySampler, MeanWeightIsTheUnionsSilhouette) {
 }
 
 TEST(EntrySampler, SurfaceOfOneBoxHasConstantWeight) {
-  const OrientedBox box = make_box({}, {2, 0, 0}, {0, 3, 0}, {0, 0, 0.5f});
+  const Parallelepiped box = make_box({}, {2, 0, 0}, {0, 3, 0}, {0, 0, 0.5f});
   const EntrySampler sampler({box});
   const float surface = 2 * (6 + 1 + 1.5f);
   EXPECT_FLOAT_EQ(sampler.surface_area(), surface);

@@ -52,7 +52,7 @@ Image sunny_sky(int width = 64, int height = 32) {
 
 TEST(ConstantEnvironment, ShowsAndSamplesItsRadiance) {
   const MadeLight made(sky({2, 1, 0.5f}), region_of({cube({}, 1)}));
-  EXPECT_EQ(made.light->escaped_radiance({0, 1, 0}), Rgb(2, 1, 0.5f));
+  EXPECT_EQ(escaped_radiance(*made.light, {0, 1, 0}), Rgb(2, 1, 0.5f));
   EXPECT_FALSE(made.light->is_delta());
   Average irradiance; // on a plane: pi L
   Rng rng({}, RngStage::test, 0);
@@ -67,7 +67,7 @@ TEST(ConstantEnvironment, ShowsAndSamplesItsRadiance) {
 }
 
 TEST(ConstantEnvironment, PhotonsCarryPiTimesSurfaceAndUniformFluence) {
-  const OrientedBox box = make_box({-0.5f, -0.2f, -0.3f}, {1, 0, 0}, {0, 0.4f, 0}, {0, 0, 0.6f});
+  const Parallelepiped box = make_box({-0.5f, -0.2f, -0.3f}, {1, 0, 0}, {0, 0.4f, 0}, {0, 0, 0.6f});
   const MadeLight made(sky(Rgb(2)), region_of({box}));
   const Emission emission = emit_many(made, 40000, box, 1);
   const double surface = 2 * (0.4 + 0.6 + 0.24);
@@ -77,9 +77,9 @@ TEST(ConstantEnvironment, PhotonsCarryPiTimesSurfaceAndUniformFluence) {
 }
 
 TEST(ConstantEnvironment, OverlappingBoxesAreNotCountedTwice) {
-  const std::vector<OrientedBox> boxes{cube({}, 1), skew_box(), cube({0.4f, 0.3f, 0}, 0.8f)};
+  const std::vector<Parallelepiped> boxes{cube({}, 1), skew_box(), cube({0.4f, 0.3f, 0}, 0.8f)};
   const MadeLight made(sky(Rgb(1)), region_of(boxes));
-  for (const OrientedBox& box : boxes)
+  for (const Parallelepiped& box : boxes)
     expect_mean(emit_many(made, 60000, box, 2).fluence, 4 * std::numbers::pi);
 }
 
@@ -92,7 +92,7 @@ TEST(EnvironmentImage, LaysOutDirectionsAsOpenExrDoes) {
   // A pixel's brightness is its column; rows differ by 100.
   const Image image = lat_long(8, 4, [](int x, int y) { return static_cast<float>(x + 100 * y); });
   const ImageLight made(image, sky(Rgb(1)));
-  const auto at = [&](const Vec3f& d) { return made.light->escaped_radiance(normalize(d)).x; };
+  const auto at = [&](const Vec3f& d) { return escaped_radiance(*made.light, normalize(d)).x; };
   EXPECT_NEAR(at({0, 1, 0}), 3.5f, 4.1f);         // top row
   EXPECT_NEAR(at({0, -1, 0}), 303.5f, 4.1f);      // bottom row
   EXPECT_NEAR(at({0, 0, 1}), 150 + 3.5f, 1e-3f);  // the middle
@@ -107,16 +107,16 @@ TEST(EnvironmentImage, RotationTurnsAboutUp) {
   turned.rotation = 90; // +z goes to +x, seen from above counter-clockwise
   const ImageLight y_up(image, turned), z_up(image, sky(Rgb(1)), {}, {0, 0, 1}),
       upside_down(image, sky(Rgb(1)), {}, {0, -1, 0});
-  EXPECT_NEAR(y_up.light->escaped_radiance({1, 0, 0}).x, 153.5f, 1e-3f);
-  EXPECT_NEAR(y_up.light->escaped_radiance({0, 0, -1}).x, 151.5f, 1e-3f);
-  EXPECT_NEAR(z_up.light->escaped_radiance({0, -1, 0}).x, 153.5f, 1e-3f);
-  EXPECT_NEAR(z_up.light->escaped_radiance({1, 0, 0}).x, 151.5f, 1e-3f);
-  EXPECT_LT(z_up.light->escaped_radiance({0, 0, 1}).x, 10);
-  EXPECT_LT(upside_down.light->escaped_radiance({0, -1, 0}).x, 10);
+  EXPECT_NEAR(escaped_radiance(*y_up.light, {1, 0, 0}).x, 153.5f, 1e-3f);
+  EXPECT_NEAR(escaped_radiance(*y_up.light, {0, 0, -1}).x, 151.5f, 1e-3f);
+  EXPECT_NEAR(escaped_radiance(*z_up.light, {0, -1, 0}).x, 153.5f, 1e-3f);
+  EXPECT_NEAR(escaped_radiance(*z_up.light, {1, 0, 0}).x, 151.5f, 1e-3f);
+  EXPECT_LT(escaped_radiance(*z_up.light, {0, 0, 1}).x, 10);
+  EXPECT_LT(escaped_radiance(*upside_down.light, {0, -1, 0}).x, 10);
 }
 
 TEST(EnvironmentImage, ConstantImageIsTheConstantEnvironment) {
-  const OrientedBox box = skew_box();
+  const Parallelepiped box = skew_box();
   const ImageLight made(lat_long(16, 8, [](int, int) { return 0.5f; }), sky({2, 4, 6}),
                         region_of({box}));
   Rng rng({}, RngStage::test, 1);
@@ -125,7 +125,7 @@ TEST(EnvironmentImage, ConstantImageIsTheConstantEnvironment) {
     const IncidentSample s = made.light->sample_incident({}, u, v);
     EXPECT_NEAR(s.pdf, 1 / (4 * pi), 1e-6f);
     EXPECT_NEAR(s.value.y, 4 * pi * 2, 2e-4f);
-    EXPECT_NEAR(made.light->escaped_radiance(s.wi).z, 3, 1e-5f);
+    EXPECT_NEAR(escaped_radiance(*made.light, s.wi).z, 3, 1e-5f);
   }
   Average fluence;
   for (std::uint64_t i = 0; i < 40000; ++i) {
@@ -161,7 +161,7 @@ TEST(EnvironmentImage, DensityIntegratesToOneAndCoversAllLight) {
                           sky(Rgb(1)));
     const double total = over_sphere([&](const Vec3f& d) -> double {
       const float pdf = made.light->incident_pdf({}, d);
-      EXPECT_TRUE(pdf > 0 || made.light->escaped_radiance(d).x == 0);
+      EXPECT_TRUE(pdf > 0 || escaped_radiance(*made.light, d).x == 0);
       return static_cast<double>(pdf);
     });
     EXPECT_NEAR(total, 1, 2e-3) << width;
@@ -204,7 +204,7 @@ TEST(EnvironmentImage, SampledIrradianceIsTheIntegral) {
   const ImageLight made(sunny_sky(), sky(Rgb(1)));
   const Vec3f normal = normalize(Vec3f{0.2f, 1, -0.3f});
   const double expected = over_sphere([&](const Vec3f& d) -> double {
-    return static_cast<double>(made.light->escaped_radiance(d).x * std::max(0.0f, dot(d, normal)));
+    return static_cast<double>(escaped_radiance(*made.light, d).x * std::max(0.0f, dot(d, normal)));
   });
   Average irradiance;
   Rng rng({}, RngStage::test, 3);
@@ -212,18 +212,19 @@ TEST(EnvironmentImage, SampledIrradianceIsTheIntegral) {
     const float u = rng.uniform(), v = rng.uniform();
     const IncidentSample s = made.light->sample_incident({}, u, v);
     irradiance.add(static_cast<double>(s.value.x * std::max(0.0f, dot(s.wi, normal))));
-    EXPECT_NEAR(made.light->escaped_radiance(s.wi).x, s.value.x * s.pdf, 2e-3f * s.value.x * s.pdf);
+    EXPECT_NEAR(escaped_radiance(*made.light, s.wi).x, s.value.x * s.pdf,
+                2e-3f * s.value.x * s.pdf);
   }
   EXPECT_NEAR(irradiance.mean(), expected, 4.5 * irradiance.error() + 2e-3 * expected);
   EXPECT_LT(irradiance.error(), 5e-3 * expected);
 }
 
 TEST(EnvironmentImage, PhotonsGiveTheFluence) {
-  const std::vector<OrientedBox> boxes{cube({}, 1), skew_box()};
+  const std::vector<Parallelepiped> boxes{cube({}, 1), skew_box()};
   const ImageLight made(sunny_sky(), sky(Rgb(1)), region_of(boxes));
   const double expected =
-      over_sphere([&](const Vec3f& d) -> double { return made.light->escaped_radiance(d).x; });
-  for (const OrientedBox& box : boxes) {
+      over_sphere([&](const Vec3f& d) -> double { return escaped_radiance(*made.light, d).x; });
+  for (const Parallelepiped& box : boxes) {
     Average fluence, flux;
     for (std::uint64_t i = 0; i < 40000; ++i) {
       Rng rng({}, RngStage::test, i);
@@ -263,7 +264,7 @@ TEST(EnvironmentImage, UnusableValuesAreMended) {
   });
   const ImageLight made(image, sky(Rgb(1)));
   EXPECT_NEAR(over_sphere([&](const Vec3f& d) -> double {
-                const float radiance = made.light->escaped_radiance(d).x;
+                const float radiance = escaped_radiance(*made.light, d).x;
                 EXPECT_TRUE(radiance >= 0 && radiance <= 65504);
                 return static_cast<double>(made.light->incident_pdf({}, d));
               }),
@@ -317,7 +318,7 @@ TEST(EnvironmentImage, RefusesImagesWithoutColour) {
   EXPECT_THROW(ImageLight(image, sky(Rgb(1))), InputError);
   image.channels.resize(1);
   image.channels[0].name = "Y";
-  EXPECT_NEAR(ImageLight(image, sky(Rgb(1))).light->escaped_radiance({1, 0, 0}).y, 1, 1e-6);
+  EXPECT_NEAR(escaped_radiance(*ImageLight(image, sky(Rgb(1))).light, {1, 0, 0}).y, 1, 1e-6);
   image.channels[0].data.pop_back();
   EXPECT_THROW(ImageLight(image, sky(Rgb(1))), InputError);
 }

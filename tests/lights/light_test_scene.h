@@ -10,25 +10,26 @@
 
 namespace vdbeam::test {
 
-inline OrientedBox make_box(const Vec3f& corner, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+inline Parallelepiped make_box(const Vec3f& corner, const Vec3f& a, const Vec3f& b,
+                               const Vec3f& c) {
   return {corner, {a, b, c}};
 }
 
-inline OrientedBox cube(const Vec3f& center, float size) {
+inline Parallelepiped cube(const Vec3f& center, float size) {
   return make_box(center - Vec3f(size / 2), {size, 0, 0}, {0, size, 0}, {0, 0, size});
 }
 
 /// A sheared, rotated box with a negative determinant.
-inline OrientedBox skew_box() {
+inline Parallelepiped skew_box() {
   return make_box({0.1f, -0.3f, -0.2f}, {0.5f, 0.3f, 0.1f}, {-0.3f, 0.6f, 0.05f},
                   {0.1f, -0.1f, -0.4f});
 }
 
-inline OccupiedRegion region_of(const std::vector<OrientedBox>& boxes) {
+inline OccupiedRegion region_of(const std::vector<Parallelepiped>& boxes) {
   OccupiedRegion region;
   region.boxes = boxes;
   Boxf bounds;
-  for (const OrientedBox& box : boxes)
+  for (const Parallelepiped& box : boxes)
     for (int corner = 0; corner < 8; ++corner) {
       Vec3f p = box.corner;
       for (int i = 0; i < 3; ++i)
@@ -55,8 +56,15 @@ struct MadeLight {
   }
 };
 
+/// What a ray in this direction sees of a light beyond the scene.
+inline Rgb escaped_radiance(const Light& light, const Vec3f& direction) {
+  const LightHit hit = light.emitted_radiance({{{}, direction}});
+  EXPECT_EQ(hit.distance, infinity);
+  return hit.radiance;
+}
+
 /// Length of the part of a ray inside a parallelepiped, from its origin on.
-inline double chord(const OrientedBox& box, const Ray& ray) {
+inline double chord(const Parallelepiped& box, const Ray& ray) {
   const Vec3d a(box.edges[0]), b(box.edges[1]), c(box.edges[2]);
   const double volume = dot(a, cross(b, c));
   const Vec3d p = Vec3d(ray.origin) - Vec3d(box.corner), d(ray.direction);
@@ -70,11 +78,11 @@ inline double chord(const OrientedBox& box, const Ray& ray) {
   return std::max(0.0, leave - enter);
 }
 
-inline double volume_of(const OrientedBox& box) {
+inline double volume_of(const Parallelepiped& box) {
   return std::abs(static_cast<double>(dot(box.edges[0], cross(box.edges[1], box.edges[2]))));
 }
 
-inline bool contains(const OrientedBox& box, const Vec3d& p) {
+inline bool contains(const Parallelepiped& box, const Vec3d& p) {
   const Vec3d a(box.edges[0]), b(box.edges[1]), c(box.edges[2]);
   const double volume = dot(a, cross(b, c));
   const Vec3d q = p - Vec3d(box.corner);
@@ -107,19 +115,19 @@ struct Emission {
   int outside = 0; ///< photons that start inside a box by more than rounding
 };
 
-inline Emission emit_many(const MadeLight& made, int count, const OrientedBox& probe,
+inline Emission emit_many(const MadeLight& made, int count, const Parallelepiped& probe,
                           std::uint64_t stream = 0) {
   Emission result;
   for (int i = 0; i < count; ++i) {
     Rng rng({}, RngStage::test, stream * 1000003 + static_cast<std::uint64_t>(i));
     const EmittedPhoton photon = made.light->emit(rng);
     bool meets = false;
-    for (const OrientedBox& box : made.region.boxes)
+    for (const Parallelepiped& box : made.region.boxes)
       meets = meets || chord(box, photon.ray) > 0;
     result.flux.add(meets ? static_cast<double>(photon.flux.x) : 0);
     result.fluence.add(static_cast<double>(photon.flux.x) * chord(probe, photon.ray) /
                        volume_of(probe));
-    for (const OrientedBox& box : made.region.boxes)
+    for (const Parallelepiped& box : made.region.boxes)
       if (contains(box, Vec3d(photon.ray.at(1e-4f))) && contains(box, Vec3d(photon.ray.at(-1e-4f))))
         ++result.outside;
   }

@@ -24,7 +24,7 @@ LightSettings spot(const Vec3d& position, const Vec3d& direction, double angle, 
 }
 
 // Mean over a box of intensity / distance^2 (times a spot's share), by a fine grid of points.
-double mean_fluence(const MadeLight& made, const OrientedBox& box) {
+double mean_fluence(const MadeLight& made, const Parallelepiped& box) {
   constexpr int n = 60;
   double sum = 0;
   for (int i = 0; i < n * n * n; ++i) {
@@ -38,7 +38,7 @@ double mean_fluence(const MadeLight& made, const OrientedBox& box) {
 
 // The same for a light inside the box: intensity times the way to the wall, over all directions,
 // since a grid of points would miss the pole at the light.
-double mean_fluence_around(const MadeLight& made, const Vec3f& light, const OrientedBox& box) {
+double mean_fluence_around(const MadeLight& made, const Vec3f& light, const Parallelepiped& box) {
   constexpr int n = 700;
   double sum = 0;
   for (int i = 0; i < n; ++i)
@@ -73,7 +73,7 @@ TEST(PointLight, IrradianceIsTheSameInEveryRenderSpace) {
 
 TEST(PointLight, PhotonsGiveTheFluenceFromOutsideAndInside) {
   for (const Vec3d& position : {Vec3d{0, 3, 0.5}, Vec3d{0.6, -0.7, 0.9}, Vec3d{0.1, 0.2, -0.1}}) {
-    const OrientedBox probe = cube({0.1f, -0.1f, 0.2f}, 0.7f);
+    const Parallelepiped probe = cube({0.1f, -0.1f, 0.2f}, 0.7f);
     const MadeLight made(point(position), region_of({cube({}, 1), skew_box()}));
     const Emission emission = emit_many(made, 60000, probe, 1);
     const double expected = contains(probe, position)
@@ -86,7 +86,7 @@ TEST(PointLight, PhotonsGiveTheFluenceFromOutsideAndInside) {
 }
 
 TEST(PointLight, ConeIsTightAndPowerIsItsFlux) {
-  const OrientedBox box = cube({}, 1);
+  const Parallelepiped box = cube({}, 1);
   const MadeLight made(point({0, 10, 0}), region_of({box}));
   const Emission emission = emit_many(made, 40000, box, 2);
   EXPECT_GT(emission.flux.mean(), 0.4 * made.light->power().x);
@@ -98,7 +98,7 @@ TEST(PointLight, ConeIsTightAndPowerIsItsFlux) {
 TEST(PointLight, FarLightKeepsPrecision) {
   LightSettings settings = point({3e6, 1e6, -2e6});
   settings.intensity = Rgb(1e13f);
-  const OrientedBox box = cube({}, 1), probe = cube({0.2f, -0.3f, 0.1f}, 0.1f);
+  const Parallelepiped box = cube({}, 1), probe = cube({0.2f, -0.3f, 0.1f}, 0.1f);
   const MadeLight made(settings, region_of({box}));
   const double irradiance = 1e13 / (9e12 + 1e12 + 4e12);
   EXPECT_NEAR(made.light->sample_incident({}, 0, 0).value.x, irradiance, 1e-5);
@@ -132,12 +132,12 @@ TEST(PointLight, ExtremesStayFinite) {
 }
 
 TEST(PointLight, ConeHoldsEveryBoxAndLittleElse) {
-  const std::vector<OrientedBox> boxes{cube({0.4f, 0, 0}, 0.5f), skew_box()};
+  const std::vector<Parallelepiped> boxes{cube({0.4f, 0, 0}, 0.5f), skew_box()};
   const OccupiedRegion region = region_of(boxes);
   for (const Vec3d& position : {Vec3d{0, 2, 0}, Vec3d{0.9, -0.8, 1}, Vec3d{4e5, 1e5, -7e5}}) {
     const Cone cone = cone_towards(position, region);
     double widest = 0;
-    for (const OrientedBox& box : boxes)
+    for (const Parallelepiped& box : boxes)
       for (int corner = 0; corner < 8; ++corner) {
         Vec3d to = Vec3d(box.corner) - position;
         for (int i = 0; i < 3; ++i)
@@ -182,7 +182,7 @@ TEST(SpotLight, SharpEdgeIsAllowed) {
 }
 
 TEST(SpotLight, PhotonsGiveTheFluence) {
-  const OrientedBox box = cube({}, 1);
+  const Parallelepiped box = cube({}, 1);
   // A narrow beam through the box, one wider than the box, one that starts inside, one that grazes.
   for (const LightSettings& settings :
        {spot({0, 3, 0}, {0.02, -1, 0}, 6, 3), spot({0, 3, 0}, {0.1, -1, 0}, 60, 30),

@@ -76,7 +76,7 @@ void expect_unbiased(const Medium& medium, const std::vector<Part>& parts, doubl
   for (int i = 0; i < 12; ++i) {
     const Vec3f d = sample_sphere(ray_rng.uniform(), ray_rng.uniform());
     const Ray ray{Vec3f(ray_rng.uniform() - 0.5f) * 0.5f - d * (i % 3 == 0 ? 0.1f : 0.9f), d};
-    profile.build(medium, ray, 0, 3, 1e-7f);
+    profile.build(medium, {ray, 0, 3}, 1e-7f);
     ASSERT_FALSE(profile.empty());
     DistanceSampler sampler(medium, ray, profile);
     std::vector<std::array<test::Samples, 3>> samples(parts.size());

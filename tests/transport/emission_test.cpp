@@ -17,11 +17,10 @@ constexpr float cutoff = 1e-6f;
 double along_z(const MemoryScene& scene) {
   const World world = scene.world();
   const Ray ray{Vec3f(world.space.point({0.01, 0.02, 3})), {0, 0, -1}};
-  float t_begin = 0, t_end = infinity;
-  world.medium.clip(ray, t_begin, t_end);
+  const Segment segment = world.medium.clip({ray});
   DepthProfile profile;
-  profile.build(world.medium, ray, t_begin, t_end, cutoff);
-  return static_cast<double>(emission_along(world.medium, ray, profile, t_begin, t_end, cutoff).y);
+  profile.build(world.medium, segment, cutoff);
+  return static_cast<double>(emission_along(world.medium, segment, profile, cutoff).y);
 }
 
 const Vec3<int> one_cell{1, 1, 1};
@@ -104,12 +103,11 @@ TEST(EmissionIntegral, RandomFieldsOnDifferentLattices) {
       const World world = scene.world();
       const Vec3d origin = Vec3d(0.03, 0.01, 0) - direction * 2.0;
       const Ray ray{Vec3f(world.space.point(origin)), Vec3f(normalize(direction))};
-      float t_begin = 0, t_end = infinity;
-      world.medium.clip(ray, t_begin, t_end);
+      const Segment segment = world.medium.clip({ray});
       DepthProfile profile;
-      profile.build(world.medium, ray, t_begin, t_end, cutoff);
+      profile.build(world.medium, segment, cutoff);
       const double result =
-          static_cast<double>(emission_along(world.medium, ray, profile, t_begin, t_end, cutoff).x);
+          static_cast<double>(emission_along(world.medium, segment, profile, cutoff).x);
       const Vec3d d = normalize(direction);
       constexpr int steps = 200000;
       double tau = 0, sum = 0;
@@ -136,12 +134,12 @@ TEST(EmissionSamples, AreUnbiased) {
   scene.glow(closed_field(cells, light), box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
   const World world = scene.world();
   const Ray ray{{-0.45f, -0.2f, 0.4f}, normalize(Vec3f{1, 0.5f, -0.7f})};
-  const double expected =
-      static_cast<double>(emission_along(world.medium, ray, DepthProfile(), 0.1f, 0.9f, cutoff).x);
+  const double expected = static_cast<double>(
+      emission_along(world.medium, {ray, 0.1f, 0.9f}, DepthProfile(), cutoff).x);
   Samples samples;
   for (std::uint64_t i = 0; i < 4000; ++i) {
     Rng rng({}, RngStage::test, i);
-    samples.add(static_cast<double>(sample_emission(world.medium, ray, 0.1f, 0.9f, rng).x));
+    samples.add(static_cast<double>(sample_emission(world.medium, {ray, 0.1f, 0.9f}, rng).x));
   }
   expect_mean(samples, expected);
   EXPECT_LT(samples.error(), 0.005 * expected);

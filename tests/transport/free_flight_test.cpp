@@ -2,6 +2,7 @@
 #include "support/chi_squared.h"
 #include "support/exact_field.h"
 #include "support/memory_scene.h"
+#include "support/next_scattering.h"
 #include "support/statistics.h"
 #include "transport/optical_depth.h"
 #include "transport/scattering.h"
@@ -21,7 +22,7 @@ double flight_p_value(const Medium& medium, const Ray& ray, float t_end, std::ui
   double before = 1;
   for (int b = 0; b < bins; ++b) {
     const double after = static_cast<double>(
-        exact_transmittance(medium, ray, t_end * static_cast<float>(b + 1) / bins).x);
+        exact_transmittance(medium, {ray, 0, t_end * static_cast<float>(b + 1) / bins}).x);
     expected[static_cast<std::size_t>(b)] = (before - after) * flights;
     before = after;
   }
@@ -29,7 +30,7 @@ double flight_p_value(const Medium& medium, const Ray& ray, float t_end, std::ui
   Rng rng({seed, 0, 0}, RngStage::test, 1);
   for (int n = 0; n < flights; ++n) {
     Rgb weight(1);
-    const Collision hit = next_scattering(medium, ray, weight, rng);
+    const Collision hit = test::next_scattering(medium, ray, weight, rng);
     const bool beyond = hit.volume == nullptr || hit.t >= t_end;
     ++counts[beyond ? bins : static_cast<std::size_t>(hit.t / t_end * bins)];
   }
@@ -99,7 +100,7 @@ TEST(DeltaTracking, CollisionsBelongToVolumesByTheirShare) {
   double counts[2] = {0, 0};
   for (int n = 0; n < flights; ++n) {
     Rgb weight(1);
-    const Collision hit = next_scattering(medium, {{-0.7f, 0, 0}, {1, 0, 0}}, weight, rng);
+    const Collision hit = test::next_scattering(medium, {{-0.7f, 0, 0}, {1, 0, 0}}, weight, rng);
     if (hit.volume != nullptr)
       ++counts[hit.volume == &medium.volumes[1]];
   }
@@ -124,7 +125,7 @@ TEST(SpectralTracking, WeightsAreUnbiasedInEveryChannel) {
     float largest = 0;
     for (int n = 0; n < flights; ++n) {
       Rgb weight = start;
-      const Collision hit = next_scattering(medium, ray, weight, rng);
+      const Collision hit = test::next_scattering(medium, ray, weight, rng);
       for (int c = 0; c < 3; ++c) {
         const double w = static_cast<double>(weight[c]);
         passed[c].add(hit.volume == nullptr ? w : 0);
@@ -132,8 +133,8 @@ TEST(SpectralTracking, WeightsAreUnbiasedInEveryChannel) {
       }
       largest = std::max(largest, max_component(weight));
     }
-    const Rgb all = exact_transmittance(medium, ray, infinity);
-    const Rgb part = exact_transmittance(medium, ray, 0.6f);
+    const Rgb all = exact_transmittance(medium, {ray});
+    const Rgb part = exact_transmittance(medium, {ray, 0, 0.6f});
     for (int c = 0; c < 3; ++c) {
       test::expect_mean(passed[c], static_cast<double>(start[c] * all[c]), 0, 2e-6);
       test::expect_mean(collided[c], static_cast<double>(start[c] * (1 - part[c])), 0, 2e-6);
@@ -148,7 +149,7 @@ TEST(Scattering, RouletteKeepsTheMean) {
   test::Samples absorbed[3], roulette[3];
   for (int n = 0; n < 200000; ++n) {
     Rgb a = start, b = start * 0.02f;
-    const bool a_lives = survive_scattering(albedo, a, rng);
+    const bool a_lives = absorption_roulette(albedo, a, rng);
     const bool b_lives = survive_roulette(0.1f, b, rng);
     for (int c = 0; c < 3; ++c) {
       absorbed[c].add(a_lives ? static_cast<double>(a[c]) : 0);
@@ -160,7 +161,7 @@ TEST(Scattering, RouletteKeepsTheMean) {
     test::expect_mean(roulette[c], static_cast<double>(start[c] * 0.02f));
   }
   Rgb black = start;
-  EXPECT_FALSE(survive_scattering(Rgb(0), black, rng));
+  EXPECT_FALSE(absorption_roulette(Rgb(0), black, rng));
 }
 
 } // namespace

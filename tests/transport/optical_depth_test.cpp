@@ -83,7 +83,8 @@ TEST(OpticalDepth, ExactTransmittanceIsTheIntegral) {
       const Ray ray = random_ray(rng);
       const float t_end = i % 2 ? 3.0f : rng.uniform();
       const double expected = std::exp(-subject.tau(ray, static_cast<double>(t_end)));
-      ASSERT_NEAR(exact_transmittance(subject.medium, ray, t_end).x, expected, 1e-4 * expected);
+      ASSERT_NEAR(exact_transmittance(subject.medium, {ray, 0, t_end}).x, expected,
+                  1e-4 * expected);
     }
   }
 }
@@ -101,7 +102,7 @@ TEST(OpticalDepth, RaysAlongLatticePlanesAndThroughLatticePoints) {
         const Ray ray{o - d * 0.25f, d};
         // The border planes themselves belong to both sides, so the ray ends inside.
         const double expected = std::exp(-subject.tau(ray, 0.25 + 1.0 / 64));
-        ASSERT_NEAR(exact_transmittance(subject.medium, ray, 0.25f + 1.0f / 64).x, expected,
+        ASSERT_NEAR(exact_transmittance(subject.medium, {ray, 0, 0.25f + 1.0f / 64}).x, expected,
                     1e-4 * expected);
       }
 }
@@ -113,7 +114,7 @@ TEST(OpticalDepth, SegmentsAreContiguousAndSumToTheWhole) {
     const Ray ray = random_ray(rng);
     double sum = 0;
     float before = 0;
-    walk_segments(subject.medium.volumes[0], ray, 0, 3, [&](float t_a, float t_b, float tau) {
+    for_each_piece(subject.medium.volumes[0], {ray, 0, 3}, [&](float t_a, float t_b, float tau) {
       EXPECT_GE(t_a, before);
       EXPECT_GE(t_b, t_a);
       EXPECT_GE(tau, 0);
@@ -133,7 +134,7 @@ TEST(DepthProfile, KnotsLieOnTheIntegral) {
     DepthProfile profile;
     for (int i = 0; i < 150; ++i) {
       const Ray ray = random_ray(rng);
-      profile.build(subject.medium, ray, 0, 3, 1e-6f);
+      profile.build(subject.medium, {ray, 0, 3}, 1e-6f);
       if (profile.empty()) {
         ASSERT_NEAR(subject.tau(ray, 3), 0, 1e-6);
         continue;
@@ -156,7 +157,7 @@ TEST(DepthProfile, CursorInterpolatesAndHoldsItsEnds) {
   const Subject subject(constant_medium(), 8);
   const Ray ray{{-1, 0.01f, 0.02f}, {1, 0, 0}};
   DepthProfile profile;
-  profile.build(subject.medium, ray, 0, 3, 1e-6f);
+  profile.build(subject.medium, {ray, 0, 3}, 1e-6f);
   ProfileCursor cursor(profile);
   for (const double t : {0.1, 0.5, 0.62, 0.9, 1.3, 1.5, 2.0}) {
     cursor.move_to(static_cast<float>(t));
@@ -167,7 +168,7 @@ TEST(DepthProfile, CursorInterpolatesAndHoldsItsEnds) {
 TEST(DepthProfile, DepthIsTheMeanOfTheFirstCollision) {
   const Subject subject(constant_medium(), 8);
   DepthProfile profile;
-  profile.build(subject.medium, {{-1, 0.01f, 0.02f}, {1, 0, 0}}, 0, 3, 1e-6f);
+  profile.build(subject.medium, {{{-1, 0.01f, 0.02f}, {1, 0, 0}}, 0, 3}, 1e-6f);
   const double s = 0.7 * 8, end = std::exp(-s);
   EXPECT_NEAR(profile.opacity_depth(), 0.5 * (1 - end) + (1 - end) / s - end, 2e-4);
 }
@@ -210,8 +211,8 @@ TEST(OpticalDepth, OverlappingChromaticVolumesAdd) {
   for (int i = 0; i < 200; ++i) {
     const Ray ray = random_ray(rng);
     const Vec3d tau = overlap.tau(ray, 3);
-    const Rgb tr = exact_transmittance(overlap.medium, ray, 3);
-    profile.build(overlap.medium, ray, 0, 3, 1e-9f);
+    const Rgb tr = exact_transmittance(overlap.medium, {ray, 0, 3});
+    profile.build(overlap.medium, {ray, 0, 3}, 1e-9f);
     for (int c = 0; c < 3; ++c) {
       const double expected = std::exp(-tau[c]);
       ASSERT_NEAR(tr[c], expected, 1e-4 * expected);
@@ -230,7 +231,7 @@ TEST(OpticalDepth, OverlappingChromaticVolumesAdd) {
 }
 
 Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng) {
-  RatioTracking tracking(medium, ray, t_end);
+  RatioTracking tracking(medium, {ray, 0, t_end});
   while (tracking.advance(rng) && tracking.attenuate(rng)) {
   }
   return tracking.transmittance();
@@ -244,7 +245,7 @@ TEST(RatioTracking, MeanIsTheTransmittance) {
     const Ray ray = random_ray(ray_rng);
     const float t_end = i % 3 == 2 ? 0.6f : 3.0f;
     const Medium& medium = i % 3 == 0 ? random.medium : i % 3 == 1 ? sparse.medium : overlap.medium;
-    const Rgb exact = exact_transmittance(medium, ray, t_end);
+    const Rgb exact = exact_transmittance(medium, {ray, 0, t_end});
     test::Samples samples[3];
     for (int n = 0; n < 40000; ++n) {
       const Rgb tr = ratio_transmittance(medium, ray, t_end, rng);

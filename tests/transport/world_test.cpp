@@ -190,8 +190,8 @@ TEST(World, EqualPhaseFunctionsShareAGroup) {
     scene.add_box(Vec3d(-0.5), Vec3d(0.5)).phase = test::henyey_greenstein(g);
   const World world = scene.world();
   EXPECT_EQ(world.medium.phases.size(), 2u);
-  EXPECT_EQ(world.medium.volumes[0].group, world.medium.volumes[2].group);
-  EXPECT_NE(world.medium.volumes[0].group, world.medium.volumes[1].group);
+  EXPECT_EQ(world.medium.volumes[0].phase_index, world.medium.volumes[2].phase_index);
+  EXPECT_NE(world.medium.volumes[0].phase_index, world.medium.volumes[1].phase_index);
   EXPECT_TRUE(world.grey);
 }
 

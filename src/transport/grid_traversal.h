@@ -7,11 +7,11 @@ namespace vdbeam {
 /// Walks a ray through a box of cubic cells (3D-DDA, Amanatides and Woo 1987). The ray is
 /// origin + t * direction in cell coordinates (a cell is a unit cube); `direction` need not have
 /// unit length, so t keeps the meaning it has outside.
-class CellWalk {
+class GridTraversal {
 public:
   /// The part of [t_begin, t_end] inside the box [0, counts]; check done() before use.
-  CellWalk(const Vec3f& origin, const Vec3f& direction, const Vec3<int>& counts, float t_begin,
-           float t_end)
+  GridTraversal(const Vec3f& origin, const Vec3f& direction, const Vec3<int>& counts, float t_begin,
+                float t_end)
       : origin_(origin), direction_(direction), counts_(counts), t_(t_begin), t_end_(t_end) {
     for (int a = 0; a < 3; ++a)
       clip(a);

@@ -1,4 +1,4 @@
-#include "transport/cell_walk.h"
+#include "transport/grid_traversal.h"
 
 #include "math/rng.h"
 #include "math/sampling.h"
@@ -20,7 +20,7 @@ struct Visit {
 std::vector<Visit> walk(const Vec3f& o, const Vec3f& d, const Vec3<int>& counts, float t_begin,
                         float t_end) {
   std::vector<Visit> visits;
-  for (CellWalk cells(o, d, counts, t_begin, t_end); !cells.done() && visits.size() < 10000;
+  for (GridTraversal cells(o, d, counts, t_begin, t_end); !cells.done() && visits.size() < 10000;
        cells.advance())
     visits.push_back({cells.cell(), cells.t(), cells.t_exit()});
   return visits;
@@ -70,7 +70,7 @@ void expect_exact(const Vec3f& o, const Vec3f& d, const Vec3<int>& counts, float
   }
 }
 
-TEST(CellWalk, RandomRaysVisitExactlyWhatLiesOnThem) {
+TEST(GridTraversal, RandomRaysVisitExactlyWhatLiesOnThem) {
   const Vec3<int> counts{7, 3, 11};
   Rng rng({1, 0, 0}, RngStage::test, 1);
   for (int i = 0; i < 400; ++i) {
@@ -81,7 +81,7 @@ TEST(CellWalk, RandomRaysVisitExactlyWhatLiesOnThem) {
   }
 }
 
-TEST(CellWalk, PartOfARayStartsAndEndsWhereAsked) {
+TEST(GridTraversal, PartOfARayStartsAndEndsWhereAsked) {
   Rng rng({1, 0, 0}, RngStage::test, 2);
   for (int i = 0; i < 200; ++i) {
     const Vec3f o{5 * rng.uniform(), 5 * rng.uniform(), 5 * rng.uniform()};
@@ -90,7 +90,7 @@ TEST(CellWalk, PartOfARayStartsAndEndsWhereAsked) {
   }
 }
 
-TEST(CellWalk, AxisParallelRays) {
+TEST(GridTraversal, AxisParallelRays) {
   for (int axis = 0; axis < 3; ++axis)
     for (const float sign : {1.0f, -1.0f})
       for (const float beside : {0.0f, 0.5f, 1.0f, 2.999f}) {
@@ -102,7 +102,7 @@ TEST(CellWalk, AxisParallelRays) {
       }
 }
 
-TEST(CellWalk, ParallelRayOutsideOrOnTheUpperSideMisses) {
+TEST(GridTraversal, ParallelRayOutsideOrOnTheUpperSideMisses) {
   EXPECT_TRUE(walk({-1, 3.0f, 1.5f}, {1, 0, 0}, {3, 3, 3}, 0, 20).empty());
   EXPECT_TRUE(walk({-1, -0.001f, 1.5f}, {1, 0, 0}, {3, 3, 3}, 0, 20).empty());
   EXPECT_TRUE(walk({-1, 1, 1}, {-1, 0, 0}, {3, 3, 3}, 0, 20).empty());
@@ -111,7 +111,7 @@ TEST(CellWalk, ParallelRayOutsideOrOnTheUpperSideMisses) {
 
 // Through edges and corners a walk may take any of the touching cells, for no length of the ray,
 // but must come through.
-TEST(CellWalk, DiagonalsThroughCorners) {
+TEST(GridTraversal, DiagonalsThroughCorners) {
   for (const float sx : {1.0f, -1.0f})
     for (const float sy : {1.0f, -1.0f})
       for (const float sz : {1.0f, -1.0f, 0.0f}) {
@@ -125,7 +125,7 @@ TEST(CellWalk, DiagonalsThroughCorners) {
       }
 }
 
-TEST(CellWalk, GrazingRays) {
+TEST(GridTraversal, GrazingRays) {
   Rng rng({1, 0, 0}, RngStage::test, 3);
   for (int i = 0; i < 300; ++i) {
     // Nearly along an axis, within rounding of a lattice plane.

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "transport/scattering.h"
+
+#include <optional>
+
+namespace vdbeam {
+
+/// A random walk through the medium under way: what a photon's path and a camera's path share. It
+/// stands at a tentative collision of its flight along `segment`.
+struct Flight {
+  Flight(const Rng& numbers, const Rgb& weight) : rng(numbers), throughput(weight) {}
+
+  Rng rng;
+  Rgb throughput;  ///< or a photon's flux
+  Segment segment; ///< of the present flight, from the last scattering on
+  int bounces = 0;
+  LengthRoulette length;
+  std::optional<MediumTracker> tracker;
+
+  /// Begins a flight along `along`; it stands at no collision yet.
+  void start(const Medium& medium, const Segment& along) {
+    segment = along;
+    tracker.emplace(medium, along);
+  }
+  /// A direction of travel after scattering, by the phase function.
+  Vec3f sample_direction(const PhaseFunction& phase) {
+    const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    return phase.sample(segment.ray.direction, u_lobe, u, v);
+  }
+};
+
+/// Takes the walk to the next tentative collision of its flight. False where the flight leaves its
+/// segment first: then `walker.leave(walk)` has been called.
+template <class Walk, class Walker>
+bool advance_flight(Walk& walk, Walker& walker) {
+  if (walk.tracker->advance(walk.rng))
+    return true;
+  walker.leave(walk);
+  return false;
+}
+
+/// The loop over a flight's collisions, one of them per call, by delta tracking (spectral tracking
+/// where the extinction is chromatic). False where the walk has ended. Between two calls memory has
+/// time to deliver the density: callers with several walks let them take turns.
+///
+/// The walker, which knows what the walk is for, is told of
+/// - `meet(walk, collision)`: a tentative collision, not yet known to be null or real;
+/// - `pass(walk)`: it was null; returns false where the walk ends all the same;
+/// - `collide(walk, collision)`: it was real; returns whether the walk goes on (if it does, at
+///   the first tentative collision of its next flight);
+/// - `leave(walk)`: the flight has reached the end of its segment.
+template <class Walk, class Walker>
+bool step_flight(const Medium& medium, Walk& walk, Walker& walker) {
+  const Collision hit = walk.tracker->collision();
+  walker.meet(walk, hit);
+  if (sample_real_collision(hit, medium.chromatic, walk.throughput, walk.rng))
+    return walker.collide(walk, hit);
+  return walker.pass(walk) && advance_flight(walk, walker);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "transport/flight.h"
+
+namespace vdbeam::test {
+
+/// The next real collision along the ray, found by the loop that photons and camera paths use;
+/// volume is null where the ray leaves the medium first.
+inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
+  struct Walker {
+    Collision found;
+
+    void meet(Flight&, const Collision&) const {}
+    bool pass(Flight&) const { return true; }
+    bool collide(Flight&, const Collision& hit) {
+      found = hit;
+      return false;
+    }
+    void leave(Flight&) const {}
+  };
+  Walker walker;
+  if (medium.empty())
+    return {};
+  Flight flight(rng, weight);
+  flight.start(medium, {ray});
+  if (advance_flight(flight, walker))
+    while (step_flight(medium, flight, walker))
+      continue;
+  weight = flight.throughput;
+  rng = flight.rng;
+  return walker.found;
+}
+
+} // namespace vdbeam::test
