@@ -16,6 +16,25 @@ struct DraineLobe {
   float weight = 1; ///< share of this lobe; the shares add up to 1
 };
 
+/// A lobe made ready to evaluate, one at a time or many in SIMD. 1 + g^2 - 2 g cos is computed as
+/// (1 - |g|)^2 + 2 |g| (1 -+ cos), a sum of positive terms, since the plain form loses all digits
+/// where |g| is near 1.
+struct PhaseTerm {
+  float scale = 0.0795774715f; ///< weight / (4 pi) * (1 - g^2) / (1 + alpha (1 + 2 g^2) / 3)
+  float base = 1;              ///< (1 - |g|)^2
+  float slope = 0;             ///< 2 |g|
+  float side = 1;              ///< sign of g
+  float alpha = 0;
+
+  float distance(float cos_theta) const {
+    return base + slope * std::max(0.0f, 1 - side * cos_theta);
+  }
+  float value(float cos_theta) const {
+    const float d = distance(cos_theta);
+    return scale * (1 + alpha * cos_theta * cos_theta) / (d * std::sqrt(d));
+  }
+};
+
 /// A phase function as a blend of at most two Draine lobes: every model that the scene file offers
 /// has this form, so that the beam query needs one formula.
 /// cos_theta is between the directions of travel before and after; 1 is straight on.
@@ -39,27 +58,13 @@ public:
 
   int lobe_count() const { return lobe_count_; }
   const DraineLobe& lobe(int i) const { return lobes_[i]; }
+  const PhaseTerm& term(int i) const { return terms_[i]; }
 
 private:
-  /// A lobe made ready to evaluate. 1 + g^2 - 2 g cos is computed as (1 - |g|)^2 + 2 |g| (1 -+
-  /// cos), a sum of positive terms, since the plain form loses all digits where |g| is near 1.
-  struct Term {
-    float scale = 0.0795774715f; ///< weight / (4 pi) * (1 - g^2) / (1 + alpha (1 + 2 g^2) / 3)
-    float base = 1;              ///< (1 - |g|)^2
-    float slope = 0;             ///< 2 |g|
-    float side = 1;              ///< sign of g
-    float alpha = 0;
-
-    float value(float cos_theta) const {
-      const float d = base + slope * std::max(0.0f, 1 - side * cos_theta);
-      return scale * (1 + alpha * cos_theta * cos_theta) / (d * std::sqrt(d));
-    }
-  };
-
   void set_lobe(int i, const DraineLobe& lobe);
 
   std::array<DraineLobe, 2> lobes_;
-  std::array<Term, 2> terms_;
+  std::array<PhaseTerm, 2> terms_;
   int lobe_count_ = 1;
 };
 

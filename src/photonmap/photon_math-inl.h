@@ -11,8 +11,6 @@
 
 #include <hwy/highway.h>
 
-#include <array>
-
 HWY_BEFORE_NAMESPACE();
 namespace vdbeam {
 namespace HWY_NAMESPACE {
@@ -67,28 +65,11 @@ HWY_INLINE V16 kernel_value(const KernelPolynomial& kernel, V16 k) {
   return hn::IfThenElseZero(inside, value);
 }
 
-/// What a lobe has in front of its functions of the cosine, its weight included.
-inline float lobe_scale(const DraineLobe& lobe) {
-  const float g = lobe.g, alpha = lobe.alpha;
-  return lobe.weight * (1 - g * g) / (4 * pi * (1 + alpha * (1 + 2 * g * g) / 3));
-}
-
-/// The scales of a phase function's lobes, for loops that cannot afford a division per photon.
-using LobeScales = std::array<float, 2>;
-
-inline LobeScales lobe_scales(const PhaseFunction& phase) {
-  LobeScales scales{};
-  for (int i = 0; i < phase.lobe_count(); ++i)
-    scales[static_cast<std::size_t>(i)] = lobe_scale(phase.lobe(i));
-  return scales;
-}
-
-/// 1 + g^2 - 2 g cos, kept from rounding below its least value.
+/// 1 + g^2 - 2 g cos, as PhaseTerm::distance.
 template <class D>
-HWY_INLINE hn::Vec<D> lobe_distance(D d, float g, hn::Vec<D> cosine) {
-  const float least = 1 - std::abs(g);
-  return hn::Max(hn::NegMulAdd(hn::Set(d, 2 * g), cosine, hn::Set(d, 1 + g * g)),
-                 hn::Set(d, least * least));
+HWY_INLINE hn::Vec<D> lobe_distance(D d, const PhaseTerm& term, hn::Vec<D> cosine) {
+  const auto x = hn::NegMulAdd(hn::Set(d, term.side), cosine, hn::Set(d, 1.0f));
+  return hn::MulAdd(hn::Set(d, term.slope), hn::Max(hn::Zero(d), x), hn::Set(d, term.base));
 }
 
 /// Value of a lobe blend and its derivative by the cosine.
@@ -98,15 +79,14 @@ HWY_INLINE void phase_line(D d, const PhaseFunction& phase, hn::Vec<D> cosine, h
   value = slope = hn::Zero(d);
   const auto one = hn::Set(d, 1.0f);
   for (int i = 0; i < phase.lobe_count(); ++i) {
-    const DraineLobe& lobe = phase.lobe(i);
-    const float g = lobe.g, alpha = lobe.alpha;
-    const auto x = lobe_distance(d, g, cosine);
-    const auto hg = hn::Div(hn::Set(d, lobe_scale(lobe)), hn::Mul(x, hn::Sqrt(x)));
-    const auto draine = hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one);
+    const PhaseTerm& term = phase.term(i);
+    const auto x = lobe_distance(d, term, cosine);
+    const auto hg = hn::Div(hn::Set(d, term.scale), hn::Mul(x, hn::Sqrt(x)));
+    const auto draine = hn::MulAdd(hn::Mul(hn::Set(d, term.alpha), cosine), cosine, one);
     value = hn::MulAdd(hg, draine, value);
-    const auto steepness = hn::Div(hn::Set(d, 3 * g), x);
-    slope = hn::MulAdd(hg, hn::MulAdd(draine, steepness, hn::Mul(hn::Set(d, 2 * alpha), cosine)),
-                       slope);
+    const auto steepness = hn::Div(hn::Set(d, 1.5f * term.slope * term.side), x);
+    slope = hn::MulAdd(
+        hg, hn::MulAdd(draine, steepness, hn::Mul(hn::Set(d, 2 * term.alpha), cosine)), slope);
   }
 }
 
@@ -130,19 +110,16 @@ HWY_INLINE hn::Vec<D> inverse_three_halves(D d, hn::Vec<D> x) {
 }
 
 template <class D>
-HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, const LobeScales& scales,
-                                  hn::Vec<D> cosine) {
+HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, hn::Vec<D> cosine) {
   const auto one = hn::Set(d, 1.0f);
   auto value = hn::Zero(d);
   for (int i = 0; i < phase.lobe_count(); ++i) {
-    const DraineLobe& lobe = phase.lobe(i);
-    const float g = lobe.g, alpha = lobe.alpha;
-    const auto x = lobe_distance(d, g, cosine);
-    auto term =
-        hn::Mul(hn::Set(d, scales[static_cast<std::size_t>(i)]), inverse_three_halves(d, x));
-    if (alpha != 0)
-      term = hn::Mul(term, hn::MulAdd(hn::Mul(hn::Set(d, alpha), cosine), cosine, one));
-    value = hn::Add(value, term);
+    const PhaseTerm& term = phase.term(i);
+    const auto x = lobe_distance(d, term, cosine);
+    auto lobe = hn::Mul(hn::Set(d, term.scale), inverse_three_halves(d, x));
+    if (term.alpha != 0)
+      lobe = hn::Mul(lobe, hn::MulAdd(hn::Mul(hn::Set(d, term.alpha), cosine), cosine, one));
+    value = hn::Add(value, lobe);
   }
   return value;
 }

@@ -139,7 +139,7 @@ HWY_INLINE V16 phase_lanes(const PhotonLanes& photons, const PhaseFunction& phas
   const D16 d;
   if (!photons.blocks.has_directions())
     return hn::Set(d, 1 / (4 * pi));
-  return phase_value(d, phase, lobe_scales(phase), photons.cosine(direction));
+  return phase_value(d, phase, photons.cosine(direction));
 }
 
 class RayWalk {

@@ -53,7 +53,6 @@ struct TileQuery {
   const PhotonBlocks& blocks;
   KernelPolynomial kernel;
   const std::vector<PhaseFunction>& phases;
-  std::vector<LobeScales> scales; ///< of the phases
   int weight_channels;
   int power_channels;
   /// One group, and a kernel square * k (k + shift) of k = 1 - s: `square` goes into the strength.
@@ -64,10 +63,7 @@ struct TileQuery {
       : blocks(blocks_), kernel(disc_polynomial(shape)), phases(*tile.phases),
         weight_channels(tile.weight_channels), power_channels(blocks_.channels()),
         plain(phases.size() == 1 && kernel.step == 0 && kernel.square != 0),
-        kernel_shift(plain ? kernel.linear / kernel.square : 0) {
-    for (const PhaseFunction& phase : phases)
-      scales.push_back(lobe_scales(phase));
-  }
+        kernel_shift(plain ? kernel.linear / kernel.square : 0) {}
 
   /// Sub-tiles with knots per ray have no plain loop.
   float strength_factor(const SubtileFrame& s) const {

@@ -114,7 +114,7 @@ HWY_INLINE void scattering(const TileQuery& query, const SubtileFrame& s, const 
       phase = hn::MulAdd(hn::Set(d, c.phase[1][i]), ray.a,
                          hn::MulAdd(hn::Set(d, c.phase[2][i]), ray.b, hn::Set(d, c.phase[0][i])));
     else if constexpr (Config::phase == PhaseMode::exact)
-      phase = phase_value(d, query.phases[g], query.scales[g], cosine);
+      phase = phase_value(d, query.phases[g], cosine);
     for (int ch = 0; ch < Config::weight; ++ch) {
       const float* table = weights + (g * Config::weight + ch) * row;
       auto value = knots.at(table);
