@@ -126,7 +126,7 @@ TEST(VolumeLight, IsForPhotonsAlone) {
   const Light& light = world.lights[0];
   EXPECT_FALSE(light.wants_shadow_rays());
   EXPECT_EQ(light.sample_incident({}, 0.5f, 0.5f).value, Rgb());
-  EXPECT_EQ(escaped_radiance(light, {0, 0, 1}), Rgb());
+  EXPECT_EQ(light.emitted_radiance({{{}, {0, 0, 1}}}).radiance, Rgb());
 }
 
 TEST(VolumeLight, ShinesOnNothingThatDoesNotScatter) {
