@@ -35,8 +35,8 @@ Medium noisy_ball(int cells, float optical_depth, float g) {
       DensityField({0, 0, 0}, {cells, cells, cells}, std::move(index), std::move(bricks), {});
   volume.majorants = MajorantGrid(volume.field);
   const float lattice = static_cast<float>(n);
-  volume.rows = {Vec3f{lattice, 0, 0}, Vec3f{0, lattice, 0}, Vec3f{0, 0, lattice}};
-  volume.translation = Vec3f(0.5f * lattice);
+  volume.to_local.rows = {Vec3f{lattice, 0, 0}, Vec3f{0, lattice, 0}, Vec3f{0, 0, lattice}};
+  volume.to_local.translation = Vec3f(0.5f * lattice);
   volume.extinction = optical_depth;
   volume.albedo = Rgb(0.99f);
   volume.voxel_size = 1 / lattice;

@@ -22,7 +22,7 @@ constexpr std::uint64_t pilot_paths = 256;
 /// Walks per camera ray: where walks are short, the depth profile that they start from costs more
 /// than they do, so several share it. From the mean length of a few light paths (not followed far:
 /// of long ones it matters only that they are long), never from a clock.
-int choose_splits(const EstimatorInput& input) {
+int choose_walks_per_ray(const EstimatorInput& input) {
   PhotonPassSettings pilot;
   pilot.paths = pilot_paths;
   pilot.skip_first_flight.assign(input.world.lights.size(), true);
@@ -46,10 +46,10 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
       tracer_(input.world, shadow_rays_) {
   for (const Volume& volume : input_.world.medium.volumes)
     scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
-  splits_ = choose_splits(input);
+  walks_per_ray_ = choose_walks_per_ray(input);
   uncounted_pilot_paths_ = pilot_paths;
   const int samples = input_.world.settings.direct_samples;
-  direct_samples_ = samples > 0 ? samples : std::max(4, splits_ / 4);
+  direct_samples_ = samples > 0 ? samples : std::max(4, walks_per_ray_ / 4);
 }
 
 /// What a thread keeps from pixel to pixel.
@@ -97,14 +97,14 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   image.direct[target] = direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_,
                                       rng, scratch.counts.shadow_rays);
   DistanceSampler distances(world.medium, camera.ray(), profile);
-  for (int i = 0; i < splits_; ++i) {
-    const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(splits_);
+  for (int i = 0; i < walks_per_ray_; ++i) {
+    const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);
     const int c = world.medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
-    const Rng walk_rng(key, RngStage::walk, pixel * static_cast<std::size_t>(splits_) + i);
+    const Rng walk_rng(key, RngStage::walk, pixel * static_cast<std::size_t>(walks_per_ray_) + i);
     if (distances.opacity(c) > 0)
       begin_walk(camera, distances.sample(u, c), target, rng, walk_rng, scratch.walks);
   }
-  scratch.counts.camera_walks += static_cast<std::uint64_t>(splits_);
+  scratch.counts.camera_walks += static_cast<std::uint64_t>(walks_per_ray_);
 }
 
 RngKey PathEstimator::key(int pass) const {
@@ -127,7 +127,7 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
 /// while one waits for its voxels to come from memory, others compute.
 void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
                                PassImage& image) const {
-  const float share = 1 / static_cast<float>(splits_);
+  const float share = 1 / static_cast<float>(walks_per_ray_);
   while (walks.size() > most && !input_.stopped())
     for (std::size_t i = 0; i < walks.size();) {
       PathWalk& walk = walks[i];

@@ -35,7 +35,7 @@ private:
   WalkTracer tracer_;
   bool scatters_ = false;                   ///< some light may be scattered at all
   int direct_samples_ = 1;                  ///< shadow-ray samples per camera ray
-  int splits_ = 1;                          ///< walks per camera ray
+  int walks_per_ray_ = 1;                   ///< walks per camera ray
   std::uint64_t uncounted_pilot_paths_ = 0; ///< go to the first pass's statistics
 };
 

@@ -74,7 +74,7 @@ void spread(const Vec3<int>& counts, const Vec3f& falls, std::vector<float>& tab
 Vec3f falls_per_cell(const Volume& volume, float reach) {
   Affine to_local;
   for (std::size_t i = 0; i < 3; ++i)
-    to_local.rows[i] = Vec3d(volume.rows[i]);
+    to_local.rows[i] = Vec3d(volume.to_local.rows[i]);
   const Affine to_render = to_local.inverse();
   Vec3f falls;
   for (int axis = 0; axis < 3; ++axis) {

@@ -31,26 +31,26 @@ EntrySampler::EntrySampler(const std::vector<Parallelepiped>& boxes) {
     const float volume = dot(box.edges[0], cross(box.edges[1], box.edges[2]));
     if (!(std::abs(volume) > 0))
       continue;
-    Slab slab{box.corner, box.edges, {}, {}};
+    Box result{box.corner, box.edges, {}, {}};
     for (int i = 0; i < 3; ++i) {
       const Vec3f normal = cross(box.edges[(i + 1) % 3], box.edges[(i + 2) % 3]);
-      slab.duals[i] = normal / volume;
-      slab.faces[i] = {volume > 0 ? normal : -normal, i};
+      result.duals[i] = normal / volume;
+      result.faces[i] = {volume > 0 ? normal : -normal, i};
       surface_area_ += 2 * length(normal);
     }
-    boxes_.push_back(slab);
+    boxes_.push_back(result);
   }
 }
 
 float EntrySampler::projected_area(const Vec3f& direction) const {
   float sum = 0;
-  for (const Slab& box : boxes_)
+  for (const Box& box : boxes_)
     for (const Face& face : box.faces)
       sum += std::abs(dot(face.area, direction));
   return sum;
 }
 
-Vec3f EntrySampler::face_point(const Slab& box, int axis, bool far_side, float u, float v) const {
+Vec3f EntrySampler::face_point(const Box& box, int axis, bool far_side, float u, float v) const {
   const Vec3f base = far_side ? box.corner + box.edges[axis] : box.corner;
   return base + box.edges[(axis + 1) % 3] * u + box.edges[(axis + 2) % 3] * v;
 }
@@ -85,7 +85,7 @@ EntrySampler::Entry EntrySampler::sample_line(const Vec3f& direction, float u_fa
     }
   if (chosen == boxes_.size())
     return {{}, direction, 0};
-  const Slab& box = boxes_[chosen];
+  const Box& box = boxes_[chosen];
   const bool far_side = dot(box.faces[axis].area, direction) < 0;
   return first_entry(chosen, face_point(box, axis, far_side, u, v), direction, total);
 }
@@ -106,7 +106,7 @@ EntrySampler::Entry EntrySampler::sample_surface(float u_face, float u, float v,
     }
   if (chosen == boxes_.size())
     return {{}, {0, 0, 1}, 0};
-  const Slab& box = boxes_[chosen];
+  const Box& box = boxes_[chosen];
   const Vec3f outward = normalize(box.faces[axis].area);
   const Vec3f inward = far_side ? -outward : outward;
   // Cosine-weighted: density cos / pi cancels the cosine of the projected area.

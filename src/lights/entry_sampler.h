@@ -35,18 +35,18 @@ private:
     Vec3f area; ///< outward normal times area, of the face that ends edge `index`
     int index = 0;
   };
-  struct Slab {
+  struct Box {
     Vec3f corner;
     std::array<Vec3f, 3> edges;
     std::array<Vec3f, 3> duals; ///< dot(duals[i], p - corner) is in [0, 1] inside
     std::array<Face, 3> faces;
   };
 
-  Vec3f face_point(const Slab& box, int axis, bool far_side, float u, float v) const;
+  Vec3f face_point(const Box& box, int axis, bool far_side, float u, float v) const;
   Entry first_entry(std::size_t chosen, const Vec3f& point, const Vec3f& direction,
                     float measure) const;
 
-  std::vector<Slab> boxes_;
+  std::vector<Box> boxes_;
   float surface_area_ = 0;
 };
 

@@ -35,6 +35,20 @@ struct Affine {
   }
 };
 
+/// The same in single precision, for maps that are applied to many points.
+struct Affinef {
+  std::array<Vec3f, 3> rows{Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}};
+  Vec3f translation;
+
+  Affinef() = default;
+  explicit Affinef(const Affine& map)
+      : rows{Vec3f(map.rows[0]), Vec3f(map.rows[1]), Vec3f(map.rows[2])},
+        translation(map.translation) {}
+
+  Vec3f point(const Vec3f& p) const { return vector(p) + translation; }
+  Vec3f vector(const Vec3f& v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
+};
+
 /// An axis-aligned box; empty where a lower bound exceeds an upper one.
 template <class T>
 struct Box {

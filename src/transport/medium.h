@@ -8,7 +8,6 @@
 #include "volume/emitter.h"
 #include "volume/render_space.h"
 
-#include <array>
 #include <vector>
 
 namespace vdbeam {
@@ -17,19 +16,16 @@ namespace vdbeam {
 ///   sigma_t(x) = density(x) * extinction * channel_scale,  sigma_s = albedo * sigma_t
 struct Volume {
   DensityField field;
-  MajorantGrid majorants;    ///< of the density
-  std::array<Vec3f, 3> rows; ///< render space -> local coordinates of the field
-  Vec3f translation;
+  MajorantGrid majorants;     ///< of the density
+  Affinef to_local;           ///< render space -> local coordinates of the field
   float extinction = 1;       ///< per render unit, of the strongest channel
   Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
   Rgb albedo{1, 1, 1};
   int phase_index = 0;  ///< index into Medium::phases
   float voxel_size = 1; ///< smallest edge of a voxel, render units
 
-  Vec3f local_point(const Vec3f& p) const { return local_vector(p) + translation; }
-  Vec3f local_vector(const Vec3f& v) const {
-    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
-  }
+  Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
+  Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }
   float density(const Vec3f& p) const { return field.sample(local_point(p)); }
   /// The density at a point of which is known that it lies inside: rounding may have put it beyond
   /// a face, where a field that ends sharply is 0.

@@ -95,10 +95,7 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
   Volume volume;
   volume.field = std::move(grid.field);
   volume.majorants = MajorantGrid(volume.field);
-  const Affine inverse = local_to_render.inverse();
-  for (int i = 0; i < 3; ++i)
-    volume.rows[i] = Vec3f(inverse.rows[i]);
-  volume.translation = Vec3f(inverse.translation);
+  volume.to_local = Affinef(local_to_render.inverse());
   const float strongest = max_component(settings.extinction_scale);
   volume.extinction = static_cast<float>(settings.extinction * strongest / scale);
   volume.channel_scale = strongest > 0 ? settings.extinction_scale / strongest : Rgb(1);
@@ -119,10 +116,7 @@ Emitter make_emitter(const EmissionGrid& grid, const VolumeSettings& settings,
   emitter.field = grid.field;
   emitter.to_render =
       space.map().after(local_to_world(grid.field->origin(), grid.index_to_world, settings));
-  const Affine inverse = emitter.to_render.inverse();
-  for (int i = 0; i < 3; ++i)
-    emitter.rows[i] = Vec3f(inverse.rows[i]);
-  emitter.translation = Vec3f(inverse.translation);
+  emitter.to_local = Affinef(emitter.to_render.inverse());
   emitter.strength = Rgb(Vec3d(settings.emission.color) * (settings.emission.scale / space.scale));
   return emitter;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "math/affine.h"
 #include "math/ray.h"
 #include "volume/emission_field.h"
 
-#include <array>
 #include <memory>
 
 namespace vdbeam {
@@ -12,15 +12,12 @@ namespace vdbeam {
 /// independent of what absorbs or scatters there.
 struct Emitter {
   std::shared_ptr<const EmissionField> field;
-  Affine to_render;          ///< local coordinates of the field -> render space
-  std::array<Vec3f, 3> rows; ///< render space -> local coordinates
-  Vec3f translation;
+  Affine to_render; ///< local coordinates of the field -> render space
+  Affinef to_local; ///< render space -> local coordinates
   Rgb strength{1, 1, 1};
 
-  Vec3f local_point(const Vec3f& p) const { return local_vector(p) + translation; }
-  Vec3f local_vector(const Vec3f& v) const {
-    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
-  }
+  Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
+  Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }
 };
 
 } // namespace vdbeam

@@ -75,10 +75,10 @@ inline Volume make_volume(DensityField field, float voxel, const Vec3f& corner, 
   volume.majorants = MajorantGrid(field);
   volume.field = std::move(field);
   for (int a = 0; a < 3; ++a) {
-    volume.rows[static_cast<std::size_t>(a)] = Vec3f(0);
-    volume.rows[static_cast<std::size_t>(a)][a] = 1 / voxel;
+    volume.to_local.rows[static_cast<std::size_t>(a)] = Vec3f(0);
+    volume.to_local.rows[static_cast<std::size_t>(a)][a] = 1 / voxel;
   }
-  volume.translation = corner * (-1 / voxel);
+  volume.to_local.translation = corner * (-1 / voxel);
   volume.extinction = extinction;
   volume.voxel_size = voxel;
   return volume;
