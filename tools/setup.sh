@@ -26,6 +26,10 @@ fi
 if [[ ${VDBEAM_SETUP_BROWSER:-} == 1 ]]; then
   packages+=(chromium chromium-driver)
 fi
+# What tools/lint.sh --format runs, 60 MB. Only where it is asked for.
+if [[ ${VDBEAM_SETUP_LINT:-} == 1 ]]; then
+  packages+=(clang-format)
+fi
 
 if [[ ${1:-} == --list ]]; then
   echo "${packages[*]}"

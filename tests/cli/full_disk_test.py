@@ -2,8 +2,8 @@
 """Batches whose disk is full, read-only or gone: a clear error, no half file, and once there is room
 again the next run finishes the job with the same images.
 
-The disks are small tmpfs in a mount namespace of the test's own. Exits 77, which CTest shows as
-skipped, where this machine allows no such namespace.
+The disks are small tmpfs in a mount namespace of the test's own. Skipped where this machine allows no
+such namespace, unless VDBEAM_REQUIRE names disk.
 """
 import os
 import pathlib
@@ -15,9 +15,11 @@ import tempfile
 import time
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from requirements import skip
+
 VDBEAM = os.environ["VDBEAM_BINARY"]
 CLOUD = pathlib.Path(__file__).resolve().parents[2] / "data/cloud.toml"
-SKIPPED = 77
 INSIDE = "VDBEAM_TEST_NAMESPACE"
 CAMERA = "camera.position={keys=[[1,[0.3,1.2,7]],[9,[1.5,1.2,7]]]}"
 
@@ -152,11 +154,9 @@ def enter_namespace():
         tried = subprocess.run([*words, "sh", "-c", probe], capture_output=True, text=True,
                                check=False)
     except FileNotFoundError:
-        print("skipped: there is no unshare on this machine")
-        return SKIPPED
+        skip("disk", "there is no unshare on this machine")
     if tried.returncode != 0:
-        print(f"skipped: this machine lets no test mount a tmpfs: {tried.stderr.strip()}")
-        return SKIPPED
+        skip("disk", f"this machine lets no test mount a tmpfs: {tried.stderr.strip()}")
     return subprocess.run([*words, sys.executable, "-B", __file__],
                           env={**os.environ, INSIDE: "1"}, check=False).returncode
 

@@ -8,6 +8,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from requirements import skip
+
 BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -53,6 +56,5 @@ class LinkedLibraries(unittest.TestCase):
 
 if __name__ == "__main__":
     if shutil.which("readelf") is None or shutil.which("ldd") is None:
-        print("no readelf or ldd on this machine")
-        sys.exit(77)
+        skip("binutils", "there is no readelf or ldd on this machine")
     unittest.main()

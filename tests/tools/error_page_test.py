@@ -11,6 +11,9 @@ from pathlib import Path
 from fake_renderer import install
 from web_driver import Browser, missing_programs
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from requirements import skip
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -97,7 +100,6 @@ class ErrorPage(unittest.TestCase):
 
 if __name__ == "__main__":
     if missing_programs():
-        print(f"skipped: {' and '.join(missing_programs())} missing; install chromium and "
-              "chromium-driver")
-        sys.exit(77)
+        skip("browser", f"{' and '.join(missing_programs())} missing; install chromium and "
+             "chromium-driver")
     unittest.main()

@@ -11,6 +11,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DEBIAN = "/usr/bin/python3"
 sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tests/support"))
+from requirements import skip
 
 try:
     import numpy as np
@@ -20,8 +22,7 @@ except ModuleNotFoundError as problem:
     # Debian's packages are for Debian's Python.
     if Path(sys.executable).resolve() != Path(DEBIAN).resolve() and Path(DEBIAN).exists():
         os.execv(DEBIAN, [DEBIAN, *sys.argv])
-    print(f"skipped: the Python module {problem.name} is missing")
-    sys.exit(77)
+    skip("numpy", f"the Python module {problem.name} is missing")
 
 SETTINGS = {
     "image": {"width": 320, "height": 180},

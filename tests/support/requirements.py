@@ -1,0 +1,14 @@
+"""Parts of the machine that a test may do without, and that CI may not."""
+import os
+import sys
+
+SKIPPED = 77  # what CTest shows as skipped
+
+
+def skip(part, reason):
+    """Ends a test that cannot run for want of `part` ("slurm", "browser", "disk", "numpy" or
+    "binutils"): as skipped, or as failed where VDBEAM_REQUIRE, a list of parts with commas between
+    them, names it."""
+    required = part in os.environ.get("VDBEAM_REQUIRE", "").split(",")
+    print(f"{'failed, since VDBEAM_REQUIRE names ' + part if required else 'skipped'}: {reason}")
+    sys.exit(1 if required else SKIPPED)
