@@ -31,11 +31,12 @@ def stop_without(missing):
              "python3-matplotlib for /usr/bin/python3")
 
 
+MISSING = None
 try:
     from error_curves import report as reports
     from error_curves import runner
 except ModuleNotFoundError as problem:
-    stop_without(problem)
+    MISSING = problem  # --help works all the same
 
 ROOT = Path(__file__).resolve().parent.parent
 ESTIMATORS = ("beam", "march", "path")
@@ -52,6 +53,10 @@ def parse_seeds(text):
     return seeds
 
 
+def variant(text):
+    return runner.parse_variant(text)
+
+
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -61,7 +66,7 @@ def parse_arguments(arguments):
                         type=lambda text: [e for e in text.split(",") if e],
                         help="default: %(default)s; '' for none")
     parser.add_argument("--variant", action="append", default=[], metavar="NAME: OPTIONS",
-                        type=runner.parse_variant,
+                        type=variant,
                         help="another way to render: 'k200: --set render.neighbours=200'; may be "
                              "repeated")
     parser.add_argument("--time", type=float, default=10, metavar="SECONDS",
@@ -84,6 +89,11 @@ def parse_arguments(arguments):
     parser.add_argument("--plot-only", action="store_true",
                         help="render no curves; use the reports that are there")
     parser.add_argument("--no-plots", action="store_true", help="write the tables alone")
+    if MISSING:
+        if {"-h", "--help"} & set(sys.argv[1:] if arguments is None else arguments):
+            parser.print_help()
+            sys.exit(0)
+        stop_without(MISSING)
     options = parser.parse_args(arguments)
     options.variants = [runner.parse_variant(name) for name in options.estimators] + options.variant
     names = [variant.name for variant in options.variants]

@@ -3,6 +3,7 @@
 
 import csv
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -53,7 +54,10 @@ class ErrorVsTime(unittest.TestCase):
             self.assertEqual((self.output / f"{scene}.png").read_bytes()[:4], b"\x89PNG")
             self.assertIn("<svg", (self.output / f"{scene}.svg").read_text(encoding="utf-8"))
         page = (self.output / "index.html").read_text(encoding="utf-8")
-        self.assertEqual(page.count("data:image/svg+xml"), 2)
+        self.assertEqual(page.count("data:image/svg+xml"), 4)  # for light and for dark pages
+        self.assertRegex(page, r"Measured \d{4}-\d\d-\d\d; Abacus, 2 cores, 2 threads; vdbeam 1.2.3\.")
+        for text in ("MRSE x s at 0.01", "&ldquo;-&rdquo; means"):
+            self.assertIn(text, page)
         # 3 images, 3 error images and a reference for each of 2 scenes, and the scale of the errors.
         self.assertEqual(page.count("data:image/png"), 2 * 7 + 1)
         self.assertNotIn("http", page)
@@ -64,6 +68,14 @@ class ErrorVsTime(unittest.TestCase):
         self.assertEqual(beam[7:], ["0.002", "0.002", "0.002"])
         # 0.03 / 8 s: an error of 0.001 is never reached.
         self.assertEqual(self.table_row("smoke", "path")[7:], ["0.03", "-", "0.03"])
+
+    def test_axes_have_several_numbers(self):
+        self.assertEqual(self.run_tool(plots=True).returncode, 0)
+        svg = (self.output / "cloud.svg").read_text(encoding="utf-8")
+        # Matplotlib draws text as paths and leaves it in comments. The runs last 0.2 to 8 seconds.
+        labels = re.findall(r"<!-- ([\d.e+-]+) -->", svg)
+        for number in ("0.2", "0.5", "1", "2", "5", "0.01", "0.001"):
+            self.assertIn(number, labels)
 
     def test_estimators_take_turns_and_references_are_cached(self):
         self.assertEqual(self.run_tool("--seeds", "4,6-7", scenes=("cloud",)).returncode, 0)

@@ -1,6 +1,7 @@
 """One self-contained HTML page: curves, images at equal time side by side, error images, settings."""
 
 import base64
+import datetime
 import html
 import io
 import json
@@ -62,6 +63,18 @@ def _settings(report_path):
     return json.dumps(report, indent=2, sort_keys=True)
 
 
+def _conditions(folder, runs):
+    """One line: when, where and with what the runs were made, from the reports."""
+    path = folder / "runs" / f"{runs[0].scene}.{runs[0].estimator}.{runs[0].seed}.json"
+    report = json.loads(path.read_text(encoding="utf-8"))
+    machine = report.get("machine", {})
+    parts = [datetime.date.fromtimestamp(path.stat().st_mtime).isoformat()]
+    if "cpu" in machine:
+        parts.append(f"{machine['cpu']}, {machine.get('cores')} cores, {machine.get('threads')} threads")
+    parts += [f"{name} {version}" for name, version in report.get("versions", {}).items()]
+    return html.escape("Measured " + "; ".join(parts) + ".")
+
+
 def _scene_data(scene, runs, folder, reference_path):
     """What the page shows of one scene: the run with the first seed of each estimator."""
     firsts = [group[0] for name, _, group in group_runs(runs) if name == scene]
@@ -79,9 +92,10 @@ def _scene_data(scene, runs, folder, reference_path):
                          "text": _settings(f"{stem}.json")})
     images.append({"name": "reference", "caption": f"reference: {Path(reference_path).name}",
                    "url": _png_url(display_image(reference))})
-    curves = (folder / f"{scene}.svg").read_bytes()
-    return {"name": scene, "curves": _data_url(curves, "image/svg+xml"), "images": images,
-            "errors": errors, "settings": settings}
+    curves, dark = (_data_url((folder / f"{scene}{ending}.svg").read_bytes(), "image/svg+xml")
+                    for ending in ("", ".dark"))
+    return {"name": scene, "curves": curves, "dark": dark, "images": images, "errors": errors,
+            "settings": settings}
 
 
 def _html_table(markdown):
@@ -102,5 +116,5 @@ def write_page(runs, folder, references):
     data = json.dumps(scenes).replace("</", "<\\/")
     page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         data=data, table=_html_table(table(runs)), scale=_scale_bar(),
-        largest=f"{LARGEST_ERROR:g}")
+        largest=f"{LARGEST_ERROR:g}", conditions=_conditions(folder, runs))
     (folder / "index.html").write_text(page, encoding="utf-8")
