@@ -28,6 +28,12 @@ public:
   const MemoryScene& scene() const { return scene_; }
   /// A sky of 1 and nothing else: no ray may see more than 1.
   bool furnace() const { return furnace_; }
+  /// A furnace whose media absorb nothing, with paths of any length: every ray sees 1.
+  bool white_furnace() const {
+    return furnace_ && !scene_.scene.render.max_bounces &&
+           std::all_of(scene_.scene.volumes.begin(), scene_.scene.volumes.end(),
+                       [](const VolumeSettings& v) { return v.albedo == Rgb(1); });
+  }
   const std::string& description() const { return description_; }
 
 private:
