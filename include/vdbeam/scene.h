@@ -11,8 +11,8 @@
 
 namespace vdbeam {
 
-/// What the user asked for, as plain values in world units; docs/scene.md gives every key, its unit,
-/// range and default. `load_scene` fills it from a file, programs may fill it by hand.
+/// What the user asked for, as plain values in world units; docs/scene.md gives every key, its
+/// unit, range and default. `load_scene` fills it from a file, programs may fill it by hand.
 
 struct ImageSettings {
   int width = 640;  ///< pixels
@@ -37,8 +37,8 @@ struct PhaseSettings {
 };
 
 struct VolumeSettings {
-  std::string file;                ///< path, frame pattern already substituted
-  bool present = true;             ///< false: this frame lies outside its sequence; nothing is there
+  std::string file;    ///< path, frame pattern already substituted
+  bool present = true; ///< false: this frame lies outside its sequence; nothing is there
   std::string density = "density"; ///< grid name
   double extinction = 1;           ///< sigma_t = extinction * extinction_scale * density [1/world]
   Rgb extinction_scale{1, 1, 1};   ///< per-channel factor of the extinction (chromatic media)
@@ -61,16 +61,16 @@ enum class DirectLight { automatic, sampled, photons };
 
 struct LightSettings {
   LightType type = LightType::distant;
-  Vec3d direction{0, -1, 0};      ///< distant, spot: the way the light travels
-  Rgb irradiance{1, 1, 1};        ///< distant: on a plane that faces the light [W m^-2]
-  double angular_radius = 0;      ///< distant: half angle of the disc, degrees
-  Vec3d position{0, 0, 0};        ///< point, spot
-  Rgb intensity{1, 1, 1};         ///< point, spot [W sr^-1]
-  double cone_angle = 30;         ///< spot: half angle where the light ends, degrees
-  double cone_falloff = 5;        ///< spot: width of the smooth edge inside it, degrees
-  Rgb radiance{1, 1, 1};          ///< environment: constant, or the image's factor
-  std::string image;              ///< environment: lat-long EXR or HDR, empty for constant
-  double rotation = 0;            ///< environment: about the up axis, degrees
+  Vec3d direction{0, -1, 0};         ///< distant, spot: the way the light travels
+  Rgb irradiance{1, 1, 1};           ///< distant: on a plane that faces the light [W m^-2]
+  double angular_radius = 0;         ///< distant: half angle of the disc, degrees
+  Vec3d position{0, 0, 0};           ///< point, spot
+  Rgb intensity{1, 1, 1};            ///< point, spot [W sr^-1]
+  double cone_angle = 30;            ///< spot: half angle where the light ends, degrees
+  double cone_falloff = 5;           ///< spot: width of the smooth edge inside it, degrees
+  Rgb radiance{1, 1, 1};             ///< environment: constant, or the image's factor
+  std::string image;                 ///< environment: lat-long EXR or HDR, empty for constant
+  double rotation = 0;               ///< environment: about the up axis, degrees
   std::optional<DirectLight> direct; ///< overrides render.direct for this light
 };
 
@@ -79,6 +79,9 @@ enum class PhotonStore { fluence, scatter };
 /// Which of a light path's collisions become photons: those that the camera sees, or all alike;
 /// automatic is the first, but for a scene file in which only the camera moves.
 enum class PhotonThinning { automatic, view, even };
+/// Whether the forward peak of the phase function is taken out of multiple scattering, by ever less
+/// from pass to pass (docs/physics.md, "Forward peaks").
+enum class ForwardPeak { automatic, kept };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
 enum class SeedPolicy { per_frame, correlated };
@@ -86,41 +89,42 @@ enum class KernelShape { constant, epanechnikov, biweight, fourth_order };
 
 struct RenderSettings {
   EstimatorType estimator = EstimatorType::beam;
-  std::optional<int> passes;           ///< the first of these three met ends the frame
-  std::optional<double> time;          ///< seconds
-  std::optional<double> target_error;  ///< MRSE
+  std::optional<int> passes;            ///< the first of these three met ends the frame
+  std::optional<double> time;           ///< seconds
+  std::optional<double> target_error;   ///< MRSE
   std::optional<std::uint64_t> photons; ///< stored per pass; absent: automatic
   PhotonStore store = PhotonStore::fluence;
   DirectLight direct = DirectLight::automatic;
-  int direct_samples = 0;              ///< per ray and light; 0: automatic
+  int direct_samples = 0; ///< per ray and light; 0: automatic
   KernelRadius kernel = KernelRadius::adaptive;
   KernelShape kernel_shape = KernelShape::biweight;
-  double radius = 0;                   ///< fixed kernel, world units
-  int neighbours = 0;                  ///< adaptive kernel, photons per kernel; 0: automatic
-  double min_radius = 0;               ///< world units; 0: automatic
-  double max_radius = 0;               ///< world units; 0: automatic
-  double alpha = 0.6;                  ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
+  double radius = 0;     ///< fixed kernel, world units
+  int neighbours = 0;    ///< adaptive kernel, photons per kernel; 0: automatic
+  double min_radius = 0; ///< world units; 0: automatic
+  double max_radius = 0; ///< world units; 0: automatic
+  double alpha = 0.6;    ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
+  ForwardPeak forward_peak = ForwardPeak::automatic;   ///< of scattering (beam, march)
   PhotonThinning thinning = PhotonThinning::automatic; ///< which collisions are stored (beam)
-  double keep = 0;                     ///< share of them that are stored, evenly; 0: automatic
-  std::optional<int> max_bounces;      ///< scattering events per light path; absent: no limit
-  double cutoff = 1e-6;                ///< transmittance below which a camera ray ends
-  double bias_rays = 1.0 / 128;        ///< share of the camera rays that tell the bias
-  std::optional<double> clamp;         ///< most that the medium may send to a pixel in one pass [radiance]
-  double step = 1;                     ///< march: step length in voxels
+  double keep = 0;                ///< share of them that are stored, evenly; 0: automatic
+  std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
+  double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
+  double bias_rays = 1.0 / 128;   ///< share of the camera rays that tell the bias
+  std::optional<double> clamp; ///< most that the medium may send to a pixel in one pass [radiance]
+  double step = 1;             ///< march: step length in voxels
   std::uint64_t seed = 1;
   SeedPolicy seeds = SeedPolicy::correlated;
-  int threads = 0;                     ///< 0: all that the machine grants
+  int threads = 0; ///< 0: all that the machine grants
 };
 
 struct Scene {
-  std::string path;                    ///< where it came from, for messages
+  std::string path; ///< where it came from, for messages
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;
   std::vector<LightSettings> lights;
   RenderSettings render;
-  bool black = false;                  ///< a volume's file is missing and the frame is to be black
-  std::vector<std::string> notes;      ///< for the user: what load_scene chose or found odd
+  bool black = false;             ///< a volume's file is missing and the frame is to be black
+  std::vector<std::string> notes; ///< for the user: what load_scene chose or found odd
 
   /// A volume's settings let it glow, in this frame or in another.
   bool glows() const {

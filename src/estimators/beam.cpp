@@ -6,8 +6,8 @@
 namespace vdbeam {
 
 void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
-  const World& world = input_.world;
   photons_.trace_and_build(pass, statistics);
+  const World& world = photons_.world();
   const int channels = photons_.map().channels();
   WeightSettings weights;
   weights.store = world.settings.store;

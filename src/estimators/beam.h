@@ -13,7 +13,7 @@ namespace vdbeam {
 class BeamEstimator : public Estimator {
 public:
   explicit BeamEstimator(const EstimatorInput& input)
-      : input_(input), photons_(input, plan_beam_photons(input), KernelDomain::disc) {}
+      : input_(input), photons_(input, plan_beam_photons, KernelDomain::disc) {}
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 

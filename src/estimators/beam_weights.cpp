@@ -184,7 +184,7 @@ private:
 void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
                     const WeightSettings& settings, BeamTile& tile) {
   fill_frame(world, camera, rays, tile);
-  tile.phases = &world.medium.phases;
+  tile.phases = &world.medium.gathered_phases();
   const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && !world.grey);
   tile.weight_channels = coloured ? 3 : 1;
   tile.weights.clear();

@@ -9,19 +9,46 @@ namespace vdbeam {
 
 namespace {
 
+/// How much light a point scatters by an angle, where its medium may lack a forward peak.
+///
+/// Light that is scattered once has all of the scene's phase function p, but on its way before and
+/// after it goes straight on at every further scattering by the peak, as in the medium without it:
+/// the TMS method (Nakajima and Tanaka 1988). From a light that surrounds the medium, which the
+/// peak scatters into the ray from all along it, that would count light of the peak more than once;
+/// what the peak scatters counts at the last such scattering only, seen through the scene's own
+/// medium.
+struct SinglePhase {
+  const PhaseFunction& phase; ///< the scene's
+  const PhaseFunction* gathered = nullptr;
+  float forward = 0;    ///< share of the peak that was taken out
+  Rgb through{1, 1, 1}; ///< transmittance to the point of what was taken out
+
+  float evaluate(float cosine) const { return phase.evaluate(cosine); }
+  /// What a scattering weighs, of which the medium at hand counts the share 1 - forward.
+  Rgb weight(const Light& light, float p, float cosine) const {
+    if (!gathered)
+      return Rgb(p);
+    if (!light.surrounds())
+      return Rgb(p / (1 - forward));
+    const float smooth = gathered->evaluate(cosine);
+    return Rgb(smooth) + through * (p / (1 - forward) - smooth);
+  }
+};
+
 /// Radiance that one light scatters at a point into the ray, per unit of weight.
-Rgb scattered_light(const World& world, const Light& light, const PhaseFunction& phase,
+Rgb scattered_light(const World& world, const Light& light, const SinglePhase& single,
                     const Vec3f& point, const Vec3f& direction, Rng& rng,
                     std::uint64_t& shadow_rays) {
+  const PhaseFunction& phase = single.phase;
   Rgb sum;
   const float u = rng.uniform(), v = rng.uniform();
   const IncidentSample sample = light.sample_incident(point, u, v);
   if (max_component(sample.value) > 0) {
-    const float p = phase.evaluate(dot(direction, sample.wi));
+    const float cosine = dot(direction, sample.wi), p = phase.evaluate(cosine);
     const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
     if (p * mis > 0) {
       ++shadow_rays;
-      sum += sample.value * (p * mis) *
+      sum += sample.value * (single.weight(light, p, cosine) * mis) *
              exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance});
     }
   }
@@ -31,8 +58,8 @@ Rgb scattered_light(const World& world, const Light& light, const PhaseFunction&
   const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
   const LightHit hit = light.emitted_radiance({{point, wi}});
   if (max_component(hit.radiance) > 0) {
-    const float p = phase.evaluate(dot(direction, wi));
-    const float mis = p / (p + light.incident_pdf(point, wi));
+    const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
+    const Rgb mis = single.weight(light, p, cosine) / (p + light.incident_pdf(point, wi));
     ++shadow_rays;
     sum += hit.radiance * mis * exact_transmittance(world.medium, {{point, wi}, 0, hit.distance});
   }
@@ -44,8 +71,8 @@ class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
               const std::vector<bool>& sampled, Rng& rng, std::uint64_t& shadow_rays)
-      : world_(world), ray_(ray), distances_(world.medium, ray, profile), rng_(rng),
-        shadow_rays_(shadow_rays) {
+      : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
+        rng_(rng), shadow_rays_(shadow_rays) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampled[l])
         continue;
@@ -101,14 +128,32 @@ private:
     for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
       const Rgb& weight = (*point.weights)[v];
       if (max_component(weight) > 0)
-        sum += weight * scattered_light(world_, light, medium.phases[medium.volumes[v].phase_index],
+        sum += weight * scattered_light(world_, light,
+                                        single_phase(medium.volumes[v].phase_index, point.t),
                                         point.position, ray_.direction, rng_, shadow_rays_);
     }
     return sum;
   }
 
+  SinglePhase single_phase(int index, float t) const {
+    const Medium& medium = world_.medium;
+    const auto i = static_cast<std::size_t>(index);
+    if (!medium.peak)
+      return {medium.phases[i]};
+    const PeakTakenOut& peak = *medium.peak;
+    ProfileCursor cursor(profile_);
+    cursor.move_to(t);
+    Rgb through;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
+      through += peak.excess[v] * cursor.tau(v);
+    for (int c = 0; c < 3; ++c)
+      through[c] = std::exp(-through[c]);
+    return {peak.original[i], &peak.gathered[i], peak.forward[i], through};
+  }
+
   const World& world_;
   const Ray& ray_;
+  const DepthProfile& profile_;
   DistanceSampler distances_;
   Rng& rng_;
   std::uint64_t& shadow_rays_;

@@ -33,6 +33,11 @@ struct EstimatorInput {
   const std::atomic<bool>* stop = nullptr; ///< becomes true when the pass is to be abandoned
   PhotonCache* photons = nullptr; ///< of frames with the same world; null: photons are not kept
 
+  /// The same in another world, which must outlive the result too.
+  EstimatorInput in(const World& other) const {
+    return {other, camera, frame, window, stop, photons};
+  }
+
   bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 

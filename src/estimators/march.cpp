@@ -36,8 +36,9 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c = photons_.map().query_point(
-            ray.camera.ray().at(t), ray.camera.ray().direction, medium.phases, gathered_.data());
+        const QueryCounts c =
+            photons_.map().query_point(ray.camera.ray().at(t), ray.camera.ray().direction,
+                                       medium.gathered_phases(), gathered_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
         sum += weigh(before, after, step);
@@ -84,7 +85,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
   photons_.trace_and_build(pass, statistics);
   shade_tiles(input_, photons_, pass, image, statistics,
               [&](TileScratch& scratch, const RngKey& key) {
-                RayMarcher marcher(input_.world, photons_);
+                RayMarcher marcher(photons_.world(), photons_);
                 for (int i = 0; i < TileRays::count; ++i) {
                   const TileRays::PixelRay& ray = scratch.rays[i];
                   if (!ray.inside || ray.profile.empty())

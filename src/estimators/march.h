@@ -12,7 +12,7 @@ namespace vdbeam {
 class MarchEstimator : public Estimator {
 public:
   explicit MarchEstimator(const EstimatorInput& input)
-      : input_(input), photons_(input, plan_photons(input), KernelDomain::ball) {}
+      : input_(input), photons_(input, plan_photons, KernelDomain::ball) {}
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 

@@ -17,8 +17,10 @@ double seconds_since(Clock::time_point start) {
 
 } // namespace
 
-PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan plan, KernelDomain domain)
-    : input_(input), plan_(std::move(plan)),
+PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
+                       KernelDomain domain)
+    : input_(input), worlds_(input.world, plan_lights(input).similar), world_(&worlds_.of(0)),
+      plan_(make_plan(input.in(*world_))),
       boundary_share_(boundary_share(input.world, input.camera, domain)) {}
 
 /// The pilot belongs to no pass; its counts go with the first.
@@ -30,7 +32,8 @@ void PhotonPass::count_pilot(RenderStatistics& statistics) {
 }
 
 void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
-  const World& world = input_.world;
+  world_ = &worlds_.of(pass);
+  const World& world = *world_;
   const RadiusSettings radii = radius_settings(world, plan_, pass);
   if (!plan_.needs_map) {
     map_ = PhotonMap::build({}, 1, radii, world.settings.kernel_shape);
@@ -38,7 +41,8 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   }
   count_pilot(statistics);
   // Only the boundary's correction depends on the camera.
-  make_map(pass_settings(input_, plan_, static_cast<std::uint64_t>(pass)), radii, statistics);
+  make_map(pass_settings(input_.in(world), plan_, static_cast<std::uint64_t>(pass)), radii,
+           statistics);
   const auto start = Clock::now();
   if (boundary_share_)
     map_.divide_power(boundary_share_);
@@ -61,7 +65,7 @@ void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettin
     return;
   }
   const auto start = Clock::now();
-  const World& world = input_.world;
+  const World& world = *world_;
   TracedPhotons traced = trace_photons(world, settings);
   statistics.trace += seconds_since(start);
   const bool stopped = input_.stopped();

@@ -2,6 +2,7 @@
 
 #include "estimators/kernel_support.h"
 #include "estimators/photon_plan.h"
+#include "transport/similar_medium.h"
 
 namespace vdbeam {
 
@@ -9,14 +10,18 @@ namespace vdbeam {
 /// their map (or takes it over from another frame) and corrects kernels at the medium's boundary.
 class PhotonPass {
 public:
-  /// `domain`: what the estimator's kernels are normalised over.
-  PhotonPass(const EstimatorInput& input, PhotonPlan plan, KernelDomain domain);
+  /// `make_plan`: chooses the plan in the world of the first pass. `domain`: what the estimator's
+  /// kernels are normalised over.
+  PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
+             KernelDomain domain);
 
   /// Makes the map of a pass. Radii shrink from pass to pass.
   void trace_and_build(int pass, RenderStatistics& statistics);
 
   const PhotonPlan& plan() const { return plan_; }
   const PhotonMap& map() const { return map_; }
+  /// In which the photons of the map live: the scene's world, or one without its forward peak.
+  const World& world() const { return *world_; }
 
 private:
   void make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
@@ -24,6 +29,8 @@ private:
   void count_pilot(RenderStatistics& statistics);
 
   EstimatorInput input_;
+  PassWorlds worlds_;
+  const World* world_; ///< of the pass at hand
   PhotonPlan plan_;
   KernelShare boundary_share_;
   bool pilot_counted_ = false;

@@ -48,12 +48,26 @@ double count_hits(const EstimatorInput& input) {
   return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
 }
 
-/// All volumes have the same albedo.
+/// All volumes have the same albedo, also where a forward peak is taken out.
 bool common_albedo(const Medium& medium) {
   for (const Volume& volume : medium.volumes)
-    if (volume.albedo != medium.volumes[0].albedo)
+    if (volume.albedo != medium.volumes[0].albedo ||
+        (medium.peak && volume.phase_index != medium.volumes[0].phase_index))
       return false;
   return true;
+}
+
+/// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
+/// from all around; photons of other lights would lose it. Scattering events are counted exactly
+/// where their number is limited, and the scene's own light is not split from the peak's.
+bool may_take_peak_out(const World& world, const std::vector<bool>& sampled_lights) {
+  const RenderSettings& settings = world.settings;
+  bool possible = settings.forward_peak == ForwardPeak::automatic &&
+                  settings.store == PhotonStore::fluence && !settings.max_bounces &&
+                  world.medium.emitters.empty();
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    possible = possible && (sampled_lights[i] || world.lights[i].surrounds());
+  return possible;
 }
 
 } // namespace
@@ -78,6 +92,7 @@ PhotonPlan plan_lights(const EstimatorInput& input) {
   const bool single_bounce = settings.max_bounces && *settings.max_bounces <= 1;
   plan.needs_map = scatters && world.lights.size() > 0 && may_see_medium(world, input.camera) &&
                    (!single_bounce || photons_for_first_flight);
+  plan.similar = plan.needs_map && may_take_peak_out(world, plan.sampled_lights);
   plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
@@ -129,6 +144,7 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.store_probability_by_cell = plan.store_probability_by_cell;
   settings.skip_first_flight = plan.sampled_lights;
   settings.max_bounces = world.settings.max_bounces;
+  settings.truncation_order = world.medium.peak ? world.medium.peak->order : 0;
   settings.directions = !world.medium.isotropic();
   if (plan.albedo_in_power && settings.store == PhotonStore::fluence)
     settings.albedo = world.medium.volumes[0].albedo;

@@ -17,6 +17,8 @@ struct PhotonPlan {
   bool needs_map = false;
   /// Per light: single scattering by shadow rays instead of photons.
   std::vector<bool> sampled_lights;
+  /// Photons live in the medium without its forward peak (similar_medium).
+  bool similar = false;
   /// Shadow-ray samples per camera ray.
   int direct_samples = 1;
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:

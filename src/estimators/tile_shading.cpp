@@ -18,20 +18,46 @@ double seconds_between(Clock::time_point a, Clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
 }
 
+/// Light of surrounding lights that only the peak of the phase function scattered on its way along
+/// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
+/// with shadow rays have theirs from these.
+Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
+                      const std::vector<bool>& sampled_lights) {
+  Rgb radiance;
+  if (!world.medium.peak || ray.profile.empty())
+    return radiance;
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    if (!sampled_lights[i])
+      radiance += world.lights[i].emitted_radiance(ray.camera.whole()).radiance;
+  const std::size_t last = ray.profile.knots() - 1;
+  const Rgb tau = ray.profile.channels(world.medium, last);
+  Rgb excess;
+  for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
+    excess += world.medium.peak->excess[v] * ray.profile.tau(last, v);
+  for (int c = 0; c < 3; ++c)
+    radiance[c] *= std::exp(-tau[c]) * -std::expm1(-excess[c]);
+  return radiance;
+}
+
 } // namespace
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather) {
-  const World& world = input.world;
+  const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty());
   const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
     counts.depth_profiles += ray.profile.empty() ? 0 : 1;
-    shade_profile(world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
+    if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
+      shade_profile(input.world, ray.camera, ray.profile.scaled(peak->extinction_factor), ray.pixel,
+                    image, counts.emission_rays);
+    else
+      shade_profile(input.world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
+        light_of_the_peak(world, ray, photons.plan().sampled_lights) +
         direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
                      photons.plan().direct_samples, rng, counts.shadow_rays);
   };

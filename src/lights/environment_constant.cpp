@@ -28,6 +28,7 @@ public:
   }
   Rgb power() const override { return radiance_ * (pi * boxes_.surface_area()); }
   bool is_delta() const override { return false; }
+  bool surrounds() const override { return true; }
   bool wants_shadow_rays() const override { return false; }
   LightType type() const override { return LightType::environment; }
 

@@ -30,8 +30,8 @@ public:
   bool any_extent() const { return any_extent_; }
 
 private:
-  std::vector<std::unique_ptr<Light>> lights_;
-  std::vector<DirectLight> direct_; ///< per light
+  std::vector<std::shared_ptr<const Light>> lights_; ///< shared by copies
+  std::vector<DirectLight> direct_;                  ///< per light
   bool any_extent_ = false;
 };
 

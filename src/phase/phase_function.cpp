@@ -71,6 +71,15 @@ PhaseFunction::PhaseFunction(const PhaseSettings& settings) {
     set_lobe(i, lobes[i]);
 }
 
+PhaseFunction PhaseFunction::polynomial(const std::vector<double>& coefficients) {
+  PhaseFunction result;
+  result.lobe_count_ = 0;
+  result.coefficient_count_ = static_cast<int>(coefficients.size());
+  for (std::size_t i = 0; i < coefficients.size(); ++i)
+    result.coefficients_[i] = static_cast<float>(coefficients[i]);
+  return result;
+}
+
 void PhaseFunction::set_lobe(int i, const DraineLobe& lobe) {
   lobes_[i] = lobe;
   const double g = std::abs(static_cast<double>(lobe.g)), alpha = lobe.alpha;
@@ -102,6 +111,8 @@ float PhaseFunction::mean_cosine() const {
 }
 
 bool PhaseFunction::isotropic() const {
+  if (coefficient_count_ > 1)
+    return false;
   for (int i = 0; i < lobe_count_; ++i)
     if (lobes_[i].g != 0 || lobes_[i].alpha != 0)
       return false;

@@ -3,6 +3,7 @@
 #include "vdbeam/scene.h"
 
 #include <array>
+#include <vector>
 
 namespace vdbeam {
 
@@ -38,14 +39,23 @@ struct PhaseTerm {
 /// A phase function as a blend of at most two Draine lobes: every model that the scene file offers
 /// has this form, so that the beam query needs one formula.
 /// cos_theta is between the directions of travel before and after; 1 is straight on.
+/// Besides, a phase function may be given as a polynomial of the cosine (truncate_peak), to be
+/// evaluated under an integral.
 class PhaseFunction {
 public:
   PhaseFunction() = default;
   /// Throws InputError where a parameter lies outside its range (PhaseSettings).
   explicit PhaseFunction(const PhaseSettings& settings);
 
+  /// From the coefficients of the powers of the cosine, most_coefficients of them at most. Has no
+  /// lobes and cannot be sampled.
+  static PhaseFunction polynomial(const std::vector<double>& coefficients);
+  static constexpr int most_coefficients = 12;
+
   /// Value [1/sr]; integrates to 1 over the sphere.
   float evaluate(float cos_theta) const {
+    if (coefficient_count_ > 0)
+      return evaluate_polynomial(cos_theta);
     const float first = terms_[0].value(cos_theta);
     return lobe_count_ == 1 ? first : first + terms_[1].value(cos_theta);
   }
@@ -56,16 +66,28 @@ public:
   float mean_cosine() const;
   bool isotropic() const;
 
+  /// Of a polynomial; 0: it is given by lobes.
+  int coefficient_count() const { return coefficient_count_; }
+  float coefficient(int power) const { return coefficients_[power]; }
+
   int lobe_count() const { return lobe_count_; }
   const DraineLobe& lobe(int i) const { return lobes_[i]; }
   const PhaseTerm& term(int i) const { return terms_[i]; }
 
 private:
   void set_lobe(int i, const DraineLobe& lobe);
+  float evaluate_polynomial(float cos_theta) const {
+    float value = 0;
+    for (int i = coefficient_count_ - 1; i >= 0; --i)
+      value = value * cos_theta + coefficients_[i];
+    return value;
+  }
 
   std::array<DraineLobe, 2> lobes_;
   std::array<PhaseTerm, 2> terms_;
   int lobe_count_ = 1;
+  int coefficient_count_ = 0;
+  std::array<float, most_coefficients> coefficients_{};
 };
 
 } // namespace vdbeam

@@ -72,12 +72,16 @@ HWY_INLINE hn::Vec<D> lobe_distance(D d, const PhaseTerm& term, hn::Vec<D> cosin
   return hn::MulAdd(hn::Set(d, term.slope), hn::Max(hn::Zero(d), x), hn::Set(d, term.base));
 }
 
-/// Value of a lobe blend and its derivative by the cosine.
+/// Value of a phase function and its derivative by the cosine.
 template <class D>
 HWY_INLINE void phase_line(D d, const PhaseFunction& phase, hn::Vec<D> cosine, hn::Vec<D>& value,
                            hn::Vec<D>& slope) {
   value = slope = hn::Zero(d);
   const auto one = hn::Set(d, 1.0f);
+  for (int i = phase.coefficient_count() - 1; i >= 0; --i) {
+    slope = hn::MulAdd(slope, cosine, value);
+    value = hn::MulAdd(value, cosine, hn::Set(d, phase.coefficient(i)));
+  }
   for (int i = 0; i < phase.lobe_count(); ++i) {
     const PhaseTerm& term = phase.term(i);
     const auto x = lobe_distance(d, term, cosine);
@@ -113,6 +117,8 @@ template <class D>
 HWY_INLINE hn::Vec<D> phase_value(D d, const PhaseFunction& phase, hn::Vec<D> cosine) {
   const auto one = hn::Set(d, 1.0f);
   auto value = hn::Zero(d);
+  for (int i = phase.coefficient_count() - 1; i >= 0; --i)
+    value = hn::MulAdd(value, cosine, hn::Set(d, phase.coefficient(i)));
   for (int i = 0; i < phase.lobe_count(); ++i) {
     const PhaseTerm& term = phase.term(i);
     const auto x = lobe_distance(d, term, cosine);

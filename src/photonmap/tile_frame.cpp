@@ -130,17 +130,23 @@ double fill_rays(const BeamTile& tile, int subtile, SubtileFrame& s) {
 }
 
 /// Whether the phase functions are as good as linear over a cone of this tangent: the second-order
-/// term of (1 + g^2 - 2 g cos)^(-3/2), relative, is at most 15/8 g (spread / (1 - |g|))^2.
+/// term of (1 + g^2 - 2 g cos)^(-3/2), relative, is at most 15/8 g (spread / (1 - |g|))^2. P_l
+/// bends by l (l + 1) / 4 spread^2.
 PhaseMode phase_mode(const std::vector<PhaseFunction>& phases, double spread, bool has_directions) {
   double error = 0;
   bool isotropic = true;
-  for (const PhaseFunction& phase : phases)
+  for (const PhaseFunction& phase : phases) {
+    const int l = phase.coefficient_count() - 1;
+    if (l > 0)
+      error = std::max(error, 0.25 * l * (l + 1) * spread * spread);
+    isotropic = isotropic && l <= 0;
     for (int i = 0; i < phase.lobe_count(); ++i) {
       const DraineLobe& lobe = phase.lobe(i);
       const double g = std::abs(lobe.g), width = spread / std::max(1 - g, 1e-6);
       isotropic = isotropic && lobe.g == 0 && lobe.alpha == 0;
       error = std::max(error, 2 * g * width * width + std::abs(lobe.alpha) * spread * spread);
     }
+  }
   if (isotropic || !has_directions)
     return PhaseMode::isotropic;
   return error < 1e-3 && phases.size() == 1 ? PhaseMode::linear : PhaseMode::exact;

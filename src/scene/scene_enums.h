@@ -65,6 +65,11 @@ struct EnumNames<PhotonThinning> {
        {PhotonThinning::even, "even"}}};
 };
 template <>
+struct EnumNames<ForwardPeak> {
+  static constexpr std::array<std::pair<ForwardPeak, std::string_view>, 2> table{
+      {{ForwardPeak::automatic, "auto"}, {ForwardPeak::kept, "kept"}}};
+};
+template <>
 struct EnumNames<KernelRadius> {
   static constexpr std::array<std::pair<KernelRadius, std::string_view>, 2> table{
       {{KernelRadius::adaptive, "adaptive"}, {KernelRadius::fixed, "fixed"}}};

@@ -251,6 +251,10 @@ void add_render(Table& table) {
   table.add("alpha", &R::alpha, "radius shrinking over the passes; 1: none").above_up_to(0, 1);
   table.add("thinning", &R::thinning,
             "photons are kept where the camera sees them (beam), or everywhere alike");
+  table.add(
+      "forward_peak", &R::forward_peak,
+      "multiple scattering without the forward peak of the phase function, ever less of which "
+      "is taken out (beam, march), or with all of it");
   table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons, evenly")
       .above_up_to(0, 1);
   table.add("max_bounces", &R::max_bounces, "scattering events per path")

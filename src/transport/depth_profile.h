@@ -36,6 +36,13 @@ public:
       sum += medium.volumes[v].channel_scale * tau(knot, v);
     return sum;
   }
+  /// The same ray in a medium whose volumes have `factors` times the extinction.
+  DepthProfile scaled(const std::vector<float>& factors) const {
+    DepthProfile result = *this;
+    for (std::size_t i = 0; i < tau_.size(); ++i)
+      result.tau_[i] *= factors[i % volumes_];
+    return result;
+  }
   /// Largest optical depth of one piece, weighted with what is seen of it: how fine a resampling
   /// has to be.
   float sharpest_piece() const;

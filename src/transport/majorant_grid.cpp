@@ -32,11 +32,11 @@ std::vector<float> limit_drop(const DensityField& field, const std::vector<float
 
 MajorantGrid::MajorantGrid(const DensityField& field) {
   const Vec3<int> n = field.cell_counts();
-  majorants_.resize(static_cast<std::size_t>(n.x) * n.y * n.z);
-  for (std::size_t cell = 0; cell < majorants_.size(); ++cell)
-    majorants_[cell] = field.cell_maximum(cell);
-  majorants_ = limit_drop(field, majorants_);
-  majorants_ = limit_drop(field, majorants_);
+  std::vector<float> majorants(static_cast<std::size_t>(n.x) * n.y * n.z);
+  for (std::size_t cell = 0; cell < majorants.size(); ++cell)
+    majorants[cell] = field.cell_maximum(cell);
+  majorants = limit_drop(field, majorants);
+  majorants_ = SharedArray<float>(limit_drop(field, majorants));
 }
 
 } // namespace vdbeam

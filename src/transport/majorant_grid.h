@@ -18,10 +18,10 @@ public:
   explicit MajorantGrid(const DensityField& field);
 
   float operator[](std::size_t cell_offset) const { return majorants_[cell_offset]; }
-  std::size_t bytes() const { return majorants_.size() * sizeof(float); }
+  std::size_t bytes() const { return majorants_.bytes(); }
 
 private:
-  std::vector<float> majorants_;
+  SharedArray<float> majorants_;
 };
 
 } // namespace vdbeam

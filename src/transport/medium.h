@@ -8,6 +8,7 @@
 #include "volume/emitter.h"
 #include "volume/render_space.h"
 
+#include <memory>
 #include <vector>
 
 namespace vdbeam {
@@ -44,14 +45,31 @@ struct Volume {
 /// A value for each 8^3 cell of each volume of a medium.
 using CellTables = std::vector<std::vector<float>>;
 
+/// What was taken out of a medium to make the one at hand (similar_medium).
+struct PeakTakenOut {
+  int order = 0;                       ///< M of the delta-M method
+  std::vector<PhaseFunction> original; ///< per phase function: the scene's
+  std::vector<PhaseFunction> gathered; ///< smooth rests, under which photons are gathered
+  std::vector<float> forward;          ///< shares of the peaks
+  /// Per volume: the scene's extinction, of its strongest channel, over the one at hand.
+  std::vector<float> extinction_factor;
+  /// Per volume: optical depth that was taken out, by channel, per optical depth at hand.
+  std::vector<Rgb> excess;
+};
+
 /// All volumes of a scene; they may overlap, and coefficients add.
 struct Medium {
   std::vector<Volume> volumes;       ///< only those with something in them
   std::vector<Emitter> emitters;     ///< of the volumes that glow, whether or not they do more
   std::vector<PhaseFunction> phases; ///< one per group of volumes with the same phase function
-  Boxf bounds;                       ///< of all that is not empty, render space
-  bool chromatic = false;            ///< extinction differs between channels
+  std::shared_ptr<const PeakTakenOut> peak; ///< null: this is the scene's own medium
+  Boxf bounds;                              ///< of all that is not empty, render space
+  bool chromatic = false;                   ///< extinction differs between channels
 
+  /// Phase functions by which camera rays weigh photons.
+  const std::vector<PhaseFunction>& gathered_phases() const {
+    return peak ? peak->gathered : phases;
+  }
   /// Nothing absorbs or scatters.
   bool empty() const { return volumes.empty(); }
   /// There is something to look at.

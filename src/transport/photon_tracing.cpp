@@ -164,16 +164,16 @@ private:
 
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
-  const auto& [paths, store, store_probability, store_probability_by_cell, skip_first_flight,
-               max_bounces, directions, albedo, key, stop] = a;
+  const auto& [paths, store, store_probability, store_probability_by_cell, truncation_order,
+               skip_first_flight, max_bounces, directions, albedo, key, stop] = a;
   static_cast<void>(stop);
   const bool same_cells = store_probability_by_cell == b.store_probability_by_cell ||
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
   return same_cells && paths == b.paths && store == b.store &&
-         store_probability == b.store_probability && skip_first_flight == b.skip_first_flight &&
-         max_bounces == b.max_bounces && directions == b.directions && albedo == b.albedo &&
-         key == b.key;
+         store_probability == b.store_probability && truncation_order == b.truncation_order &&
+         skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
+         directions == b.directions && albedo == b.albedo && key == b.key;
 }
 
 TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings) {

@@ -16,6 +16,8 @@ struct PhotonPassSettings {
   float store_probability = 1;
   /// Where given, in place of `store_probability`: the probability by cell, each > 0.
   std::shared_ptr<const CellTables> store_probability_by_cell;
+  /// Order of the truncation that made the world's medium of the scene's; 0: none.
+  int truncation_order = 0;
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;

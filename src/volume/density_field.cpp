@@ -83,9 +83,9 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
   const std::size_t count = static_cast<std::size_t>(cell_counts.x) * cell_counts.y * cell_counts.z;
   if (cells_.size() != count || bricks_.size() % brick_size != 0)
     throw std::invalid_argument("DensityField: the sizes of its parts do not fit together");
-  maxima_.resize(count);
+  std::vector<float> maxima(count);
 
-  const auto measure = [this](const tbb::blocked_range<std::size_t>& range, Summary summary) {
+  const auto measure = [&](const tbb::blocked_range<std::size_t>& range, Summary summary) {
     for (std::size_t offset = range.begin(); offset != range.end(); ++offset) {
       const std::int32_t entry = cells_[offset];
       if (entry == empty_cell)
@@ -95,7 +95,7 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
         extent = measure_brick(brick(entry));
       else if (const float value = uniform_value(entry); value > 0)
         extent = {value, Vec3<int>(0), Vec3<int>(cell_width)};
-      maxima_[offset] = extent.maximum;
+      maxima[offset] = extent.maximum;
       if (extent.maximum > 0) {
         const std::size_t row = offset / cell_counts_.z;
         summary.add(extent,
@@ -110,13 +110,13 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
                                                  a.join(b);
                                                  return a;
                                                });
+  maxima_ = SharedArray<float>(std::move(maxima));
   maximum_ = summary.maximum;
   occupied_ = summary.occupied;
 }
 
 std::size_t DensityField::bytes() const {
-  return cells_.size() * sizeof(std::int32_t) +
-         (bricks_.size() + uniform_values_.size() + maxima_.size()) * sizeof(float);
+  return cells_.bytes() + bricks_.bytes() + uniform_values_.bytes() + maxima_.bytes();
 }
 
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/affine.h"
+#include "math/shared_array.h"
 
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,8 @@ namespace vdbeam {
 /// Storage: the lattice box is cut in cells of 8^3; each cell is empty, uniform, or a *brick* of
 /// 9^3 values (its own 8^3 and one apron layer at the upper sides), so that every trilinear sample
 /// reads one brick and the largest value of a cell's brick bounds every sample in the cell.
+///
+/// Copies share the values, which never change.
 ///
 /// "Local" coordinates are index coordinates less `origin()`, so they are never negative inside and
 /// small enough for single precision; cell (i, j, k) covers local [8i, 8i + 8) etc.
@@ -64,10 +67,10 @@ private:
   Vec3<std::int64_t> origin_;
   Vec3<int> cell_counts_;
   Vec3f limit_; ///< upper end of the cells, local
-  std::vector<std::int32_t> cells_;
-  std::vector<float> bricks_;
-  std::vector<float> uniform_values_;
-  std::vector<float> maxima_;
+  SharedArray<std::int32_t> cells_;
+  SharedArray<float> bricks_;
+  SharedArray<float> uniform_values_;
+  SharedArray<float> maxima_;
   float maximum_ = 0;
   Boxf occupied_;
 };

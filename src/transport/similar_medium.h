@@ -1,0 +1,37 @@
+#pragma once
+
+#include "transport/world.h"
+
+#include <memory>
+
+namespace vdbeam {
+
+/// The medium whose forward peak of scattering is taken out (similarity; Wiscombe 1977, eq. 14-16):
+/// light that a droplet sends almost straight on is light that it did not scatter,
+///   sigma_t' = sigma_t (1 - albedo f),  albedo' = albedo (1 - f) / (1 - albedo f),  p -> p',
+/// with f and p' of truncate_peak. Absorption and the transport cross-section stay as they are.
+/// `medium.peak` of the result tells what was taken out. Null where no phase function has a peak.
+std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
+
+/// The worlds in which the photons of each pass live: with the peak taken out by a truncation that
+/// falls from pass to pass, so that the estimate stays consistent (docs/physics.md, "Forward
+/// peaks"), or the scene's own world.
+class PassWorlds {
+public:
+  /// `world` must outlive this. `take_out`: false where the scene's own medium is wanted.
+  PassWorlds(const World& world, bool take_out) : world_(world), take_out_(take_out) {}
+
+  /// The world of a pass; the reference holds until the next call for a pass of another order.
+  const World& of(int pass);
+
+  /// The truncation order of a pass: one more whenever the number of passes has tripled.
+  static int order(int pass);
+
+private:
+  const World& world_;
+  bool take_out_;
+  int order_ = 0;
+  std::unique_ptr<World> similar_;
+};
+
+} // namespace vdbeam
