@@ -19,18 +19,19 @@ constexpr float least_importance = 1.0f / 1024;
 constexpr double trial_share = 0.25;
 constexpr double most_trial_paths = 25000;
 constexpr int trial_maps = 4;
-/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more.
-constexpr double trial_neighbours = 1000;
-constexpr double wide_over_narrow = 8;
+/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie
+/// about what is chosen in the end, so that little is extrapolated (docs/decisions.md).
+constexpr double trial_neighbours = 600;
+constexpr double wide_over_narrow = 4;
 /// A narrow kernel holds at most this share of a map, so that a wide one fits.
 constexpr double most_in_kernel = 1.0 / 16;
 /// Below this many photons per pass the trial is too noisy, and the default is used.
 constexpr double fewest_for_trial = 500;
 
-/// The nearest of 34, 170, 850, 4250, ...: what the trial finds scatters by a factor of 1.7 either
-/// way, and kernels that changed with that from frame to frame would flicker.
+/// The nearest power of two: what the trial finds scatters, and kernels that changed with that from
+/// frame to frame would flicker. One step is a factor of 1.26 in the radius.
 double in_kernel_steps(double neighbours) {
-  return 850 * std::pow(5, std::round(std::log(neighbours / 850) / std::log(5)));
+  return std::exp2(std::round(std::log2(neighbours)));
 }
 
 bool thins_by_view(const RenderSettings& settings) {
@@ -102,7 +103,7 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
   const double best =
       best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
-  return std::min(wide.neighbours, in_kernel_steps(best));
+  return in_kernel_steps(best);
 }
 
 } // namespace

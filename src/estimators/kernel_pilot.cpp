@@ -18,12 +18,12 @@ namespace {
 constexpr int most_tiles = 100;
 /// Of MRSE, in place of 0.01, over the mean brightness: a darker light must not change the kernels.
 constexpr double offset = 0.03;
-/// Bias grows with the neighbours to this power: measured (docs/decisions.md); 2 / 3 where kernels
-/// are small against all that they blur.
-constexpr double bias_power = 0.45;
+/// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
+/// against all that they blur, less where they are as wide (measured, docs/decisions.md).
+constexpr double bias_power = 0.5;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
 /// matters little (docs/decisions.md).
-constexpr int balanced_passes = 100;
+constexpr int balanced_passes = 64;
 /// Radii are those of so many photons or more (docs/performance.md).
 constexpr double fewest_neighbours = 32;
 
@@ -191,24 +191,25 @@ double best_neighbours(const KernelTrial& narrow, const KernelTrial& wide,
     return wide.neighbours;
   const double power =
       std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
-  double noise = 0, squared_radius = 0;
+  // Radii go as the cube root of the neighbours; both powers hold for what the passes shrink too.
+  double noise = 0, bias_factor = 0;
   double shrink = 1;
   for (int pass = 1; pass <= balanced_passes; ++pass) {
-    noise += 1 / shrink;
-    squared_radius += shrink;
+    noise += std::pow(shrink, -1.5 * power);
+    bias_factor += std::pow(shrink, 1.5 * bias_power);
     shrink *= (pass + alpha) / (pass + 1);
   }
   noise *= errors.noise_narrow * paths_share / (balanced_passes * balanced_passes);
-  squared_radius /= balanced_passes;
+  bias_factor /= balanced_passes;
   // Where no bias stands out of the noise it may still be as large as that.
   const double change = std::max(errors.change, errors.change_error);
   if (!(change > 0))
     return wide.neighbours;
   const double bias =
-      change * std::pow((std::pow(ratio, bias_power) - 1), -2) * squared_radius * squared_radius;
+      change * std::pow((std::pow(ratio, bias_power) - 1), -2) * bias_factor * bias_factor;
   // noise x^-power + bias x^(2 bias_power) is least where its derivative is 0.
   const double x = std::pow(power * noise / (2 * bias_power * bias), 1 / (power + 2 * bias_power));
-  return std::max(fewest_neighbours, narrow.neighbours * std::clamp(x, 0.1, ratio));
+  return std::max(fewest_neighbours, narrow.neighbours * std::clamp(x, 0.05, ratio));
 }
 
 } // namespace vdbeam

@@ -18,16 +18,17 @@ KernelTrial trial(double neighbours) {
   return trial;
 }
 
-/// MRSE of 100 passes with kernels of x times the narrow trial's neighbours, as the choice is meant
-/// to minimise it: noise x^-power over passes whose radii shrink, bias x^0.45 before it
-/// is squared.
+/// MRSE of 64 passes with kernels of x times the narrow trial's neighbours, as the choice is meant
+/// to minimise it: noise x^-power and bias x^0.5 before it is squared, over passes whose radii, the
+/// cube roots of the neighbours, shrink.
 double modelled_error(double x, double power, const KernelErrors& errors, double alpha) {
-  const double change = std::pow(std::pow(8, 0.45) - 1, 2);
+  const double change = std::pow(std::pow(8, 0.5) - 1, 2);
   double noise = 0, bias = 0;
-  for (int pass = 0; pass < 100; ++pass) {
+  for (int pass = 0; pass < 64; ++pass) {
     const double scale = static_cast<double>(radius_scale(pass, alpha));
-    noise += errors.noise_narrow * std::pow(x, -power) / (scale * scale) / 1e4;
-    bias += std::sqrt(errors.change / change) * std::pow(x, 0.45) * scale * scale / 100;
+    const double neighbours = x * scale * scale * scale;
+    noise += errors.noise_narrow * std::pow(neighbours, -power) / (64 * 64);
+    bias += std::sqrt(errors.change / change) * std::pow(neighbours, 0.5) / 64;
   }
   return noise + bias * bias;
 }

@@ -1,0 +1,156 @@
+// Media whose forward peak is taken out of multiple scattering obey the laws and agree with path.
+#include "estimators/photon_plan.h"
+#include "transport/similar_medium.h"
+
+#include "support/memory_scene.h"
+#include "support/render_passes.h"
+#include "support/statistics.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+constexpr int side = 12;
+
+/// Lumps with soft edges in a box, so that rays meet rims of every opacity.
+MemoryScene lumps(double depth, const PhaseSettings& phase) {
+  MemoryScene scene;
+  const DensityField field = closed_field({24, 24, 24}, [](int i, int j, int k) {
+    double density = 0;
+    for (int n = 0; n < 5; ++n) {
+      const double x = 6 + 3 * (n % 3) + 2 * (n / 3), y = 7 + 5 * (n % 2), z = 8 + 2 * n;
+      const double d = std::sqrt((i - x) * (i - x) + (j - y) * (j - y) + (k - z) * (k - z));
+      density = std::max(density, std::clamp((6 - d) / 2, 0.0, 1.0));
+    }
+    return density;
+  });
+  VolumeSettings& volume = scene.add(field, box_map({24, 24, 24}, Vec3d(-0.5), Vec3d(0.5)));
+  volume.extinction = depth;
+  volume.phase = phase;
+  scene.look({0.5, 0.8, 3}, {0, 0, 0}, 24, side, side);
+  return scene;
+}
+
+PhaseSettings mie() {
+  PhaseSettings phase;
+  phase.type = PhaseType::mie;
+  return phase;
+}
+
+/// Means and squared standard errors of each pixel.
+struct Picture {
+  std::vector<double> mean, variance;
+};
+
+Picture render(const MemoryScene& scene, int passes) {
+  const World world = scene.world();
+  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+  const auto estimator = make_estimator(scene.scene.render.estimator, {world, camera, 1});
+  PassImage image;
+  RenderStatistics statistics;
+  std::vector<double> sums(side * side), squares(side * side);
+  for (int pass = 0; pass < passes; ++pass) {
+    estimator->render_pass(pass, image, statistics);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const double value = static_cast<double>(mean_component(image.total(i)));
+      sums[i] += value;
+      squares[i] += value * value;
+    }
+  }
+  Picture picture;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    picture.mean.push_back(sums[i] / passes);
+    const double spread = squares[i] / passes - picture.mean[i] * picture.mean[i];
+    picture.variance.push_back(std::max(0.0, spread) / (passes - 1));
+  }
+  return picture;
+}
+
+class ForwardPeak : public testing::TestWithParam<EstimatorType> {};
+
+/// With albedo 1 and a sky of 1 every pixel is 1, also rims where the peak alone carries light, and
+/// whether the sky is left to photons (a constant one) or sampled.
+TEST_P(ForwardPeak, FurnaceOfLumps) {
+  for (const bool sampled : {false, true})
+    for (const PhaseSettings& phase : {henyey_greenstein(0.9), mie()}) {
+      MemoryScene scene = lumps(25, phase);
+      scene.add_light(LightType::environment).radiance = Rgb(1);
+      scene.scene.render.estimator = GetParam();
+      scene.scene.render.photons = 20000;
+      scene.scene.render.neighbours = 60;
+      if (sampled)
+        scene.scene.render.direct = DirectLight::sampled;
+      const Picture picture = render(scene, 24);
+      double worst = 0;
+      for (std::size_t i = 0; i < picture.mean.size(); ++i) {
+        // 5 standard errors, and the bias of kernels at rims.
+        EXPECT_NEAR(picture.mean[i], 1, 5 * std::sqrt(picture.variance[i]) + 0.06) << i << sampled;
+        worst = std::max(worst, picture.variance[i]);
+      }
+      EXPECT_LT(std::sqrt(worst), 0.04); // the test can see an error of 25 %
+      double mean = 0;
+      for (const double value : picture.mean)
+        mean += value / static_cast<double>(picture.mean.size());
+      EXPECT_NEAR(mean, 1, 0.01) << sampled;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, ForwardPeak,
+                         testing::Values(EstimatorType::beam, EstimatorType::march),
+                         [](const auto& kind) {
+                           return kind.param == EstimatorType::beam ? "Beam" : "March";
+                         });
+
+/// Lit from behind, pixel by pixel against path.
+TEST(ForwardPeakBeam, AgreesWithPathLitFromBehind) {
+  for (const PhaseSettings& phase : {henyey_greenstein(0.85), mie()}) {
+    MemoryScene scene = lumps(30, phase);
+    LightSettings& sun = scene.add_light(LightType::distant);
+    sun.direction = {0.35, -0.3, 0.88};
+    sun.angular_radius = 2;
+    scene.add_light(LightType::environment).radiance = Rgb(0.05f);
+    scene.scene.render.photons = 40000;
+    scene.scene.render.neighbours = 60;
+    scene.scene.render.estimator = EstimatorType::beam;
+    const Picture beam = render(scene, 32);
+    scene.scene.render.estimator = EstimatorType::path;
+    const Picture path = render(scene, 400);
+    double sum_beam = 0, sum_path = 0, variance = 0;
+    for (std::size_t i = 0; i < beam.mean.size(); ++i) {
+      const double error = std::sqrt(beam.variance[i] + path.variance[i]);
+      EXPECT_NEAR(beam.mean[i], path.mean[i], 5 * error + 0.12 * path.mean[i]) << i;
+      sum_beam += beam.mean[i];
+      sum_path += path.mean[i];
+      variance += error * error;
+    }
+    EXPECT_NEAR(sum_beam / sum_path, 1, 4 * std::sqrt(variance) / sum_path + 0.015);
+    EXPECT_LT(4 * std::sqrt(variance) / sum_path, 0.03);
+  }
+}
+
+TEST(PassWorlds, TakeOutLessAndLess) {
+  const MemoryScene scene = lumps(10, henyey_greenstein(0.9));
+  const World world = scene.world();
+  PassWorlds worlds(world, true);
+  float before = 1;
+  for (const int pass : {0, 64, 192, 576, 100000}) {
+    const World& similar = worlds.of(pass);
+    ASSERT_TRUE(similar.medium.peak);
+    EXPECT_LT(similar.medium.peak->forward[0], before);
+    before = similar.medium.peak->forward[0];
+    // Absorption and the transport cross-section stay.
+    const Volume &a = world.medium.volumes[0], &b = similar.medium.volumes[0];
+    EXPECT_NEAR(a.extinction * (1 - a.albedo.x), b.extinction * (1 - b.albedo.x),
+                1e-4f * a.extinction);
+    EXPECT_NEAR(a.extinction * a.albedo.x * (1 - world.medium.phases[0].mean_cosine()),
+                b.extinction * b.albedo.x * (1 - similar.medium.phases[0].mean_cosine()),
+                1e-4f * a.extinction);
+  }
+  EXPECT_FALSE(PassWorlds(world, false).of(0).medium.peak);
+}
+
+} // namespace
+} // namespace vdbeam
