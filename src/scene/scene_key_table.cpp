@@ -155,9 +155,9 @@ void add_emission(Table& table) {
   using E = EmissionSettings;
   table.section(SceneSection::emission);
   table.add("intensity", &E::intensity,
-            R"(name of a grid that says how strongly it glows ("flame", "heat"); "": evenly)");
+            R"(name of a grid with the strength of the emission ("flame", "heat"); "": 1 everywhere)");
   table.add("temperature", &E::temperature,
-            R"(name of a grid of temperatures, to glow as a black body does; "": the color alone)");
+            R"(name of a grid of temperatures, for black-body emission; "": the color alone)");
   table.add("kelvin", &E::kelvin, "kelvin per unit of the temperature grid").above(0);
   table.add("kelvin_offset", &E::kelvin_offset, "added to the temperature, except where it is 0")
       .unit("kelvin");
@@ -166,7 +166,7 @@ void add_emission(Table& table) {
       .unit("kelvin")
       .within(100, 100000);
   table.add("color", &E::color, "factor per channel").at_least(0);
-  table.add("scale", &E::scale, "strength: what 1 of all the above sends out")
+  table.add("scale", &E::scale, "radiance per world unit where all of the above are 1")
       .unit("radiance / world")
       .at_least(0);
 }
@@ -231,7 +231,7 @@ void add_render(Table& table) {
   table.add("estimator", &R::estimator, "how light is found");
   add_stop_rule(table);
   table.add("photons", &R::photons, "photons stored per pass").at_least(1).absent("auto");
-  table.add("store", &R::store, "what a photon stands for: fluence, or scattered light (classic)");
+  table.add("store", &R::store, "what a photon stores: fluence, or scattered flux (classic)");
   table.add("direct", &R::direct, "single scattering by shadow rays (sampled) or from photons");
   table.add_auto("direct_samples", &R::direct_samples, "shadow rays per camera ray and light")
       .at_least(1);
@@ -253,9 +253,9 @@ void add_render(Table& table) {
             "photons are kept where the camera sees them (beam), or everywhere alike");
   table.add(
       "forward_peak", &R::forward_peak,
-      "multiple scattering without the forward peak of the phase function, ever less of which "
-      "is taken out (beam, march), or with all of it");
-  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons, evenly")
+      "auto: multiple scattering without the forward peak of the phase function, less of which is "
+      "taken out as passes are added (beam, march); kept: with all of it");
+  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons, the same everywhere")
       .above_up_to(0, 1);
   table.add("max_bounces", &R::max_bounces, "scattering events per path")
       .at_least(1)
@@ -263,18 +263,18 @@ void add_render(Table& table) {
   table.add("cutoff", &R::cutoff, "transmittance at which a camera ray ends").inside(0, 1);
   table
       .add("bias_rays", &R::bias_rays,
-           "share of the camera rays that path tracing follows too, to tell the bias; 0: none")
+           "share of the camera rays that are path traced too, to estimate the bias; 0: none")
       .within(0, 1);
   table
       .add("clamp", &R::clamp,
-           "most that the medium may send to a pixel in one pass; takes light away, and tells how "
+           "most that the medium may add to a pixel in one pass; removes light, and reports how "
            "much")
       .unit("radiance")
       .above(0)
       .absent("none");
   table.add("step", &R::step, "step of the march estimator").unit("voxels").above(0);
   table.add("seed", &R::seed, "random numbers; the same seed gives the same picture").at_least(0);
-  table.add("seeds", &R::seeds, "random numbers of each frame's own, or the same in all frames");
+  table.add("seeds", &R::seeds, "random numbers: others in each frame, or the same in all frames");
   table
       .add("threads", &R::threads,
            "threads; 0: all that the machine grants. Never changes the picture")
