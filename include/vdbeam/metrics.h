@@ -19,6 +19,14 @@ struct ImageError {
 ImageError image_error(const Image& image, const Image& reference);
 /// The same and FLIP.
 ImageError compare_images(const Image& image, const Image& reference);
+/// Error of an image v against the truth, of which `a` and `b` are two independent, unbiased and
+/// noisy pictures, free of their noise on average:
+///   mrse = mean((v - a)(v - b) / (m + 0.01)^2),  rmse^2 and relmse with the same product,
+///   bias = mean(v) / mean(m) - 1.
+/// m is the mean of a and b, over 5 x 5 pixels where their noise is more than 0.01 as an MRSE, so
+/// that it does not weigh itself. No pixel is left out of relmse. Where v is nearly exact mrse may
+/// come out negative; rmse is then 0. flip is not set. Throws InputError like the above.
+ImageError image_error(const Image& image, const Image& a, const Image& b);
 /// Temporal error of two frames that follow each other: the error of their difference, which is
 /// what the eye sees as flicker, mean((dv - dr)^2 / (r + 0.01)^2) with dv = after - before, dr the
 /// references' difference and r their mean. Frames with independent noise of mrse e have 2 e.

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareOptions {
-  std::string image, reference, frames;
+  std::string image, reference, second, frames;
   bool json = false;
 };
 
@@ -51,6 +51,27 @@ void print_json(const Json& json) {
 void print_error(const ImageError& error) {
   fmt::print("RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\nFLIP    {:.6g}\n",
              error.rmse, error.mrse, error.relmse, 100 * error.bias, error.flip);
+}
+
+/// Against two noisy references: free of their noise.
+int compare_with_two(const CompareOptions& options) {
+  const Image image = read_image(options.image), reference = read_image(options.reference),
+              second = read_image(options.second);
+  const ImageError error = naming(options.image, options.reference,
+                                  [&] { return image_error(image, reference, second); });
+  if (options.json)
+    print_json(Json{{"image", options.image},
+                    {"reference", options.reference},
+                    {"second", options.second},
+                    {"rmse", error.rmse},
+                    {"mrse", error.mrse},
+                    {"relmse", error.relmse},
+                    {"bias", error.bias}});
+  else
+    fmt::print("free of the references' noise:\n"
+               "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\n",
+               error.rmse, error.mrse, error.relmse, 100 * error.bias);
+  return 0;
 }
 
 int compare_stills(const CompareOptions& options) {
@@ -151,6 +172,9 @@ CommandRun add_compare(CLI::App& app) {
   app.add_option("reference", options->reference, "The true image")
       ->required()
       ->option_text("REFERENCE");
+  app.add_option("--second", options->second,
+                 "A second reference, independent of the first: errors free of their noise")
+      ->option_text("REFERENCE");
   app.add_option("-f,--frames", options->frames, "Two sequences: these frames of a.####.exr")
       ->option_text("RANGE");
   app.add_flag("--json", options->json, "Print JSON");
@@ -160,6 +184,8 @@ CommandRun add_compare(CLI::App& app) {
   relMSE  mean((v - r)^2 / (r^2 + 0.01)) without the worst 0.1 % of pixels
   bias    mean(v) / mean(r) - 1
   FLIP    mean FLIP difference at 67 pixels per degree
+With a second reference, independent of the first and unbiased like it (two renders by path with
+other seeds), products (v - a)(v - b) take the place of squares, so that their noise does not count.
 Of a sequence the means over its frames, and its temporal error, what one sees as flicker:
   mean((dv - dr)^2 / (r + 0.01)^2), dv and dr the change from one frame to the next, r the mean of
   both references. Frames whose noise is independent have twice their MRSE.
@@ -167,8 +193,13 @@ Of a sequence the means over its frames, and its temporal error, what one sees a
 Examples:
   vdbeam compare cloud.exr reference.exr
   vdbeam compare cloud.exr reference.exr --json
+  vdbeam compare cloud.exr path_seed1.exr --second path_seed2.exr
   vdbeam compare smoke.####.exr truth.####.exr -f 1-24)");
   return [options] {
+    if (!options->second.empty() && !options->frames.empty())
+      throw InputError("--second is for stills, --frames for sequences: give one of them");
+    if (!options->second.empty())
+      return compare_with_two(*options);
     return options->frames.empty() ? compare_stills(*options) : compare_sequences(*options);
   };
 }

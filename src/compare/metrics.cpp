@@ -14,6 +14,8 @@ namespace vdbeam {
 namespace {
 
 constexpr double mrse_offset = 0.01;
+/// Of two references, as MRSE of their mean: with more, pixels are weighed by their surroundings.
+constexpr double noise_that_weighs = 0.01;
 constexpr double worst_fraction = 0.001; ///< of the pixels, left out of relMSE
 
 using Planes = std::array<const float*, 3>;
@@ -57,6 +59,21 @@ double trimmed_mean(const std::vector<double>& errors) {
       ++below;
     }
   return (sum + static_cast<double>(kept - below) * threshold) / static_cast<double>(kept);
+}
+
+/// Mean over the 5 x 5 pixels around each; the border repeats.
+std::vector<double> box_mean(const std::vector<double>& plane, int width, int height) {
+  std::vector<double> result(plane.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx)
+          sum += plane[static_cast<std::size_t>(std::clamp(y + dy, 0, height - 1)) * width +
+                       static_cast<std::size_t>(std::clamp(x + dx, 0, width - 1))];
+      result[static_cast<std::size_t>(y) * width + x] = sum / 25;
+    }
+  return result;
 }
 
 /// v / r - 1, where both may be 0.
@@ -117,6 +134,41 @@ double temporal_error(const Image& before, const Image& after, const Image& refe
       sum += error * error;
     }
   return sum / (3 * static_cast<double>(pixels));
+}
+
+ImageError image_error(const Image& image, const Image& a, const Image& b) {
+  check_sizes(image, a);
+  check_sizes(image, b);
+  const Planes v = rgb_planes(image, "image"), first = rgb_planes(a, "first reference"),
+               second = rgb_planes(b, "second reference");
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  const double count = 3 * static_cast<double>(pixels);
+  std::array<std::vector<double>, 3> truth;
+  double noise = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const double x = first[c][i], y = second[c][i], mean = (x + y) / 2;
+      truth[c].push_back(mean);
+      noise += (x - y) * (x - y) / 4 / ((mean + mrse_offset) * (mean + mrse_offset)) / count;
+    }
+  if (noise > noise_that_weighs)
+    for (std::vector<double>& plane : truth)
+      plane = box_mean(plane, image.width, image.height);
+  ImageError error;
+  double squares = 0, sum_v = 0, sum_m = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const double value = v[c][i], m = truth[c][i];
+      const double product = (value - first[c][i]) * (value - second[c][i]);
+      squares += product / count;
+      error.mrse += product / ((m + mrse_offset) * (m + mrse_offset)) / count;
+      error.relmse += product / (m * m + mrse_offset) / count;
+      sum_v += value;
+      sum_m += m;
+    }
+  error.rmse = std::sqrt(std::max(0.0, squares));
+  error.bias = relative_difference(sum_v, sum_m);
+  return error;
 }
 
 ImageError compare_images(const Image& image, const Image& reference) {

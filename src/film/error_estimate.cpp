@@ -21,7 +21,6 @@ constexpr double least_mean = 0.4;
 constexpr double least_spread = 0.03;
 constexpr std::size_t fewest_batches = 3;
 constexpr std::size_t batches_of_interval = 4;
-constexpr int group_width = 8; ///< followed pixels of a group, along a side
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
 double student(double degrees) {
@@ -165,27 +164,22 @@ std::pair<double, double> jackknife(std::size_t count, const Value& without) {
   return {whole, std::sqrt(squares * (n - 1) / n)};
 }
 
-/// Differences of a batch to its probes, by groups of followed pixels.
+/// Differences of a batch to its probes, by followed pixel.
 struct ProbeDifferences {
-  std::vector<double> sums, weights; ///< groups; sums are R, G, B
+  std::vector<double> sums, weights; ///< sums are R, G, B
   double difference = 0, brightness = 0;
 };
 
 ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
                                 const std::vector<float>& means, const std::vector<float>& around) {
-  const int columns = history.columns();
-  const int across = (columns + group_width - 1) / group_width;
-  const int down = (history.rows() + group_width - 1) / group_width;
   ProbeDifferences result;
-  result.weights.resize(static_cast<std::size_t>(across) * down);
+  result.weights.resize(history.pixels().size());
   result.sums.resize(3 * result.weights.size());
   for (std::size_t i = 0; i < history.pixels().size(); ++i) {
     const double probes = static_cast<double>(history.probes(batch)[i]);
     if (probes == 0)
       continue;
-    const int x = static_cast<int>(i) % columns, y = static_cast<int>(i) / columns;
-    const auto group = static_cast<std::size_t>(y / group_width * across + x / group_width);
-    result.weights[group] += probes;
+    result.weights[i] = probes;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t k = 3 * i + c;
       const double value = static_cast<double>(history.sums(batch)[k]) / history.passes(batch);
@@ -193,7 +187,7 @@ ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
       const double typical =
           (static_cast<double>(means[k]) + neighbour_weight * static_cast<double>(around[k])) /
           (1 + neighbour_weight);
-      result.sums[3 * group + c] += difference / (std::max(typical, 0.0) + offset);
+      result.sums[3 * i + c] = difference / (std::max(typical, 0.0) + offset);
       result.difference += difference;
       result.brightness += probes * value;
     }
@@ -244,7 +238,8 @@ BiasShape bias_shape(const PassHistory& history) {
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
     batches[batch] = compare_probes(history, batch, means, around);
   });
-  // Products of independent batches: noise has none on average, bias has its square.
+  // Products of independent batches, pixel by pixel: noise has none on average, bias has its
+  // square, of whatever sign it is in the next pixel.
   std::vector<double> products(count * count), weights(count * count);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)

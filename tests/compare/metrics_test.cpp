@@ -45,6 +45,29 @@ TEST(ImageError, MatchesDefinitionsByHand) {
   EXPECT_EQ(error.flip, 0) << "only compare_images computes FLIP";
 }
 
+TEST(ImageError, TwoReferencesTakeTheirNoiseOut) {
+  // A truth of 1, a picture 0.05 off with noise of 0.1, references with noise of 0.03 (one pixel
+  // weighs by their mean) and of 0.5 (by the mean around it).
+  std::mt19937 random(3);
+  for (const float noise : {0.03f, 0.5f}) {
+    std::normal_distribution<float> off(0, noise), own(0.05f, 0.1f);
+    const auto draw = [&](std::normal_distribution<float>& spread) {
+      return make_image(256, 256, [&](int, int) {
+        return Colour{1 + spread(random), 1 + spread(random), 1 + spread(random)};
+      });
+    };
+    const Image image = draw(own), a = draw(off), b = draw(off);
+    const double mrse = (0.1 * 0.1 + 0.05 * 0.05) / (1.01 * 1.01);
+    const double count = 3 * 256 * 256;
+    // 4 standard errors of a product of two deviations; the weight is off by its own noise.
+    const double spread = static_cast<double>(noise) + 0.1;
+    const ImageError error = image_error(image, a, b);
+    EXPECT_NEAR(error.mrse, mrse, 4 * spread * spread / std::sqrt(count) + 0.03 * mrse) << noise;
+    EXPECT_NEAR(error.bias, 0.05, 4 * spread / std::sqrt(count));
+    EXPECT_GT(image_error(image, a).mrse, mrse + 0.8 * noise * noise);
+  }
+}
+
 TEST(TemporalError, MatchesItsDefinitionByHand) {
   const Image r0 = constant({1, 0, 0.5f}, 2, 1), r1 = constant({3, 0, 0.5f}, 2, 1);
   const Image v0 = constant({1.5f, 0, 0.5f}, 2, 1), v1 = constant({3.1f, 0.1f, 0.5f}, 2, 1);

@@ -125,6 +125,29 @@ TEST(BiasShape, IsTheDifferenceToTheProbes) {
   EXPECT_EQ(without.mrse, without.noise);
 }
 
+/// Kernels blur: what they take from one pixel they give to the next.
+TEST(BiasShape, SeesABiasThatChangesSignFromPixelToPixel) {
+  std::mt19937 random(12);
+  std::normal_distribution<float> noise(0, 0.3f);
+  Film film(width, height);
+  for (int i = 0; i < 40; ++i) {
+    PassImage pass = noisy_pass(8, 0.1, random);
+    for (std::size_t k = 0; k < pass.indirect.size(); ++k)
+      pass.indirect[k] += Rgb((k + k / width) % 2 == 0 ? 0.1f : -0.1f);
+    std::vector<ProbeValue> probes;
+    for (std::size_t k = static_cast<std::size_t>(i % 2); k < film.probe_pixels().size(); k += 2)
+      probes.push_back({film.probe_pixels()[k], Rgb(mean + noise(random))});
+    film.add(pass, probes);
+  }
+  const ErrorEstimate estimate = film.error_estimate(false);
+  // 4 standard errors of the mean over the pixels of products of noise of 0.3 each.
+  const double square = std::pow(0.1 / 1.01, 2);
+  EXPECT_NEAR(estimate.bias_mrse, square, 0.0025);
+  EXPECT_NEAR(estimate.bias, 0, 0.02);
+  EXPECT_LT(estimate.low, estimate.noise + square);
+  EXPECT_GT(estimate.high, estimate.noise + square);
+}
+
 TEST(ErrorEstimate, IsUnknownBeforeThereIsASpread) {
   std::mt19937 random(5);
   Film film(width, height);
