@@ -2,12 +2,18 @@
 
 #include "transport/emission.h"
 
+#include <algorithm>
+
 namespace vdbeam {
 
 namespace {
 
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
+/// Detours towards a narrow light, per scattering.
+constexpr float detours = 0.25f;
+/// A phase function that scatters this much more straight on than it does on average is worth them.
+constexpr float sharp_peak = 200;
 
 } // namespace
 
@@ -20,6 +26,73 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
   // Before its first flight there is no shadow ray left to trace.
   walk.light = world_.lights.size();
   return walk;
+}
+
+void WalkTracer::find_narrow_lights() {
+  for (const PhaseFunction& phase : world_.medium.phases)
+    peaked_.push_back(4 * pi * phase.evaluate(1) > sharp_peak);
+  // Detours would count scatterings differently.
+  if (world_.settings.max_bounces ||
+      std::find(peaked_.begin(), peaked_.end(), true) == peaked_.end())
+    return;
+  for (std::size_t i = 0; i < world_.lights.size(); ++i)
+    if (shadow_rays_[i] && world_.lights[i].narrow_direction())
+      narrow_lights_.push_back(i);
+}
+
+/// Density with which a detour towards this light would have drawn a direction, over that with
+/// which it was drawn.
+float WalkTracer::detour_density(const DrawnDirection& drawn, std::size_t light) const {
+  if (std::find(narrow_lights_.begin(), narrow_lights_.end(), light) == narrow_lights_.end() ||
+      !peaked_[static_cast<std::size_t>(drawn.phase - world_.medium.phases.data())])
+    return 0;
+  const Vec3f& towards = *world_.lights[light].narrow_direction();
+  const float chance = detours / static_cast<float>(narrow_lights_.size());
+  return chance * drawn.phase->evaluate(dot(towards, drawn.direction)) / drawn.pdf;
+}
+
+/// A detour, now and then: from the collision in a direction drawn about a narrow light's by the
+/// phase function, to the next collision, from which a shadow ray goes to that light.
+void WalkTracer::scatter_towards_light(PathWalk& walk) const {
+  if (narrow_lights_.empty() ||
+      !peaked_[static_cast<std::size_t>(walk.phase - world_.medium.phases.data())])
+    return;
+  const float u = walk.rng.uniform();
+  if (u >= detours)
+    return;
+  const std::size_t count = narrow_lights_.size();
+  const auto number = static_cast<std::size_t>(u / detours * static_cast<float>(count));
+  const Light& light = world_.lights[narrow_lights_[std::min(number, count - 1)]];
+  const Medium& medium = world_.medium;
+  const Ray& ray = walk.segment.ray;
+  const float u_lobe = walk.rng.uniform(), u1 = walk.rng.uniform(), u2 = walk.rng.uniform();
+  const Vec3f& towards = *light.narrow_direction();
+  const Vec3f direction = walk.phase->sample(towards, u_lobe, u1, u2);
+  const float p1 = walk.phase->evaluate(dot(ray.direction, direction));
+  const float drawn =
+      detours / static_cast<float>(count) * walk.phase->evaluate(dot(towards, direction));
+
+  MediumTracker tracker(medium, {{ray.origin, direction}});
+  Rgb throughput = walk.throughput;
+  Collision hit;
+  do {
+    if (!tracker.advance(walk.rng))
+      return;
+    hit = tracker.collision();
+  } while (!sample_real_collision(hit, medium.chromatic, throughput, walk.rng));
+  const Vec3f point = ray.origin + direction * hit.t;
+  const float v1 = walk.rng.uniform(), v2 = walk.rng.uniform();
+  const IncidentSample sample = light.sample_incident(point, v1, v2);
+  const PhaseFunction& phase = medium.phases[static_cast<std::size_t>(hit.volume->phase_index)];
+  const float p2 = phase.evaluate(dot(direction, sample.wi));
+  // Ways to the same path: this one, a walk with a shadow ray, a walk that meets the light.
+  const float by_walk = sample.pdf > 0 ? p1 * (1 + p2 / sample.pdf) : p1;
+  const Rgb value = sample.value * hit.volume->albedo * throughput * (p1 * p2 / (by_walk + drawn));
+  RatioTracking shadow(medium, {{point, sample.wi}, 0, sample.distance});
+  while (shadow.advance(walk.rng))
+    if (!shadow.attenuate(walk.rng))
+      break;
+  walk.indirect += value * shadow.transmittance();
 }
 
 bool WalkTracer::step(PathWalk& walk) const {
@@ -70,7 +143,9 @@ bool WalkTracer::sample_lights(PathWalk& walk) const {
     if (max_component(sample.value) <= 0)
       continue;
     const float p = walk.phase->evaluate(dot(ray.direction, sample.wi));
-    const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
+    const float detour = detour_density(walk.drawn, walk.light);
+    const float weight =
+        sample.pdf > 0 ? sample.pdf / (sample.pdf * (1 + detour) + p) : 1 / (1 + detour);
     walk.shadow_value = sample.value * (p * weight) * walk.throughput;
     walk.shadow.emplace(world_.medium, Segment{{ray.origin, sample.wi}, 0, sample.distance});
     if (walk.shadow->advance(walk.rng))
@@ -84,8 +159,10 @@ bool WalkTracer::sample_lights(PathWalk& walk) const {
 /// Draws a direction at the collision and begins the next flight.
 bool WalkTracer::scatter(PathWalk& walk) const {
   const Ray& ray = walk.segment.ray;
+  scatter_towards_light(walk);
   const Vec3f direction = walk.sample_direction(*walk.phase);
-  walk.phase_pdf = walk.phase->evaluate(dot(ray.direction, direction));
+  walk.drawn_before = walk.drawn;
+  walk.drawn = {direction, walk.phase, walk.phase->evaluate(dot(ray.direction, direction))};
   ++walk.bounces;
   walk.gathered = 0;
   walk.start(world_.medium, {{ray.origin, direction}});
@@ -127,7 +204,8 @@ Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
       continue;
     float weight = 1;
     if (shadow_rays_[i])
-      weight = walk.phase_pdf / (walk.phase_pdf + light.incident_pdf(ray.origin, ray.direction));
+      weight = walk.drawn.pdf / (walk.drawn.pdf + light.incident_pdf(ray.origin, ray.direction) *
+                                                      (1 + detour_density(walk.drawn_before, i)));
     sum += light.emitted_radiance(segment).radiance * weight;
   }
   return sum * walk.throughput;

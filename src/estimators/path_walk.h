@@ -8,6 +8,13 @@
 
 namespace vdbeam {
 
+/// How a flight's direction was drawn.
+struct DrawnDirection {
+  Vec3f direction;
+  const PhaseFunction* phase = nullptr;
+  float pdf = 0; ///< of the phase function
+};
+
 /// A camera path after its first scattering, under way: it stands at a tentative collision of its
 /// flight or, while there is one, of its shadow ray.
 struct PathWalk : Flight {
@@ -15,7 +22,7 @@ struct PathWalk : Flight {
 
   std::size_t target = 0;               ///< pixel of the image that its light goes to
   const PhaseFunction* phase = nullptr; ///< at the last real collision
-  float phase_pdf = 0;                  ///< of the flight's direction
+  DrawnDirection drawn, drawn_before;   ///< of this flight and of the one before it
   float gathered = 0;   ///< distance of the flight up to which light that it meets was taken in
   Rgb direct, indirect; ///< found so far: light that was scattered once, and more often
   std::optional<RatioTracking> shadow;
@@ -28,12 +35,19 @@ struct PathWalk : Flight {
 /// every collision, multiple importance sampling for lights that a scattered ray can meet (balance
 /// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own light is gathered along
 /// every flight as far as it goes (track-length estimator).
+///
+/// Where phase functions have a sharp peak and a light is narrow, next-event estimation alone has
+/// rare, very bright values: a walk that happens to fly at the sun scatters all of its peak. Light
+/// that is scattered twice is then also drawn the other way round, a direction about the light's
+/// first, and the two ways share it by the balance heuristic (docs/physics.md, "The reference").
 class WalkTracer {
 public:
   /// `shadow_rays`: per light, whether next-event estimation finds it.
   WalkTracer(const World& world, std::vector<bool> shadow_rays)
       : world_(world), shadow_rays_(std::move(shadow_rays)),
-        meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
+        meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {
+    find_narrow_lights();
+  }
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -53,12 +67,17 @@ public:
 private:
   bool sample_lights(PathWalk& walk) const;
   bool scatter(PathWalk& walk) const;
+  void find_narrow_lights();
+  void scatter_towards_light(PathWalk& walk) const;
+  float detour_density(const DrawnDirection& drawn, std::size_t light) const;
   void gather_light(PathWalk& walk, float t_end) const;
   Rgb lights_met(const PathWalk& walk, const Segment& segment) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;
-  bool meets_light_; ///< flights may meet light before they end
+  bool meets_light_;                       ///< flights may meet light before they end
+  std::vector<std::size_t> narrow_lights_; ///< towards which walks make detours
+  std::vector<bool> peaked_;               ///< per phase function: has a sharp forward peak
 };
 
 } // namespace vdbeam

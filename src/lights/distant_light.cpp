@@ -14,7 +14,8 @@ constexpr double widest_mask = 0.1;
 class ParallelLight final : public Light {
 public:
   ParallelLight(const Vec3d& direction, const Rgb& irradiance, const OccupiedRegion& region)
-      : direction_(direction), irradiance_(irradiance), mask_(direction_, 0, region) {}
+      : direction_(direction), towards_(-direction_), irradiance_(irradiance),
+        mask_(direction_, 0, region) {}
 
   IncidentSample sample_incident(const Vec3f&, float, float) const override {
     return {-direction_, infinity, irradiance_, 0};
@@ -32,9 +33,10 @@ public:
   Rgb power() const override { return irradiance_ * mask_.area(); }
   bool is_delta() const override { return true; }
   LightType type() const override { return LightType::distant; }
+  const Vec3f* narrow_direction() const override { return &towards_; }
 
 private:
-  Vec3f direction_;
+  Vec3f direction_, towards_;
   Rgb irradiance_;
   SilhouetteMask mask_;
 };
@@ -44,7 +46,7 @@ class DiscLight final : public Light {
 public:
   DiscLight(const Vec3d& direction, const Rgb& irradiance, double radius_degrees,
             const OccupiedRegion& region)
-      : axis_(direction), cone_{direction, one_minus_cos_degrees(radius_degrees)},
+      : axis_(direction), towards_(-axis_), cone_{direction, one_minus_cos_degrees(radius_degrees)},
         mask_(axis_, static_cast<float>(spread()), masked() ? region : OccupiedRegion{}),
         boxes_(region.boxes), irradiance_(irradiance) {
     const double solid_angle = cone_.solid_angle();
@@ -71,6 +73,7 @@ public:
   }
   bool is_delta() const override { return false; }
   LightType type() const override { return LightType::distant; }
+  const Vec3f* narrow_direction() const override { return masked() ? &towards_ : nullptr; }
 
 private:
   double spread() const {
@@ -104,7 +107,7 @@ private:
     return {{entry.point, direction}, total_ * entry.weight};
   }
 
-  Vec3f axis_;
+  Vec3f axis_, towards_;
   Cone cone_; ///< of the directions of travel
   SilhouetteMask mask_;
   EntrySampler boxes_;

@@ -55,6 +55,8 @@ public:
   virtual LightType type() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.
   virtual const Vec3d* position() const { return nullptr; }
+  /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.
+  virtual const Vec3f* narrow_direction() const { return nullptr; }
   /// True where the light comes from all around, as a sky's does.
   virtual bool surrounds() const { return false; }
   /// False where scattered rays that escape find the light as well as shadow rays would (a constant
