@@ -73,6 +73,7 @@ struct RenderResult {
   std::vector<std::string> notes; ///< for the user: repairs, empty grids, choices made
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
   int resumed_passes = 0;         ///< passes that came from a checkpoint
+  bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
 };
 
 /// Passes first to last, both included, counted from 0.
@@ -99,7 +100,8 @@ struct RenderHooks {
   std::function<void(const PassRecord&, const RenderStatistics&)> on_pass;
   /// A line for the user, as soon as it is known.
   std::function<void(const std::string&)> on_note;
-  /// Ends the render soon when it becomes true; the pass in progress is lost.
+  /// Ends the render soon when it becomes true; the pass in progress is lost. Where it is the first
+  /// one, the image is a quick look.
   const std::atomic<bool>* stop = nullptr;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
@@ -115,6 +117,8 @@ struct RenderHooks {
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
   std::function<void(RenderResult&)> on_snapshot;
+  /// Where given, gets a quick look before the first pass; it takes a quarter of a second.
+  std::function<void(RenderResult&)> on_quick_look;
 };
 
 /// A scene's volumes and lights, read and made ready for rendering.

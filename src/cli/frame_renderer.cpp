@@ -43,10 +43,14 @@ std::string start_text(const Scene& scene) {
                      scene.image.width, scene.image.height);
 }
 
+std::string passes_text(int passes) {
+  return count_text(static_cast<std::uint64_t>(passes), "pass");
+}
+
 std::string end_text(const Scene& scene, const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
-  std::string text = fmt::format("{}: {} {} in {}", output, last.pass,
-                                 last.pass == 1 ? "pass" : "passes", format_duration(last.seconds));
+  std::string text = fmt::format("{}: {} in {}", output, passes_text(last.pass),
+                                 format_duration(last.seconds));
   if (std::isfinite(last.error_estimate))
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
   if (std::isfinite(last.error_low))
@@ -59,13 +63,14 @@ std::string end_text(const Scene& scene, const RenderResult& result, const std::
   return text + ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
 }
 
-std::string stop_text(const RenderResult& result, const std::string& checkpoint) {
-  if (result.passes.empty())
-    return "interrupted before the first pass was finished; nothing is written";
-  return fmt::format("interrupted after {} {}; the same command goes on from {}, which also shows "
+std::string stop_text(const RenderResult& result, const std::string& checkpoint,
+                      const std::string& snapshot) {
+  if (result.quick_look)
+    return fmt::format("interrupted before the first pass was finished; {} is a quick look",
+                       snapshot);
+  return fmt::format("interrupted after {}; the same command goes on from {}, which also shows "
                      "the image so far",
-                     result.passes.back().pass, result.passes.back().pass == 1 ? "pass" : "passes",
-                     checkpoint);
+                     passes_text(result.passes.back().pass), checkpoint);
 }
 
 /// Bars and time left are about the passes that are asked for.
@@ -170,7 +175,11 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     }
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure});
-    remove_checkpoint(loaded.frame);
+    if (!result.quick_look)
+      remove_checkpoint(loaded.frame);
+  } else if (result.quick_look) {
+    add_metadata(result.image, loaded, result);
+    write_image(result.image, side_file(context.output, "snapshot"), {});
   }
   result.statistics.write =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -226,15 +235,28 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     add_image_metadata(so_far.image, scene, so_far, loaded.frame, loaded.hash);
     so_far.image.numbers.erase("vdbeam:complete");
     write_exr(so_far.image, path);
-    progress.note(fmt::format("{}: the image after {} passes", path, so_far.passes.back().pass));
+    progress.note(fmt::format("{}: the image after {}", path,
+                              passes_text(so_far.passes.back().pass)));
   };
+  if (options_.early_preview && !options_.files.preview.empty())
+    hooks.on_quick_look = [&](RenderResult& look) {
+      write_image(look.image, substitute_frame(options_.files.preview, loaded.frame),
+                  {options_.exposure});
+    };
   RenderResult result = render(scene, loaded.prepared, hooks);
-  const bool complete = result.stopped_by != "stop";
-  if (!result.passes.empty())
-    write_files(loaded, result);
-  progress.finish(complete ? end_text(scene, result, output(loaded.frame))
-                           : stop_text(result, hooks.checkpoint.path));
-  return complete;
+  write_files(loaded, result);
+  if (result.stopped_by == "stop") {
+    progress.finish(stop_text(result, hooks.checkpoint.path,
+                              side_file(output(loaded.frame), "snapshot")));
+    return false;
+  }
+  if (result.quick_look)
+    throw FrameError(fmt::format("{}: the time limit of {} ended the frame before its first pass "
+                                 "was finished; the image is a quick look; give it more time or "
+                                 "fewer pixels",
+                                 output(loaded.frame), format_duration(*scene.render.time)));
+  progress.finish(end_text(scene, result, output(loaded.frame)));
+  return true;
 }
 
 } // namespace vdbeam::cli

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
 #include "image/output_formats.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
 
@@ -31,8 +32,9 @@ int run_merge(const MergeOptions& options) {
     write_image(image, options.preview, {options.exposure});
   write_image(image, options.output, {options.exposure});
   if (!options.quiet)
-    fmt::print(stderr, "{}: {} passes of {} files\n", options.output,
-               image.numbers.at("vdbeam:passes"), options.partials.size());
+    fmt::print(stderr, "{}: {} of {}\n", options.output,
+               count_text(static_cast<std::uint64_t>(image.numbers.at("vdbeam:passes")), "pass"),
+               count_text(options.partials.size(), "file"));
   return 0;
 }
 

@@ -65,7 +65,7 @@ double Progress::fraction(const PassRecord& record, const RenderSettings& settin
 
 std::string Progress::describe(const PassRecord& record, const RenderSettings& settings) {
   std::string text = settings.passes ? fmt::format("{}/{} passes", record.pass, *settings.passes)
-                                     : fmt::format("{} passes", record.pass);
+                                     : count_text(static_cast<std::uint64_t>(record.pass), "pass");
   text += ", " + format_duration(record.seconds);
   const double done = fraction(record, settings);
   if (done > 0 && done < 1)

@@ -118,6 +118,7 @@ int run_render(RenderOptions& options) {
   if (!options.checkpoint.empty())
     frame.checkpoint = parse_checkpoint(options.checkpoint);
   frame.checkpoint.resume = !options.no_resume;
+  frame.early_preview = frames.size() == 1; // of a shot nobody watches every frame
   if (options.overwrite)
     options.batch.skip_existing = false;
   check_before_rendering(options, document, frames);

@@ -91,6 +91,8 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     key = settings.key;
     const TracedPhotons traced = trace_photons(world, settings);
     plan.pilot_paths += settings.paths;
+    if (input.stopped())
+      return plan.neighbours;
     for (KernelTrial* trial : {&narrow, &wide}) {
       RadiusSettings radii = radius_settings(world, plan, 0);
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);

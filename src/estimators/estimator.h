@@ -2,10 +2,10 @@
 
 #include "image/pass_image.h"
 #include "image/pixel_window.h"
+#include "math/stop_token.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 
-#include <atomic>
 #include <memory>
 
 namespace vdbeam {
@@ -19,7 +19,7 @@ public:
   virtual ~Estimator() = default;
 
   /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`. Where the
-  /// input's `stop` became true meanwhile, the image is unfinished and must be dropped.
+  /// input's `stop` asked to end meanwhile, only `image.finished_tiles` hold what the pass is to be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 };
 
@@ -30,15 +30,15 @@ struct EstimatorInput {
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
   PixelWindow window = {};
-  const std::atomic<bool>* stop = nullptr; ///< becomes true when the pass is to be abandoned
-  PhotonCache* photons = nullptr; ///< of frames with the same world; null: photons are not kept
+  const StopToken* stop = nullptr; ///< tells when the pass is to be abandoned
+  PhotonCache* photons = nullptr;  ///< of frames with the same world; null: photons are not kept
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
     return {other, camera, frame, window, stop, photons};
   }
 
-  bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
+  bool stopped() const { return stop && stop->stopped(); }
 };
 
 /// The table of estimators: what `render.estimator` names.

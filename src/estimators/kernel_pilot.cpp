@@ -155,9 +155,12 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
   const std::vector<Tile> tiles = choose_tiles(input.camera);
   std::vector<TileView> views(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-    views[i] = view_tile(input, plan, tiles[i], narrow, wide, key);
+    if (!input.stopped())
+      views[i] = view_tile(input, plan, tiles[i], narrow, wide, key);
   });
   rays += tiles.size() * TileRays::count;
+  if (input.stopped())
+    return {};
   // In the order of the tiles, so that sums are the same for any number of threads.
   double brightness = 0, pixels = 0;
   for (const TileView& view : views) {

@@ -86,7 +86,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
   shade_tiles(input_, photons_, pass, image, statistics,
               [&](TileScratch& scratch, const RngKey& key) {
                 RayMarcher marcher(photons_.world(), photons_);
-                for (int i = 0; i < TileRays::count; ++i) {
+                for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
                   const TileRays::PixelRay& ray = scratch.rays[i];
                   if (!ray.inside || ray.profile.empty())
                     continue;

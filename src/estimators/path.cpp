@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t walks_under_way = 16;
 constexpr std::uint64_t pilot_paths = 256;
+/// Collisions of every walk under way between two looks at the clock.
+constexpr std::uint32_t rounds_per_check = 128;
 
 /// Walks per camera ray: where walks are short, the depth profile that they start from costs more
 /// than they do, so several share it. From the mean length of a few light paths (not followed far:
@@ -28,6 +30,7 @@ int choose_walks_per_ray(const EstimatorInput& input) {
   pilot.skip_first_flight.assign(input.world.lights.size(), true);
   pilot.max_bounces = std::min(input.world.settings.max_bounces.value_or(16), 16);
   pilot.key = {input.world.settings.seed, input.frame, ~std::uint64_t(0)};
+  pilot.stop = input.stop;
   const double collisions = trace_photons(input.world, pilot).mean_collisions;
   return std::clamp(static_cast<int>(std::lround(48 / (1 + collisions))), 4, 32);
 }
@@ -128,7 +131,9 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
 void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
                                PassImage& image) const {
   const float share = 1 / static_cast<float>(walks_per_ray_);
-  while (walks.size() > most && !input_.stopped())
+  for (std::uint32_t rounds = 0; walks.size() > most; ++rounds) {
+    if (rounds % rounds_per_check == rounds_per_check - 1 && input_.stopped())
+      return walks.clear();
     for (std::size_t i = 0; i < walks.size();) {
       PathWalk& walk = walks[i];
       if (tracer_.step(walk)) {
@@ -141,14 +146,14 @@ void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
         walk = std::move(walks.back());
       walks.pop_back();
     }
-  if (most == 0)
-    walks.clear(); // where the render was stopped
+  }
 }
 
-std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
+void PathEstimator::render_pixels(int pass, const std::vector<std::size_t>& pixels,
+                                  PassImage& image, std::vector<std::uint8_t>& finished) const {
   const RngKey pass_key = key(pass);
-  PassImage image;
   image.resize(static_cast<int>(pixels.size()), 1, !input_.world.medium.emitters.empty());
+  finished.assign(pixels.size(), 0);
   tbb::enumerable_thread_specific<Scratch> scratches;
   // Ranges that do not depend on the threads, so that sums do not either.
   const tbb::blocked_range<std::size_t> all(0, pixels.size(), walks_under_way);
@@ -157,8 +162,16 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
     for (std::size_t i = range.begin(); i < range.end() && !input_.stopped(); ++i)
       render_pixel(pass_key, pixels[i], scratch, i, image);
     take_turns(scratch.walks, 0, image);
+    if (!input_.stopped())
+      std::fill_n(finished.begin() + static_cast<std::ptrdiff_t>(range.begin()), range.size(), 1);
   };
   tbb::parallel_for(all, render, tbb::simple_partitioner());
+}
+
+std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
+  PassImage image;
+  std::vector<std::uint8_t> finished;
+  render_pixels(pass, pixels, image, finished);
   std::vector<Rgb> result;
   for (std::size_t i = 0; i < pixels.size(); ++i)
     result.push_back(image.total(i));
@@ -171,10 +184,10 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const RngKey pass_key = key(pass);
   image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty());
   tbb::enumerable_thread_specific<Scratch> scratches;
-  for_each_tile(input_, [&](int x0, int y0, int x1, int y1) {
+  for_each_tile(input_, image, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();
     for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) {
+      for (int x = x0; x < x1 && !input_.stopped(); ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
         render_pixel(pass_key, pixel, scratch, pixel, image);
       }

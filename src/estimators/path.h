@@ -18,6 +18,11 @@ public:
   /// What these pixels of the pass show, along the same camera rays as every estimator's.
   std::vector<Rgb> radiance(int pass, const std::vector<std::size_t>& pixels) const;
 
+  /// Pixels of the picture to the pixels of a picture one row high; `finished` tells which ones
+  /// were done before the input's `stop` asked to end.
+  void render_pixels(int pass, const std::vector<std::size_t>& pixels, PassImage& image,
+                     std::vector<std::uint8_t>& finished) const;
+
 private:
   struct Scratch;
 

@@ -38,7 +38,7 @@ double count_hits(const EstimatorInput& input) {
   const Camera& camera = input.camera;
   DepthProfile profile;
   int hits = 0;
-  for (int y = 0; y < samples; ++y)
+  for (int y = 0; y < samples && !input.stopped(); ++y)
     for (int x = 0; x < samples; ++x) {
       const CameraRay ray = camera_ray(input.world, camera, (x + 0.5) * camera.width() / samples,
                                        (y + 0.5) * camera.height() / samples);

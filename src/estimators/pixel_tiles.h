@@ -9,14 +9,14 @@
 
 namespace vdbeam {
 
-inline constexpr int tile_width = 16;
+inline constexpr int tile_width = PassImage::tile_width;
 
 /// Calls visit(x0, y0, x1, y1) for every tile of the image that meets the input's window, in
 /// parallel; tiles at the right and lower edge may be smaller. Tiles lie on the same grid whatever
 /// the window, since what a tile's pixels get may depend on its other pixels. Stops between tiles
-/// when the input asks for it.
+/// when the input asks for it, and marks in `image` which ones are finished.
 template <class Visit>
-void for_each_tile(const EstimatorInput& input, const Visit& visit) {
+void for_each_tile(const EstimatorInput& input, PassImage& image, const Visit& visit) {
   const int width = input.camera.width(), height = input.camera.height();
   PixelWindow window{0, 0, width, height};
   if (!input.window.empty())
@@ -30,6 +30,7 @@ void for_each_tile(const EstimatorInput& input, const Visit& visit) {
           const int x = (first_column + tile % columns) * tile_width;
           const int y = (first_row + tile / columns) * tile_width;
           visit(x, y, std::min(x + tile_width, width), std::min(y + tile_width, height));
+          image.finished_tiles[image.tile_of(x, y)] = !input.stopped();
         }
       });
 }

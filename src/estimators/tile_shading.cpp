@@ -62,16 +62,16 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
                      photons.plan().direct_samples, rng, counts.shadow_rays);
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;
-  for_each_tile(input, [&](int x0, int y0, int, int) {
+  for_each_tile(input, image, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
     const Clock::time_point start = Clock::now();
     scratch.rays.prepare(world, camera, key, x0, y0);
     const Clock::time_point profiled = Clock::now();
-    for (int i = 0; i < TileRays::count; ++i)
+    for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (scratch.rays[i].inside)
         shade_ray(scratch.rays[i], scratch.statistics);
     const Clock::time_point shaded = Clock::now();
-    if (photons.map().size() > 0)
+    if (photons.map().size() > 0 && !input.stopped())
       gather(scratch, key);
     scratch.statistics.profile += seconds_between(start, profiled);
     scratch.statistics.direct += seconds_between(profiled, shaded);

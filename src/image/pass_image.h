@@ -2,6 +2,7 @@
 
 #include "vdbeam/vec.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace vdbeam {
@@ -18,6 +19,10 @@ struct PassImage {
   /// Opacity times the mean distance [world] of the first collision: integral of Tr sigma_t t dt.
   /// Sum over passes, divided by the sum of opacity, it is the mean depth (AOV volume_Z).
   std::vector<float> depth;
+  /// Per tile of the picture, row by row: whether its pixels that were asked for are finished, which
+  /// all of them are unless the pass was stopped.
+  std::vector<std::uint8_t> finished_tiles;
+  static constexpr int tile_width = 16;
 
   /// `glows`: there is something to hold in `emission`.
   void resize(int w, int h, bool glows = false) {
@@ -30,6 +35,14 @@ struct PassImage {
     emission.assign(glows ? n : 0, {});
     opacity.assign(n, 0);
     depth.assign(n, 0);
+    finished_tiles.assign(static_cast<std::size_t>(tile_columns()) *
+                              static_cast<std::size_t>((h + tile_width - 1) / tile_width),
+                          0);
+  }
+  int tile_columns() const { return (width + tile_width - 1) / tile_width; }
+  std::size_t tile_of(int x, int y) const {
+    return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
+           static_cast<std::size_t>(x / tile_width);
   }
   /// What the pixel shows in all.
   Rgb total(std::size_t pixel) const {

@@ -3,7 +3,10 @@
 #include "film/clamp.h"
 #include "render/arithmetic.h"
 #include "render/error_record.h"
+#include "render/quick_look.h"
 #include "report/image_metadata.h"
+#include "text/frame_range.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
 #include "vdbeam/scene_file.h"
@@ -14,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 namespace vdbeam {
@@ -24,6 +28,9 @@ std::uint64_t peak_memory() {
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
+
+/// How long a quick look may take.
+constexpr std::chrono::milliseconds quick_look_time{250};
 
 /// The part of a pass that lies in the window.
 PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
@@ -52,11 +59,28 @@ PassLoop::PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWind
                    RenderResult& result)
     : scene_(scene), hooks_(hooks), window_(window),
       whole_(window.width() == scene.image.width && window.height() == scene.image.height),
-      result_(result), film_(window.width(), window.height(), scene.glows()) {
+      result_(result), film_(window.width(), window.height(), scene.glows()), stop_(hooks.stop) {
   if (hooks.pass_range)
     first_pass_ = hooks.pass_range->first;
   if (!hooks.checkpoint.path.empty() || !hooks.partial.empty())
     pass_hash_ = pass_hash(scene);
+  if (!hooks.checkpoint.path.empty() && hooks.checkpoint.resume)
+    resume();
+  set_deadline();
+}
+
+/// Rendering time [s] that the passes may take; infinite without a limit.
+double PassLoop::limit_seconds() const {
+  return scene_.render.time && !hooks_.pass_range ? *scene_.render.time
+                                                  : std::numeric_limits<double>::infinity();
+}
+
+void PassLoop::set_deadline() {
+  const double left = limit_seconds() - earlier_seconds_;
+  constexpr double never = 1e8; // seconds; the clock could not hold infinity
+  if (left < never)
+    stop_.set_deadline(start_ + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double>(std::max(0.0, left))));
 }
 
 double PassLoop::seconds() const {
@@ -69,32 +93,23 @@ void PassLoop::note(const std::string& line) {
     hooks_.on_note(line);
 }
 
-void PassLoop::run(Estimator& estimator, BiasProbe* probe) {
-  if (!hooks_.checkpoint.path.empty() && hooks_.checkpoint.resume)
-    resume();
+void PassLoop::run(const EstimatorInput& input, Estimator& estimator, BiasProbe* probe) {
   last_attempt_ = Clock::now();
-  PassImage image;
-  while (!finished()) {
-    estimator.render_pass(next_pass(), image, result_.statistics);
-    if (stop_requested())
-      continue; // the pass was abandoned
-    std::vector<ProbeValue> probes;
-    if (probe)
-      probes = probe->trace(next_pass(), result_.statistics);
-    if (stop_requested())
-      continue;
-    if (!whole_)
-      image = cut_out(image, window_);
-    clamp(image);
-    film_.add(image, probes);
-    record();
-    serve_requests();
-  }
+  while (!finished())
+    render_pass(estimator, probe);
   if (result_.stopped_by == "stop")
     write_checkpoint();
   else if (!hooks_.partial.empty())
     write_film(file_info(), film_, hooks_.partial);
-  develop();
+  if (film_.passes() == 0) {
+    StopToken soon;
+    soon.set_deadline(Clock::now() + quick_look_time);
+    take_quick_look(input, soon, image_);
+    result_.quick_look = true;
+    note("not one pass was finished: the image is a quick look, rough and for the eye only");
+  } else {
+    develop();
+  }
   if (film_.invalid_values() > 0)
     note(fmt::format("{} pixel values were not finite and count as 0", film_.invalid_values()));
   if (scene_.render.clamp)
@@ -102,6 +117,56 @@ void PassLoop::run(Estimator& estimator, BiasProbe* probe) {
                      "passes; the estimated error does not hold it",
                      *scene_.render.clamp, 100 * result_.statistics.clamped_fraction(),
                      result_.statistics.clamped_pixels));
+}
+
+/// Adds the next pass to the film, or nothing where it was stopped.
+void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
+  const auto begin = Clock::now();
+  estimator.render_pass(next_pass(), image_, result_.statistics);
+  if (stop_.stopped())
+    return;
+  std::vector<ProbeValue> probes;
+  if (probe)
+    probes = probe->trace(next_pass(), result_.statistics);
+  if (stop_.requested())
+    return;
+  if (stop_.stopped()) // the picture needs no probes, and it is finished
+    probes.clear();
+  if (!whole_)
+    image_ = cut_out(image_, window_);
+  clamp(image_);
+  film_.add(image_, probes);
+  const double took = std::chrono::duration<double>(Clock::now() - begin).count();
+  shortest_pass_ = shortest_pass_ > 0 ? std::min(shortest_pass_, took) : took;
+  record();
+  serve_requests();
+}
+
+/// Renders a quick look into the result's image, by way of the film that has no pass yet.
+void PassLoop::take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image) {
+  input.stop = &stop;
+  fill_with_quick_look(input, image);
+  if (!whole_)
+    image = cut_out(image, window_);
+  clamp(image);
+  film_.add(image);
+  develop();
+}
+
+void PassLoop::show_quick_look(EstimatorInput input) {
+  if (!hooks_.on_quick_look || film_.passes() > 0 || stop_.stopped())
+    return;
+  StopToken soon(hooks_.stop);
+  soon.set_deadline(Clock::now() + quick_look_time);
+  PassImage image;
+  const RenderStatistics before = result_.statistics;
+  result_.quick_look = true;
+  take_quick_look(input, soon, image);
+  attempt([&] { hooks_.on_quick_look(result_); });
+  film_ = Film(window_.width(), window_.height(), scene_.glows());
+  result_.statistics = before;
+  result_.quick_look = false;
+  result_.image = {};
 }
 
 void PassLoop::clamp(PassImage& pass) {
@@ -115,14 +180,14 @@ void PassLoop::clamp(PassImage& pass) {
 
 bool PassLoop::finished() {
   const int passes = film_.passes();
-  if (stop_requested())
+  if (stop_.requested())
     return stop("stop");
   const RenderSettings& settings = scene_.render;
   if (hooks_.pass_range)
     return next_pass() > hooks_.pass_range->last && stop("passes");
   if (settings.passes && passes >= *settings.passes)
     return stop("passes");
-  if (passes > 0 && settings.time && seconds() >= *settings.time)
+  if (time_is_over())
     return stop("time");
   // Fewer passes than this do not tell their own spread.
   constexpr int trusted_passes = 4;
@@ -132,9 +197,44 @@ bool PassLoop::finished() {
   return false;
 }
 
+/// Also where a pass more would not be finished in time.
+bool PassLoop::time_is_over() const {
+  constexpr double likely_least = 0.8; // of the shortest pass so far
+  return stop_.time_is_over() || seconds() + likely_least * shortest_pass_ > limit_seconds();
+}
+
 bool PassLoop::stop(const char* reason) {
   result_.stopped_by = reason;
   return true;
+}
+
+/// Why the checkpoint does not hold this render's first passes; empty where it does.
+std::string PassLoop::why_not_resumable(const FilmFileInfo& info) const {
+  const FilmFileInfo own = file_info();
+  if (info.frame != own.frame)
+    return fmt::format("is a checkpoint of frame {}, not {}", info.frame, own.frame);
+  if (info.header.full_width != own.header.full_width ||
+      info.header.full_height != own.header.full_height)
+    return fmt::format("is a checkpoint of {}x{} pixels, not {}x{}", info.header.full_width,
+                       info.header.full_height, own.header.full_width, own.header.full_height);
+  if (info.arithmetic != own.arithmetic)
+    return "is a checkpoint of a machine that rounds differently (one of the two lacks fused "
+           "multiply-add or has another C library)";
+  if (info.pass_hash != own.pass_hash)
+    return "is a checkpoint of another scene, or of other settings than these";
+  if (!info.joins(own))
+    return "is a checkpoint of another region";
+  std::vector<int> expected(info.passes.size());
+  std::iota(expected.begin(), expected.end(), first_pass_);
+  if (info.passes != expected)
+    return fmt::format("holds the passes {}, but this render begins with pass {}",
+                       format_frame_range(info.passes), first_pass_);
+  const std::optional<int> most =
+      hooks_.pass_range ? hooks_.pass_range->last - first_pass_ + 1 : scene_.render.passes;
+  if (most && static_cast<int>(info.passes.size()) > *most)
+    return fmt::format("holds {}, more than the {} asked for", count_text(info.passes.size(), "pass"),
+                       *most);
+  return "";
 }
 
 /// Takes the film of the checkpoint if it is of this scene and holds this render's first passes. A
@@ -146,19 +246,8 @@ void PassLoop::resume() {
     return;
   try {
     const FilmFileInfo info = read_film_info(path);
-    if (info.arithmetic != arithmetic_fingerprint())
-      return note(path + ": is a checkpoint of a machine that rounds differently (one of the two "
-                         "lacks fused multiply-add or has another C library); the frame begins "
-                         "anew");
-    std::vector<int> expected(info.passes.size());
-    std::iota(expected.begin(), expected.end(), first_pass_);
-    const bool fits = info.joins(file_info()) && info.passes == expected &&
-                      (!hooks_.pass_range || info.passes.back() <= hooks_.pass_range->last) &&
-                      (!scene_.render.passes || hooks_.pass_range ||
-                       static_cast<int>(info.passes.size()) <= *scene_.render.passes);
-    if (!fits)
-      return note(path + ": is a checkpoint of another scene, frame, size or pass range; the frame "
-                         "begins anew");
+    if (const std::string reason = why_not_resumable(info); !reason.empty())
+      return note(fmt::format("{}: {}; the frame begins anew", path, reason));
     film_ = read_film(path, info);
     earlier_seconds_ = info.seconds;
     const auto number = [&](const char* name) {
@@ -173,7 +262,8 @@ void PassLoop::resume() {
     return note(fmt::format("{}; the frame begins anew", problem.what()));
   }
   result_.resumed_passes = last_checkpoint_passes_ = last_attempt_passes_ = film_.passes();
-  note(fmt::format("{}: goes on after {} passes", path, film_.passes()));
+  note(fmt::format("{}: goes on after {}", path,
+                   count_text(static_cast<std::size_t>(film_.passes()), "pass")));
   PassRecord record = estimate_errors();
   record.seconds = earlier_seconds_;
   result_.passes.push_back(record);
@@ -208,6 +298,7 @@ void PassLoop::compare(PassRecord& record) {
   // Comparing is not rendering.
   start_ += std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(seconds() - record.seconds));
+  set_deadline();
 }
 
 void PassLoop::serve_requests() {

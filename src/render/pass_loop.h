@@ -15,8 +15,13 @@ public:
   PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWindow& window,
            RenderResult& result);
 
-  /// `probe` tells the bias; null where the estimator has none or nobody asks.
-  void run(Estimator& estimator, BiasProbe* probe);
+  /// What the estimator's input is to have as its `stop`.
+  const StopToken& stop_token() const { return stop_; }
+  /// Shows a quick look to the caller who asked for one, before there is any pass.
+  void show_quick_look(EstimatorInput input);
+  /// `probe` tells the bias; null where the estimator has none or nobody asks. `input` is that of
+  /// the estimator.
+  void run(const EstimatorInput& input, Estimator& estimator, BiasProbe* probe);
 
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
 
@@ -26,6 +31,7 @@ private:
   bool finished();
   bool stop(const char* reason);
   void resume();
+  std::string why_not_resumable(const FilmFileInfo& info) const;
   void record();
   PassRecord estimate_errors() const;
   void compare(PassRecord& record);
@@ -36,7 +42,11 @@ private:
   void write_checkpoint();
   void develop();
   FilmFileInfo file_info() const;
-  bool stop_requested() const { return hooks_.stop && *hooks_.stop; }
+  bool time_is_over() const;
+  void set_deadline();
+  void render_pass(Estimator& estimator, BiasProbe* probe);
+  void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
+  double limit_seconds() const;
   void note(const std::string& line);
   double seconds() const;
   int next_pass() const { return first_pass_ + film_.passes(); }
@@ -50,7 +60,10 @@ private:
   int first_pass_ = 0;
   /// Seconds count from here, so that what an estimator tries out before its first pass is in them.
   Clock::time_point start_ = Clock::now();
+  StopToken stop_;
   double earlier_seconds_ = 0; ///< of the passes that came from a checkpoint
+  double shortest_pass_ = 0;   ///< [s] of those rendered here; 0: there is none
+  PassImage image_;            ///< of the pass in progress
   std::uint64_t photons_before_ = 0;
   Clock::time_point last_attempt_; ///< to write a checkpoint
   int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;

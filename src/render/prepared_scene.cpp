@@ -136,6 +136,10 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
   prepared->world =
       std::make_shared<const World>(build_world(scene, std::move(grids), std::move(emissions)));
   prepared->seconds_build = prepared->world->seconds_build;
+  for (ReadVolume& read : prepared->volumes)
+    if (read.index >= 0 &&
+        prepared->world->medium.volumes[static_cast<std::size_t>(read.index)].limited)
+      read.identity.clear(); // another frame's extinction may ask for other limits
   return prepared;
 }
 

@@ -81,8 +81,10 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
-  const EstimatorInput input{world, camera, key, window, hooks.stop, prepared->photons.get()};
   PassLoop loop(scene, hooks, window, result);
+  const EstimatorInput input{
+      world, camera, key, window, &loop.stop_token(), prepared->photons.get()};
+  loop.show_quick_look(input);
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   std::optional<BiasProbe> probe;
@@ -90,7 +92,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
     probe.emplace(input, window, loop.probe_pixels(), scene.render.bias_rays);
   result.statistics.pilot =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  loop.run(*estimator, probe ? &*probe : nullptr);
+  loop.run(input, *estimator, probe ? &*probe : nullptr);
   return result;
 }
 

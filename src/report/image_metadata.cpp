@@ -85,7 +85,10 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:estimator"] = enum_name(scene.render.estimator);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   image.numbers["vdbeam:frame"] = frame;
-  if (result.stopped_by != "stop")
+  if (result.quick_look) {
+    image.metadata["vdbeam:quickLook"] = "not one pass was finished";
+    image.numbers["vdbeam:passes"] = 0;
+  } else if (result.stopped_by != "stop")
     image.numbers["vdbeam:complete"] = 1; // what --skip-existing looks for
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   if (!result.passes.empty()) {

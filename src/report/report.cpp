@@ -157,6 +157,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
     clamp["pixels"] = statistics.clamped_pixels;
   }
   report["stopped_by"] = result.stopped_by;
+  report["quick_look"] = result.quick_look;
   report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);
   return report;

@@ -67,6 +67,11 @@ std::string join_words(const std::vector<std::string>& words, const std::string&
   return text;
 }
 
+std::string count_text(std::uint64_t count, const std::string& noun) {
+  const std::string ending = count == 1 ? "" : noun.ends_with('s') ? "es" : "s";
+  return fmt::format("{} {}{}", count, noun, ending);
+}
+
 std::optional<double> parse_duration(const std::string& text) {
   const char* p = text.data();
   const char* const end = p + text.size();

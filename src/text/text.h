@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ std::string one_line(const std::string& text);
 
 /// "a, b and c" (or the last joined by `conjunction`).
 std::string join_words(const std::vector<std::string>& words, const std::string& conjunction);
+
+/// "1 pass", "12 passes".
+std::string count_text(std::uint64_t count, const std::string& noun);
 
 /// Seconds of "90", "60s", "5m", "1h" or "1h30m"; nothing where the text is no duration.
 std::optional<double> parse_duration(const std::string& text);

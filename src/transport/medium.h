@@ -24,6 +24,7 @@ struct Volume {
   Rgb albedo{1, 1, 1};
   int phase_index = 0;  ///< index into Medium::phases
   float voxel_size = 1; ///< smallest edge of a voxel, render units
+  bool limited = false; ///< densities were reduced to what can be tracked
 
   Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
   Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }

@@ -14,6 +14,8 @@ namespace {
 
 /// Paths in a task: its photons stay together and in order, so the list does not depend on threads.
 constexpr std::uint64_t paths_per_chunk = 512;
+/// Collisions of every path under way between two looks at the clock.
+constexpr std::uint32_t rounds_per_check = 128;
 
 /// First path number of each light: lights share the paths by power.
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths) {
@@ -57,8 +59,11 @@ public:
     std::array<std::optional<LightPath>, paths_under_way> paths;
     std::size_t light = 0;
     std::uint64_t next = begin;
-    for (bool any = true; any && !stopped();) {
+    std::uint32_t rounds = 0;
+    for (bool any = true; any;) {
       any = false;
+      if (rounds++ % rounds_per_check == 0 && settings_.stop && settings_.stop->stopped())
+        return;
       for (std::optional<LightPath>& path : paths) {
         if (path && !step_flight(world_.medium, *path, *this))
           path.reset();
@@ -101,8 +106,6 @@ public:
   std::uint64_t collisions = 0;
 
 private:
-  bool stopped() const { return settings_.stop && settings_.stop->load(std::memory_order_relaxed); }
-
   bool may_store(const LightPath& path) const {
     return path.bounces > 0 || !settings_.skip_first_flight[path.light];
   }

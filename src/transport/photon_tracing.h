@@ -1,9 +1,9 @@
 #pragma once
 
+#include "math/stop_token.h"
 #include "photonmap/photon.h"
 #include "transport/world.h"
 
-#include <atomic>
 #include <memory>
 
 namespace vdbeam {
@@ -24,8 +24,8 @@ struct PhotonPassSettings {
   bool directions = true; ///< false: no phase function needs them
   Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
   RngKey key;
-  /// Becomes true when the result is not wanted any more: it comes soon, and is incomplete.
-  const std::atomic<bool>* stop = nullptr;
+  /// Tells when the result is not wanted any more: it comes soon then, and is incomplete.
+  const StopToken* stop = nullptr;
 };
 
 /// True where trace_photons gives the same photons in the same world. `stop` is not compared: the

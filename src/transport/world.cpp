@@ -2,6 +2,8 @@
 
 #include "lights/volume_light.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 
@@ -90,14 +92,35 @@ int phase_index_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings
   return static_cast<int>(phases.size()) - 1;
 }
 
+/// Extinction per render unit beyond which a mean free path is no longer than what single precision
+/// resolves: a walk would never move. What goes into two million mean free paths does not come back
+/// in any way that could be seen, so a denser medium looks the same.
+constexpr double most_extinction = 1 << 21;
+
+/// Keeps densities to what can be tracked.
+void limit_density(Volume& volume, const VolumeSettings& settings, double scale,
+                   std::vector<std::string>& notes) {
+  const auto extinction = static_cast<double>(volume.extinction);
+  const auto densest = static_cast<double>(volume.field.maximum());
+  if (!(densest * extinction > most_extinction))
+    return;
+  const auto most = static_cast<float>(most_extinction / extinction);
+  volume.limited = most > 0 && volume.field.limit_values(most) > 0;
+  notes.push_back(fmt::format("{}: densities up to {:.2g} are more than can be told from {:.2g} (an "
+                              "extinction of {:.2g} per world unit), and count as that",
+                              settings.file.empty() ? "a volume" : settings.file, densest,
+                              static_cast<double>(most), most_extinction * scale));
+}
+
 Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
-                   const Affine& local_to_render, double scale) {
+                   const Affine& local_to_render, double scale, std::vector<std::string>& notes) {
   Volume volume;
   volume.field = std::move(grid.field);
-  volume.majorants = MajorantGrid(volume.field);
-  volume.to_local = Affinef(local_to_render.inverse());
   const float strongest = max_component(settings.extinction_scale);
   volume.extinction = static_cast<float>(settings.extinction * strongest / scale);
+  limit_density(volume, settings, scale, notes);
+  volume.majorants = MajorantGrid(volume.field);
+  volume.to_local = Affinef(local_to_render.inverse());
   volume.channel_scale = strongest > 0 ? settings.extinction_scale / strongest : Rgb(1);
   volume.albedo = settings.albedo;
   double edge = infinity;
@@ -196,7 +219,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
       continue;
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
-    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale);
+    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, world.notes);
     volume.phase_index = phase_index_of(world.medium.phases, known, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));

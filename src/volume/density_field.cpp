@@ -115,6 +115,22 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
   occupied_ = summary.occupied;
 }
 
+std::size_t DensityField::limit_values(float most) {
+  if (maximum_ <= most)
+    return 0;
+  std::size_t changed = 0;
+  for (std::vector<float>* values : {&bricks_, &uniform_values_})
+    for (float& value : *values)
+      if (value > most) {
+        value = most;
+        ++changed;
+      }
+  for (float& value : maxima_)
+    value = std::min(value, most);
+  maximum_ = most;
+  return changed;
+}
+
 std::size_t DensityField::bytes() const {
   return cells_.bytes() + bricks_.bytes() + uniform_values_.bytes() + maxima_.bytes();
 }
