@@ -49,8 +49,8 @@ std::string passes_text(int passes) {
 
 std::string end_text(const Scene& scene, const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
-  std::string text = fmt::format("{}: {} in {}", output, passes_text(last.pass),
-                                 format_duration(last.seconds));
+  std::string text =
+      fmt::format("{}: {} in {}", output, passes_text(last.pass), format_duration(last.seconds));
   if (std::isfinite(last.error_estimate))
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
   if (std::isfinite(last.error_low))
@@ -235,8 +235,8 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     add_image_metadata(so_far.image, scene, so_far, loaded.frame, loaded.hash);
     so_far.image.numbers.erase("vdbeam:complete");
     write_exr(so_far.image, path);
-    progress.note(fmt::format("{}: the image after {}", path,
-                              passes_text(so_far.passes.back().pass)));
+    progress.note(
+        fmt::format("{}: the image after {}", path, passes_text(so_far.passes.back().pass)));
   };
   if (options_.early_preview && !options_.files.preview.empty())
     hooks.on_quick_look = [&](RenderResult& look) {
@@ -246,8 +246,8 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   RenderResult result = render(scene, loaded.prepared, hooks);
   write_files(loaded, result);
   if (result.stopped_by == "stop") {
-    progress.finish(stop_text(result, hooks.checkpoint.path,
-                              side_file(output(loaded.frame), "snapshot")));
+    progress.finish(
+        stop_text(result, hooks.checkpoint.path, side_file(output(loaded.frame), "snapshot")));
     return false;
   }
   if (result.quick_look)

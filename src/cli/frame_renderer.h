@@ -20,7 +20,7 @@ struct FrameOptions {
   FrameFiles files;
   double exposure = 0;
   bool quiet = false;
-  bool early_preview = false; ///< the preview shows a quick look before the first pass
+  bool early_preview = false;          ///< the preview shows a quick look before the first pass
   std::optional<PassRange> pass_range; ///< the output is a partial image of these passes
   std::optional<PixelRegion> region;
   CheckpointSettings checkpoint; ///< without its path
@@ -45,7 +45,8 @@ public:
   /// Renders, with progress on stderr, until the scene's limit or a signal ends it. The image is
   /// written only when it is complete, else a checkpoint; without a whole pass it is a quick look,
   /// under its own name where the time limit ended it (and a FrameError says so), as a snapshot
-  /// where a signal did. False where a signal ended it. Throws InputError and FrameError. `index` is the frame's place in the batch.
+  /// where a signal did. False where a signal ended it. Throws InputError and FrameError. `index`
+  /// is the frame's place in the batch.
   bool render_frame(const LoadedFrame& loaded, const std::string& title, FarmProgress& farm,
                     std::size_t index) const;
 

@@ -19,7 +19,8 @@ public:
   virtual ~Estimator() = default;
 
   /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`. Where the
-  /// input's `stop` asked to end meanwhile, only `image.finished_tiles` hold what the pass is to be.
+  /// input's `stop` asked to end meanwhile, only `image.finished_tiles` hold what the pass is to
+  /// be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 };
 

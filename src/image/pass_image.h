@@ -19,8 +19,8 @@ struct PassImage {
   /// Opacity times the mean distance [world] of the first collision: integral of Tr sigma_t t dt.
   /// Sum over passes, divided by the sum of opacity, it is the mean depth (AOV volume_Z).
   std::vector<float> depth;
-  /// Per tile of the picture, row by row: whether its pixels that were asked for are finished, which
-  /// all of them are unless the pass was stopped.
+  /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
+  /// which all of them are unless the pass was stopped.
   std::vector<std::uint8_t> finished_tiles;
   static constexpr int tile_width = 16;
 

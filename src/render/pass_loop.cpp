@@ -232,8 +232,8 @@ std::string PassLoop::why_not_resumable(const FilmFileInfo& info) const {
   const std::optional<int> most =
       hooks_.pass_range ? hooks_.pass_range->last - first_pass_ + 1 : scene_.render.passes;
   if (most && static_cast<int>(info.passes.size()) > *most)
-    return fmt::format("holds {}, more than the {} asked for", count_text(info.passes.size(), "pass"),
-                       *most);
+    return fmt::format("holds {}, more than the {} asked for",
+                       count_text(info.passes.size(), "pass"), *most);
   return "";
 }
 

@@ -106,10 +106,11 @@ void limit_density(Volume& volume, const VolumeSettings& settings, double scale,
     return;
   const auto most = static_cast<float>(most_extinction / extinction);
   volume.limited = most > 0 && volume.field.limit_values(most) > 0;
-  notes.push_back(fmt::format("{}: densities up to {:.2g} are more than can be told from {:.2g} (an "
-                              "extinction of {:.2g} per world unit), and count as that",
-                              settings.file.empty() ? "a volume" : settings.file, densest,
-                              static_cast<double>(most), most_extinction * scale));
+  notes.push_back(
+      fmt::format("{}: densities up to {:.2g} are more than can be told from {:.2g} (an "
+                  "extinction of {:.2g} per world unit), and count as that",
+                  settings.file.empty() ? "a volume" : settings.file, densest,
+                  static_cast<double>(most), most_extinction * scale));
 }
 
 Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,

@@ -51,8 +51,8 @@ public:
   /// Largest value that any sample inside the cell can take.
   float cell_maximum(std::size_t offset) const { return maxima_[offset]; }
   float maximum() const { return maximum_; }
-  /// Replaces greater values by `most` > 0; returns how many values of bricks and uniform cells that
-  /// were.
+  /// Replaces greater values by `most` > 0; returns how many values of bricks and uniform cells
+  /// that were.
   std::size_t limit_values(float most);
 
   /// Trilinear sample at local coordinates; 0 outside.

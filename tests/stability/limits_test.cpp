@@ -141,15 +141,62 @@ TEST(Limits, WhatPhotonsDoNotResolveIsNoted) {
   EXPECT_TRUE(noted(scene, "narrow"));
 }
 
+/// The picture is there, every pixel of it, but it does not count as one.
 TEST(Limits, TimeShorterThanOnePass) {
   const TempFolder folder;
   Scene scene = file_scene(folder);
   scene.render.time = 1e-9;
-  const RenderResult result = render(scene);
-  EXPECT_EQ(result.stopped_by, "time");
-  ASSERT_EQ(result.passes.size(), 1u); // one whole pass, never half a picture
-  for (const float value : result.image.find("R")->data)
-    EXPECT_GT(value, 0);
+  for (const EstimatorType type :
+       {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
+    scene.render.estimator = type;
+    const RenderResult result = render(scene);
+    EXPECT_EQ(result.stopped_by, "time");
+    EXPECT_EQ(result.passes.size(), 0u);
+    EXPECT_TRUE(result.quick_look);
+    for (const float value : result.image.find("R")->data)
+      EXPECT_GT(value, 0);
+  }
+}
+
+TEST(Limits, QuickLookBeforeTheFirstPassChangesNothing) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  scene.render.passes = 2;
+  const RenderResult without = render(scene);
+  int looks = 0;
+  RenderHooks hooks;
+  hooks.on_quick_look = [&](RenderResult& look) {
+    ++looks;
+    EXPECT_TRUE(look.quick_look);
+    for (const float value : look.image.find("R")->data)
+      EXPECT_GT(value, 0);
+  };
+  const RenderResult with = render(scene, hooks);
+  EXPECT_EQ(looks, 1);
+  EXPECT_FALSE(with.quick_look);
+  for (std::size_t c = 0; c < without.image.channels.size(); ++c)
+    EXPECT_EQ(with.image.channels[c].data, without.image.channels[c].data);
+}
+
+/// A pass may not take more work where a density is absurd than where it is merely great: what a
+/// damaged file holds. Without a limit the walks stand still between two numbers of single
+/// precision.
+TEST(Limits, AbsurdDensitiesAreBoundedWork) {
+  for (const EstimatorType type :
+       {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
+    test::MemoryScene scene;
+    const Vec3<int> cells{4, 4, 4};
+    const auto damaged = [](int i, int j, int k) {
+      return i == 13 && j == 14 && k == 15 ? 2.7e32 : test::lattice_noise(i, j, k);
+    };
+    scene.add(test::closed_field(cells, damaged), test::box_map(cells, Vec3d(-1), Vec3d(1)));
+    scene.add_light(LightType::distant).direction = {0.3, -0.9, -0.2};
+    scene.add_light(LightType::environment).radiance = Rgb(0.1f);
+    scene.look({0, 0, 6}, {0, 0, 0}, 24, 16, 16);
+    scene.scene.render.photons = 1000;
+    const test::PassMeans means = test::render_sound(scene, type, 1, "absurd density");
+    EXPECT_GT(means.total[0].mean(), 0);
+  }
 }
 
 TEST(Limits, OnePass) {
