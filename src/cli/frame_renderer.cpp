@@ -99,9 +99,10 @@ std::string FrameRenderer::checkpoint_path(int frame) const {
   return side_file(output(frame), "checkpoint");
 }
 
-void FrameRenderer::remove_checkpoint(int frame) const {
-  std::error_code ignored; // a checkpoint that stays does no harm
+void FrameRenderer::remove_side_files(int frame) const {
+  std::error_code ignored; // a file that stays does no harm
   std::filesystem::remove(checkpoint_path(frame), ignored);
+  std::filesystem::remove(side_file(output(frame), "snapshot"), ignored);
 }
 
 std::string FrameRenderer::region_text() const {
@@ -176,7 +177,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure});
     if (!result.quick_look)
-      remove_checkpoint(loaded.frame);
+      remove_side_files(loaded.frame);
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);
     write_image(result.image, side_file(context.output, "snapshot"), {});

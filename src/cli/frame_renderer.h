@@ -56,8 +56,8 @@ public:
   /// Why the frame's image on disk is not the finished one of this scene; empty where it is.
   std::string why_unfinished(const LoadedFrame& loaded) const;
 
-  /// Removes the frame's checkpoint, which a finished image has outlived.
-  void remove_checkpoint(int frame) const;
+  /// Removes the frame's checkpoint and snapshot, which a finished image has outlived.
+  void remove_side_files(int frame) const;
 
 private:
   std::string output(int frame) const;
