@@ -32,6 +32,15 @@ std::uint64_t peak_memory() {
 /// How long a quick look may take.
 constexpr std::chrono::milliseconds quick_look_time{250};
 
+bool is_finished(const PassImage& pass, const PixelWindow& window) {
+  constexpr int tile = PassImage::tile_width;
+  for (int y = window.y0 / tile * tile; y < window.y1; y += tile)
+    for (int x = window.x0 / tile * tile; x < window.x1; x += tile)
+      if (!pass.finished_tiles[pass.tile_of(x, y)])
+        return false;
+  return true;
+}
+
 /// The part of a pass that lies in the window.
 PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
   PassImage part;
@@ -123,7 +132,7 @@ void PassLoop::run(const EstimatorInput& input, Estimator& estimator, BiasProbe*
 void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
   const auto begin = Clock::now();
   estimator.render_pass(next_pass(), image_, result_.statistics);
-  if (stop_.stopped())
+  if (stop_.requested() || !is_finished(image_, window_))
     return;
   std::vector<ProbeValue> probes;
   if (probe)

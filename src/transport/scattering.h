@@ -58,7 +58,7 @@ inline bool survive_roulette(float threshold, Rgb& weight, Rng& rng) {
 /// of what it brings back stay constant both. A path that begins deep inside, or whose collisions
 /// lie closer together than single precision can tell apart, does not come back like that; its work
 /// would have no bound. So from `late` collisions on the chance is 1 / 4, which bounds the mean
-/// number of collisions by 100,000 whatever the medium.
+/// number of collisions by 50,000 whatever the medium.
 class LengthRoulette {
 public:
   /// Counts one collision. False where the path ends.
