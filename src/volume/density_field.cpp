@@ -118,17 +118,21 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
 std::size_t DensityField::limit_values(float most) {
   if (maximum_ <= most)
     return 0;
-  std::size_t changed = 0;
-  for (std::vector<float>* values : {&bricks_, &uniform_values_})
-    for (float& value : *values)
-      if (value > most) {
-        value = most;
-        ++changed;
-      }
-  for (float& value : maxima_)
-    value = std::min(value, most);
+  // Other fields may share the arrays.
+  const auto limit = [most](SharedArray<float>& values) {
+    std::vector<float> limited(values.data(), values.data() + values.size());
+    std::size_t changed = 0;
+    for (float& value : limited) {
+      changed += value > most;
+      value = std::min(value, most);
+    }
+    values = SharedArray<float>(std::move(limited));
+    return changed;
+  };
+  limit(maxima_);
   maximum_ = most;
-  return changed;
+  const std::size_t in_bricks = limit(bricks_);
+  return in_bricks + limit(uniform_values_);
 }
 
 std::size_t DensityField::bytes() const {
