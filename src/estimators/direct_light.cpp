@@ -94,6 +94,8 @@ public:
     if (!(distances_.opacity(c) > 0))
       return sum;
     const ScatterPoint point = distances_.sample(u, c);
+    if (!(point.pdf > 0)) // in a medium too dense for single precision to place the point
+      return sum;
     for (const SampledLight& light : lights_) {
       const float other = light.near ? light.near->pdf(point.t) : 0;
       sum += scattered(point, *light.light) * (point.pdf / (point.pdf + other));

@@ -12,11 +12,18 @@ float DistanceSampler::channel_tau(std::size_t knot, int c) const {
 }
 
 ScatterPoint DistanceSampler::sample(float u, int c) {
-  const float tau = std::min(-std::log1p(-u * opacity(c)), channel_tau(profile_.knots() - 1, c));
+  const float end = channel_tau(profile_.knots() - 1, c);
+  const float tau = std::min(-std::log1p(-u * opacity(c)), end);
+  // Among pieces that meet at this optical depth, the last one, so that empty ones are skipped; at
+  // the very end the first one, since only empty ones can follow.
+  const auto lies_behind = [&](std::size_t knot) {
+    const float at_knot = channel_tau(knot, c);
+    return tau < end ? at_knot <= tau : at_knot < tau;
+  };
   std::size_t low = 0, high = profile_.knots() - 1;
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    (channel_tau(middle, c) <= tau ? low : high) = middle;
+    (lies_behind(middle) ? low : high) = middle;
   }
   const float a = channel_tau(low, c), b = channel_tau(low + 1, c);
   const float fraction = b > a ? std::clamp((tau - a) / (b - a), 0.0f, 1.0f) : 0.5f;

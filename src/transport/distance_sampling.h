@@ -28,7 +28,8 @@ public:
   float opacity(int c) const { return -std::expm1(-end_[c]); }
 
   /// A point drawn from channel c's distribution, where c was chosen with equal chance if the
-  /// medium is chromatic and is 0 otherwise. Requires opacity(c) > 0.
+  /// medium is chromatic and is 0 otherwise. It lies where that channel's extinction is not 0, also
+  /// for u = 1, to which stratified numbers round. Requires u in [0, 1] and opacity(c) > 0.
   ScatterPoint sample(float u, int c);
 
   /// The point at distance t, inside the profile, with the weights and the density that `sample`

@@ -147,5 +147,28 @@ TEST(DistanceSampler, OverlappingChromaticVolumesShare) {
                   {{noise, -0.5}, {other_noise, static_cast<double>(-0.33f)}}, 1);
 }
 
+// Stratified numbers in [0, 1) round to 1. A profile may end in pieces without medium: nothing can
+// be drawn there, and a density of 0 would make the weights of multiple importance sampling 0 / 0.
+TEST(DistanceSampler, DrawsOfZeroAndOneLieInTheMedium) {
+  const Value between_air = [](int i, int, int) { return i >= 5 && i <= 9 ? 1.0 : 0.0; };
+  const Rgb grey(1), coloured{1, 0.5f, 0.1f};
+  for (const Rgb& scale : {grey, coloured}) {
+    const Medium medium = one(between_air, 30, scale);
+    const Ray ray{{-1, 0.03f, 0.01f}, {1, 0, 0}};
+    DepthProfile profile;
+    profile.build(medium, ray, 0, 3, 1e-7f);
+    const std::size_t last = profile.knots() - 1;
+    ASSERT_GT(last, 2U);
+    ASSERT_EQ(profile.total(last), profile.total(last - 1)) << "the profile must end in air";
+    DistanceSampler sampler(medium, ray, profile);
+    for (const float u : {0.0f, std::nextafter(1.0f, 0.0f), 1.0f}) {
+      const ScatterPoint point = sampler.sample(u, 0);
+      EXPECT_GT(point.pdf, 0) << "u = " << u;
+      EXPECT_GE(point.position.x, -0.5f + 4 * voxel) << "u = " << u;
+      EXPECT_LE(point.position.x, -0.5f + 10 * voxel) << "u = " << u;
+    }
+  }
+}
+
 } // namespace
 } // namespace vdbeam
