@@ -1,6 +1,7 @@
 #include "cli/batch.h"
 
 #include "cli/signals.h"
+#include "cli/streams.h"
 #include "machine/threads.h"
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
@@ -47,10 +48,8 @@ std::string Batch::title(std::size_t index) const {
 }
 
 void Batch::say(const std::string& line) const {
-  if (options_.frame.quiet)
-    return;
-  fmt::print(stderr, "{}\n", line);
-  std::fflush(stderr);
+  if (!options_.frame.quiet)
+    log_text(line + '\n'); // a summary has several lines
 }
 
 Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
@@ -123,7 +122,7 @@ void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& o
   farm_.frame_at(index, 1);
   summary_.outcomes.push_back(outcome);
   if (frames_.size() > 1)
-    fmt::print(stderr, "{}: {}\n", title(index), outcome.reason);
+    log("{}: {}", title(index), outcome.reason);
 }
 
 /// Renders or skips one frame.

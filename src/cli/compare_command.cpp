@@ -1,11 +1,11 @@
 #include "cli/commands.h"
+#include "cli/streams.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -45,12 +45,13 @@ void add_error(Json& json, const ImageError& error) {
 }
 
 void print_json(const Json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  print_output(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-void print_error(const ImageError& error) {
-  fmt::print("RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\nFLIP    {:.6g}\n",
-             error.rmse, error.mrse, error.relmse, 100 * error.bias, error.flip);
+std::string error_text(const ImageError& error) {
+  return fmt::format(
+      "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\nFLIP    {:.6g}\n",
+      error.rmse, error.mrse, error.relmse, 100 * error.bias, error.flip);
 }
 
 /// Against two noisy references: free of their noise.
@@ -79,7 +80,7 @@ int compare_stills(const CompareOptions& options) {
   const ImageError error =
       naming(options.image, options.reference, [&] { return compare_images(image, reference); });
   if (!options.json) {
-    print_error(error);
+    print_output(error_text(error));
     return 0;
   }
   Json json{{"image", options.image}, {"reference", options.reference}};
@@ -123,9 +124,8 @@ public:
                           sum_.bias / count, sum_.flip / count};
     const double temporal = temporal_ / (count - 1);
     if (!options_.json) {
-      fmt::print("means of {} frames:\n", frames_.size());
-      print_error(mean);
-      fmt::print("temporal error    {:.6g}\n", temporal);
+      print_output(fmt::format("means of {} frames:\n{}temporal error    {:.6g}\n", frames_.size(),
+                               error_text(mean), temporal));
       return;
     }
     Json json{{"image", options_.image}, {"reference", options_.reference}};

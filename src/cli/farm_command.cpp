@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
+#include "cli/streams.h"
 #include "farm/engines.h"
 #include "image/output_formats.h"
 #include "machine/atomic_file.h"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
@@ -135,23 +135,21 @@ int run_farm(const FarmOptions& options, const FarmEngine& engine) {
   const FarmJob job = make_job(options);
   const std::string text = engine.write(job);
   if (job.job_file.empty()) {
-    fmt::print("{}", text);
+    print_output(text);
   } else {
     AtomicFile file(job.job_file);
     file.write(text.data(), text.size());
     file.commit();
   }
   const int tasks = task_count(job);
-  fmt::print(stderr, "{} frames in {} tasks{}, each of {} threads and {} MiB; submit with: {}\n",
-             job.frames.size(), tasks * job.splits,
-             job.splits > 1 ? fmt::format(" and {} merges", tasks) : "", job.threads,
-             job.memory_mib, engine.how_to_submit(job));
+  log("{} frames in {} tasks{}, each of {} threads and {} MiB; submit with: {}", job.frames.size(),
+      tasks * job.splits, job.splits > 1 ? fmt::format(" and {} merges", tasks) : "", job.threads,
+      job.memory_mib, engine.how_to_submit(job));
   if (tasks > usual_array_limit)
-    fmt::print(stderr,
-               "note: Slurm takes arrays of {} tasks unless MaxArraySize was raised; --chunk {} "
-               "makes few enough\n",
-               usual_array_limit,
-               (static_cast<int>(job.frames.size()) + usual_array_limit - 1) / usual_array_limit);
+    log("note: Slurm takes arrays of {} tasks unless MaxArraySize was raised; --chunk {} "
+        "makes few enough",
+        usual_array_limit,
+        (static_cast<int>(job.frames.size()) + usual_array_limit - 1) / usual_array_limit);
   return 0;
 }
 

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/streams.h"
 
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -42,7 +43,7 @@ CommandRun add_help(CLI::App& app) {
   vdbeam help render
   vdbeam help farm slurm)");
   return [&app, names] {
-    fmt::print("{}", help_of(*app.get_parent(), *names));
+    print_output(help_of(*app.get_parent(), *names));
     return 0;
   };
 }

@@ -1,12 +1,12 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
+#include "cli/streams.h"
 #include "machine/atomic_file.h"
 #include "scene/scene_document.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -23,7 +23,7 @@ struct InitOptions {
 
 int run_init(const InitOptions& options) {
   if (options.output.empty()) {
-    fmt::print("{}", scene_template(options.volume));
+    print_output(scene_template(options.volume));
     return 0;
   }
   check_output_path("-o", options.output, {1});
@@ -36,7 +36,7 @@ int run_init(const InitOptions& options) {
   AtomicFile file(options.output);
   file.write(text.data(), text.size());
   file.commit();
-  fmt::print(stderr, "{0}: written; render it with: vdbeam render {0}\n", options.output);
+  log("{0}: written; render it with: vdbeam render {0}", options.output);
   return 0;
 }
 

@@ -1,15 +1,16 @@
 #include "cli/commands.h"
 #include "cli/help_format.h"
+#include "cli/streams.h"
 #include "cli/terminal.h"
 #include "cli/usage_error.h"
 #include "report/versions.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
 
-#include <cstdio>
 #include <exception>
 #include <fmt/format.h>
 #include <new>
+#include <sstream>
 
 namespace {
 
@@ -39,12 +40,8 @@ std::string version_text() {
   return text;
 }
 
-/// One line on stderr, whatever a library or a damaged file put in it.
-int fail(std::string line, ExitCode code) {
-  for (char& c : line)
-    c = c == '\n' || c == '\r' || c == '\v' || c == '\f' ? ' ' : c;
-  std::fflush(stdout);
-  fmt::print(stderr, "{}\n", cli::error_line(line));
+int fail(const std::string& line, ExitCode code) {
+  cli::log_line(cli::error_line(line));
   return static_cast<int>(code);
 }
 
@@ -71,7 +68,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) { // --help, --version
-    return app.exit(request);
+    std::ostringstream text;
+    const int code = app.exit(request, text, text);
+    cli::print_output(text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return fail(cli::usage_error(app, {argv + 1, argv + argc}, error), ExitCode::bad_input);
   }
@@ -84,6 +84,7 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  cli::guard_standard_streams();
   try {
     return run(argc, argv);
   } catch (const Error& error) {

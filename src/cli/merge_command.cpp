@@ -1,11 +1,11 @@
 #include "cli/commands.h"
 #include "cli/output_paths.h"
+#include "cli/streams.h"
 #include "image/output_formats.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 
@@ -32,7 +32,7 @@ int run_merge(const MergeOptions& options) {
     write_image(image, options.preview, {options.exposure});
   write_image(image, options.output, {options.exposure});
   if (!options.quiet)
-    fmt::print(stderr, "{}: {} of {}\n", options.output,
+    log("{}: {} of {}", options.output,
                count_text(static_cast<std::uint64_t>(image.numbers.at("vdbeam:passes")), "pass"),
                count_text(options.partials.size(), "file"));
   return 0;

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "cli/streams.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -7,7 +8,6 @@
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -22,18 +22,18 @@ struct PlanOptions {
   bool json = false;
 };
 
-void print_plan(const Scene& scene, const RenderPlan& plan) {
-  fmt::print("{}\n", scene.path);
+std::string plan_text(const Scene& scene, const RenderPlan& plan) {
+  std::string text = scene.path + "\n";
   for (const bool needed : {true, false}) {
-    fmt::print("\n{}\n", needed ? "stages" : "left out");
+    text += fmt::format("\n{}\n", needed ? "stages" : "left out");
     for (const PlanStage& stage : plan.stages)
       if (stage.needed == needed)
-        fmt::print("  {:<18} {}\n", stage.name, stage.reason);
+        text += fmt::format("  {:<18} {}\n", stage.name, stage.reason);
   }
   const auto bytes = [](std::uint64_t n) { return format_bytes(static_cast<double>(n)); };
-  fmt::print("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
-             bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
-             bytes(plan.film_bytes));
+  return text + fmt::format("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
+                            bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
+                            bytes(plan.film_bytes));
 }
 
 int run_plan(const PlanOptions& options) {
@@ -44,10 +44,10 @@ int run_plan(const PlanOptions& options) {
       frame = frames.front();
   const Scene scene = document.scene_at(frame);
   for (const std::string& note : scene.notes)
-    fmt::print(stderr, "note: {}\n", note);
+    log("note: {}", note);
   const RenderPlan plan = make_plan(scene);
   if (!options.json) {
-    print_plan(scene, plan);
+    print_output(plan_text(scene, plan));
     return 0;
   }
   nlohmann::ordered_json json = plan_json(plan);
@@ -56,7 +56,7 @@ int run_plan(const PlanOptions& options) {
   json["scene_hash"] = scene_hash(scene);
   json["settings"] = settings_json(scene);
   using Handler = nlohmann::ordered_json::error_handler_t;
-  fmt::print("{}\n", json.dump(2, ' ', false, Handler::replace));
+  print_output(json.dump(2, ' ', false, Handler::replace) + "\n");
   return 0;
 }
 

@@ -1,11 +1,11 @@
 #include "cli/progress.h"
 
+#include "cli/streams.h"
 #include "cli/terminal.h"
 #include "text/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -27,24 +27,19 @@ void FarmProgress::frame_at(std::size_t index, double done) {
     return;
   last_ = percent;
   if (format_ == FarmFormat::openjd)
-    fmt::print("openjd_progress: {:.1f}\n", percent);
+    progress_text(fmt::format("openjd_progress: {:.1f}\n", percent));
   else
-    fmt::print("ALF_PROGRESS {:.0f}%\n", std::floor(percent));
-  std::fflush(stdout);
+    progress_text(fmt::format("ALF_PROGRESS {:.0f}%\n", std::floor(percent)));
 }
 
 void FarmProgress::status(const std::string& text) const {
-  if (format_ != FarmFormat::openjd)
-    return;
-  fmt::print("openjd_status: {}\n", text);
-  std::fflush(stdout);
+  if (format_ == FarmFormat::openjd)
+    progress_text(fmt::format("openjd_status: {}\n", text));
 }
 
 void FarmProgress::failure(const std::string& text) const {
-  if (format_ != FarmFormat::openjd)
-    return;
-  fmt::print("openjd_fail: {}\n", text);
-  std::fflush(stdout);
+  if (format_ == FarmFormat::openjd)
+    progress_text(fmt::format("openjd_fail: {}\n", text));
 }
 
 Progress::Progress(std::string title, const RenderSettings& settings, bool quiet)
@@ -96,13 +91,12 @@ void Progress::line(const std::string& text) {
   if (quiet_)
     return;
   clear_bar();
-  fmt::print(stderr, "{}{}{}\n", title_, title_.empty() ? "" : ": ", text);
-  std::fflush(stderr);
+  log("{}{}{}", title_, title_.empty() ? "" : ": ", text);
 }
 
 void Progress::clear_bar() {
   if (bar_shown_)
-    fmt::print(stderr, "{}", erase_line);
+    log_text(erase_line);
   bar_shown_ = false;
 }
 
@@ -122,9 +116,8 @@ void Progress::pass(const PassRecord& record) {
     return line(describe(record, settings_));
   // The cursor waits at the bar's beginning: a terminal that is made narrower wraps the bar and
   // keeps the cursor there, so all of it is still erased.
-  fmt::print(stderr, "{}{}\r", erase_line,
-             bar(title_, record, settings_, terminal_columns(STDERR_FILENO)));
-  std::fflush(stderr);
+  log_text(fmt::format("{}{}\r", erase_line,
+                       bar(title_, record, settings_, terminal_columns(STDERR_FILENO))));
   bar_shown_ = true;
 }
 
