@@ -1,6 +1,6 @@
 #include "cli/batch_summary.h"
 
-#include "report/report.h"
+#include "cli/output_paths.h"
 #include "text/frame_range.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ void BatchSummary::write(const std::string& path) const {
       entry["reason"] = outcome.reason;
     json["frames"].push_back(std::move(entry));
   }
-  write_json(json, path);
+  write_json_output(json, path);
 }
 
 } // namespace vdbeam::cli

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/streams.h"
+#include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -44,10 +45,6 @@ void add_error(Json& json, const ImageError& error) {
   json["flip"] = error.flip;
 }
 
-void print_json(const Json& json) {
-  print_output(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-}
-
 std::string error_text(const ImageError& error) {
   return fmt::format(
       "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\nFLIP    {:.6g}\n",
@@ -85,7 +82,7 @@ int compare_stills(const CompareOptions& options) {
   }
   Json json{{"image", options.image}, {"reference", options.reference}};
   add_error(json, error);
-  print_json(json);
+  print_output(json_text(json));
   return 0;
 }
 
@@ -132,7 +129,7 @@ public:
     add_error(json, mean);
     json["temporal"] = temporal;
     json["frames"] = frames_;
-    print_json(json);
+    print_output(json_text(json));
   }
 
 private:

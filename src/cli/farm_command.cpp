@@ -1,4 +1,6 @@
 #include "cli/commands.h"
+#include "cli/file_claims.h"
+#include "cli/frame_renderer.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/streams.h"
@@ -101,6 +103,20 @@ Scene first_scene(const SceneDocument& document, const std::vector<int>& frames)
   return document.scene_at(frames.front());
 }
 
+/// Refuses a job file that would replace an input, and outputs of the tasks that would.
+void check_clashes(const FarmJob& job, const SceneDocument& document) {
+  FileClaims claims;
+  claims.scene(document, job.scene, job.frames);
+  claims.output("--job", job.job_file);
+  claims.outputs("-o", job.output, job.frames);
+  for (const std::string& range : pass_ranges(job)) {
+    const std::string part = partial_path(job.output, range);
+    if (part != job.output)
+      claims.outputs("a part of -o", part, job.frames);
+    claims.outputs("a checkpoint of -o", side_file(part, "checkpoint"), job.frames);
+  }
+}
+
 FarmJob make_job(const FarmOptions& options) {
   FarmJob job = options.job;
   const SceneDocument document = options.scene.open();
@@ -112,7 +128,8 @@ FarmJob make_job(const FarmOptions& options) {
   job.scene = absolute(options.scene.path());
   job.output = absolute(job.output);
   job.logs = job.logs.empty() ? fs::path(job.output).parent_path().string() : absolute(job.logs);
-  job.job_file = absolute(job.job_file);
+  job.job_file = is_stdout(job.job_file) ? "" : absolute(job.job_file);
+  check_output_path("--job", job.job_file, {1});
   job.options = options.scene.words();
   job.options.insert(job.options.end(), options.also.begin(), options.also.end());
   const RenderSettings render = first_scene(document, job.frames).render;
@@ -120,6 +137,7 @@ FarmJob make_job(const FarmOptions& options) {
   if (job.splits > 1 && (!render.passes || render.time || render.target_error))
     throw InputError("--splits: a frame can be cut in parts where its end is a number of passes "
                      "and nothing else; say e.g. --passes 64");
+  check_clashes(job, document);
   if (render.threads > 0)
     job.threads = render.threads;
   job.checkpoint = read_duration("--checkpoint", options.checkpoint);

@@ -1,5 +1,6 @@
 #include "cli/frame_renderer.h"
 
+#include "cli/output_paths.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "image/output_formats.h"
@@ -185,8 +186,8 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   result.statistics.write =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!files.report.empty())
-    write_json(report_json(loaded.scene, result, context),
-               substitute_frame(files.report, loaded.frame));
+    write_json_output(report_json(loaded.scene, result, context),
+                      substitute_frame(files.report, loaded.frame));
   if (lost_preview)
     throw *lost_preview;
 }

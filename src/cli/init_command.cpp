@@ -1,8 +1,10 @@
 #include "cli/commands.h"
+#include "cli/file_claims.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
 #include "machine/atomic_file.h"
 #include "scene/scene_document.h"
+#include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
@@ -22,11 +24,14 @@ struct InitOptions {
 };
 
 int run_init(const InitOptions& options) {
-  if (options.output.empty()) {
+  if (options.output.empty() || is_stdout(options.output)) {
     print_output(scene_template(options.volume));
     return 0;
   }
   check_output_path("-o", options.output, {1});
+  FileClaims claims;
+  claims.inputs("the volume", options.volume, frames_on_disk(options.volume));
+  claims.output("-o", options.output);
   std::error_code error;
   if (!options.force && fs::exists(options.output, error))
     throw InputError(

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/file_claims.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
 #include "image/output_formats.h"
@@ -25,6 +26,12 @@ int run_merge(const MergeOptions& options) {
   output_format(options.output);
   check_output_path("--partial", options.settings.partial, {1});
   check_output_path("--preview", options.preview, {1});
+  FileClaims claims;
+  for (const std::string& partial : options.partials)
+    claims.input("the partial image", partial);
+  claims.output("-o", options.output);
+  claims.output("--partial", options.settings.partial);
+  claims.output("--preview", options.preview);
   if (options.settings.passes && *options.settings.passes < 1)
     throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
   const Image image = merge_partials(options.partials, options.settings);

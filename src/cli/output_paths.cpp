@@ -1,11 +1,14 @@
 #include "cli/output_paths.h"
 
+#include "cli/streams.h"
+#include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace vdbeam::cli {
@@ -55,6 +58,17 @@ void check_output_path(const std::string& option, const std::string& path,
         fmt::format("{} frames would go to one file; write {}", frames.size(), with_pattern(path)));
   for (const int frame : frames)
     check_one(option, substitute_frame(path, frame));
+}
+
+bool is_stdout(const std::string& path) {
+  return path == "-";
+}
+
+void write_json_output(const nlohmann::ordered_json& json, const std::string& path) {
+  if (is_stdout(path))
+    write_stdout(json_text(json));
+  else
+    write_json(json, path);
 }
 
 } // namespace vdbeam::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -10,5 +11,11 @@ namespace vdbeam::cli {
 /// `option` names it in messages ("-o"). Throws InputError with the remedy.
 void check_output_path(const std::string& option, const std::string& path,
                        const std::vector<int>& frames);
+
+/// "-" for an output that is text: the standard output, which needs no such check.
+bool is_stdout(const std::string& path);
+
+/// Writes JSON to a file or, for "-", to the standard output. Throws FrameError.
+void write_json_output(const nlohmann::ordered_json& json, const std::string& path);
 
 } // namespace vdbeam::cli

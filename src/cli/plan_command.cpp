@@ -55,8 +55,7 @@ int run_plan(const PlanOptions& options) {
   json["frame"] = frame;
   json["scene_hash"] = scene_hash(scene);
   json["settings"] = settings_json(scene);
-  using Handler = nlohmann::ordered_json::error_handler_t;
-  print_output(json.dump(2, ' ', false, Handler::replace) + "\n");
+  print_output(json_text(json));
   return 0;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/batch.h"
 #include "cli/batch_values.h"
 #include "cli/commands.h"
+#include "cli/file_claims.h"
 #include "cli/help_format.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
@@ -73,6 +74,23 @@ void check_options(const RenderOptions& options) {
     throw InputError("--missing black: excludes --pass-range");
 }
 
+/// Refuses outputs that would replace an input or each other.
+void check_clashes(const RenderOptions& options, const SceneDocument& document,
+                   const std::vector<int>& frames) {
+  const FrameFiles& files = options.batch.frame.files;
+  FileClaims claims;
+  claims.scene(document, options.scene.path(), frames);
+  claims.inputs("--reference", files.reference, frames);
+  if (options.batch.farm != FarmFormat::plain)
+    claims.output("--progress", "-");
+  claims.output("--summary", options.batch.summary);
+  claims.outputs("-o", files.output, frames);
+  claims.outputs("the checkpoint of -o", side_file(files.output, "checkpoint"), frames);
+  claims.outputs("the snapshot of -o", side_file(files.output, "snapshot"), frames);
+  claims.outputs("--preview", files.preview, frames);
+  claims.outputs("--report", files.report, frames);
+}
+
 /// Refuses what is wrong with every frame. What only some of them lack is told when their turn
 /// comes, so that the others are rendered.
 void check_scenes(const RenderOptions& options, const SceneDocument& document,
@@ -98,9 +116,12 @@ void check_before_rendering(const RenderOptions& options, const SceneDocument& d
   check_output_path("--preview", options.batch.frame.files.preview, frames);
   if (!options.batch.frame.files.preview.empty())
     output_format(options.batch.frame.files.preview);
-  check_output_path("--report", options.batch.frame.files.report, frames);
-  check_output_path("--summary", options.batch.summary, {frames.front()});
+  if (!is_stdout(options.batch.frame.files.report))
+    check_output_path("--report", options.batch.frame.files.report, frames);
+  if (!is_stdout(options.batch.summary))
+    check_output_path("--summary", options.batch.summary, {frames.front()});
   check_options(options);
+  check_clashes(options, document, frames);
   check_scenes(options, document, frames);
 }
 
@@ -162,7 +183,7 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
       app, "--missing", batch.missing,
       {{"error", MissingFile::error}, {"black", MissingFile::black}, {"hold", MissingFile::hold}},
       "A frame without its volume fails, is black, or shows the one before");
-  app.add_option("--summary", batch.summary, "Write what became of the frames as JSON")
+  app.add_option("--summary", batch.summary, "Write what became of the frames as JSON; - is stdout")
       ->option_text("FILE.json");
   add_choice<FarmFormat>(
       app, "--progress", batch.farm,
@@ -188,7 +209,7 @@ CommandRun add_render(CLI::App& app) {
   app.add_option("--reference", options->batch.frame.files.reference,
                  "The true image: errors against it go to the report")
       ->option_text("FILE.exr");
-  app.add_option("--report", options->batch.frame.files.report, "Write a JSON report")
+  app.add_option("--report", options->batch.frame.files.report, "Write a JSON report; - is stdout")
       ->option_text("FILE.json");
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Say nothing but errors");
   add_batch_options(app, *options);

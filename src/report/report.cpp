@@ -163,9 +163,13 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   return report;
 }
 
-void write_json(const Json& json, const std::string& path) {
+std::string json_text(const Json& json) {
   // Paths may hold bytes that are not UTF-8; they must not cost the report.
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_json(const Json& json, const std::string& path) {
+  const std::string text = json_text(json);
   AtomicFile file(path);
   file.write(text.data(), text.size());
   file.commit();

@@ -25,6 +25,9 @@ nlohmann::ordered_json plan_json(const RenderPlan& plan);
 nlohmann::ordered_json report_json(const Scene& scene, const RenderResult& result,
                                    const ReportContext& context);
 
+/// Two spaces deep, with a line break at its end.
+std::string json_text(const nlohmann::ordered_json& json);
+
 /// Writes JSON so that the file is never half there. Throws FrameError.
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 

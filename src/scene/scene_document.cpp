@@ -81,16 +81,6 @@ FramingWishes wishes_of(const std::vector<Override>& overrides) {
   return wishes;
 }
 
-template <class Visitor>
-void visit_files(const toml::table& root, const Visitor& visitor) {
-  for (const auto& [list_name, key] : {std::pair("volume", "file"), std::pair("light", "image")})
-    if (const auto* list = root.get_as<toml::array>(list_name))
-      for (const toml::node& item : *list)
-        if (const auto* table = item.as_table())
-          if (const auto* file = table->get_as<std::string>(key))
-            visitor(*file);
-}
-
 /// Whether a value of the scene changes from frame to frame.
 bool is_animated(const toml::node& node) {
   bool animated = false;
@@ -155,13 +145,24 @@ Scene SceneDocument::scene_at(int frame, MissingFile missing) const {
   return scene;
 }
 
+std::vector<SceneFile> SceneDocument::files() const {
+  std::vector<SceneFile> files;
+  for (const auto& [list_name, key] : {std::pair("volume", "file"), std::pair("light", "image")}) {
+    const auto* list = root_.get_as<toml::array>(list_name);
+    for (std::size_t i = 0; list && i < list->size(); ++i)
+      if (const auto* table = (*list)[i].as_table())
+        if (const auto* file = table->get_as<std::string>(key))
+          files.push_back({fmt::format("{}.{}.{}", list_name, i, key),
+                           is_override(*file) ? file->get() : (folder_ / file->get()).string()});
+  }
+  return files;
+}
+
 std::string SceneDocument::first_pattern() const {
-  std::string pattern;
-  visit_files(root_, [&](const toml::value<std::string>& file) {
-    if (pattern.empty() && vdbeam::has_frame_pattern(file.get()))
-      pattern = is_override(file) ? file.get() : (folder_ / file.get()).string();
-  });
-  return pattern;
+  for (const SceneFile& file : files())
+    if (vdbeam::has_frame_pattern(file.pattern))
+      return file.pattern;
+  return "";
 }
 
 bool SceneDocument::has_frame_pattern() const {

@@ -11,6 +11,12 @@
 
 namespace vdbeam {
 
+/// A file that a scene reads.
+struct SceneFile {
+  std::string key;     ///< "volume.0.file"
+  std::string pattern; ///< its path, with the frame number's place
+};
+
 /// A scene file, or what stands for it for a bare VDB, from which the scene of each frame is made.
 class SceneDocument {
 public:
@@ -25,6 +31,9 @@ public:
   bool has_frame_pattern() const;
   /// Frames of which the first file with a frame pattern exists.
   std::vector<int> frames_on_disk() const;
+
+  /// Every volume and image that the scene names.
+  std::vector<SceneFile> files() const;
 
 private:
   std::string first_pattern() const;

@@ -1,0 +1,140 @@
+#include "cli_fixture.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbeam {
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+namespace fs = std::filesystem;
+
+class FileClaims : public test::CliTest {
+protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    fs::create_directory(folder_ / "sub");
+    for (const char* name : {"c.0001.vdb", "c.0002.vdb", "c.0009.vdb"})
+      fs::copy_file(cloud_vdb, folder_ / name);
+    write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
+    ASSERT_EQ(render({cloud_vdb, "-o", "sky.exr", "--passes", "1", "-q"}).code, 0);
+  }
+  /// The bytes of every file in the folder.
+  std::string everything() const {
+    std::string all;
+    for (const std::string& name : files())
+      all += name + "\n" + (fs::is_regular_file(folder_ / name) ? read(name) : "") + "\n";
+    return all;
+  }
+  /// Refused with one line that names both files, and nothing was touched.
+  void expect_refused(const Names& words, const std::string& first, const std::string& second) {
+    const std::string before = everything();
+    const auto result = run(words);
+    std::string line;
+    for (const std::string& word : words)
+      line += word + " ";
+    EXPECT_EQ(result.code, 2) << line << result.error;
+    EXPECT_EQ(result.error_lines(), 1u) << line << result.error;
+    EXPECT_NE(result.error.find(first), std::string::npos) << line << result.error;
+    EXPECT_NE(result.error.find(second), std::string::npos) << line << result.error;
+    EXPECT_EQ(everything(), before) << line;
+  }
+  void expect_render_refused(Names words, const std::string& first, const std::string& second) {
+    words.insert(words.begin(), {"render", "s.toml", "-f", "1-2", "--passes", "1"});
+    if (std::find(words.begin(), words.end(), "-o") == words.end())
+      words.insert(words.end(), {"-o", "o.####.exr"});
+    expect_refused(words, first, second);
+  }
+};
+
+TEST_F(FileClaims, OutputsMayNotReplaceInputs) {
+  expect_render_refused({"--summary", "s.toml"}, "--summary s.toml", "the scene s.toml");
+  expect_render_refused({"--summary", "./sub/../s.toml"}, "--summary", "the scene s.toml");
+  expect_render_refused({"--report", "c.####.vdb"}, "--report c.0001.vdb", "volume.0.file");
+  expect_render_refused({"--summary", "c.0002.vdb"}, "--summary c.0002.vdb", "volume.0.file");
+  // Not of these frames, but of the sequence.
+  expect_render_refused({"--summary", "c.0009.vdb"}, "--summary c.0009.vdb", "volume.0.file");
+  expect_render_refused({"--summary", "sky.exr", "--set", "light.0.image=sky.exr"},
+                        "--summary sky.exr", "light.0.image sky.exr");
+  expect_render_refused({"--summary", "sky.exr", "--reference", "sky.exr"}, "--summary sky.exr",
+                        "--reference sky.exr");
+  fs::create_symlink("s.toml", folder_ / "link.json");
+  expect_render_refused({"--summary", "link.json"}, "--summary link.json", "the scene");
+  fs::create_hard_link(folder_ / "s.toml", folder_ / "hard.json");
+  expect_render_refused({"--summary", "hard.json"}, "--summary hard.json", "the scene");
+  write("n.toml", "[[light]]\ntype = 'environment'\nimage = 'sky.exr'\n");
+  expect_refused({"render", "n.toml", "-o", "sky.exr", "--passes", "1"}, "-o sky.exr",
+                 "light.0.image sky.exr");
+}
+
+TEST_F(FileClaims, OutputsMayNotReplaceEachOther) {
+  expect_render_refused({"--summary", "o.0002.exr"}, "--summary o.0002.exr", "-o o.0002.exr");
+  expect_render_refused({"--report", "o.####.exr"}, "--report", "-o o.0001.exr");
+  expect_render_refused({"--report", "r.####.json", "--summary", "r.0002.json"}, "--report",
+                        "--summary");
+  expect_render_refused({"--summary", "o.0001.checkpoint.exr"}, "the checkpoint of -o",
+                        "--summary");
+  expect_render_refused({"--summary", "o.0001.snapshot.exr"}, "the snapshot of -o", "--summary");
+  expect_render_refused({"--pass-range", "0-1", "--summary", "o.0001.exr"}, "--summary", "-o");
+  // File systems of other systems do not tell these apart.
+  expect_render_refused({"--summary", "O.0001.EXR"}, "--summary", "-o o.0001.exr");
+  // Neither is there yet: a link to nowhere leads to where the other will be.
+  fs::create_symlink("o.0001.exr", folder_ / "sub/link.json");
+  fs::remove(folder_ / "sub/link.json");
+  fs::create_symlink("../o.0001.exr", folder_ / "sub/link.json");
+  expect_render_refused({"--summary", "sub/link.json"}, "--summary sub/link.json", "-o o.0001.exr");
+  fs::create_directory_symlink(".", folder_ / "here");
+  expect_render_refused({"--summary", "here/o.0001.exr"}, "--summary here/", "-o o.0001.exr");
+}
+
+TEST_F(FileClaims, OtherCommandsKeepToItToo) {
+  expect_refused({"init", "c.0001.vdb", "-o", "c.0001.vdb", "--force"}, "-o c.0001.vdb",
+                 "the volume");
+  expect_refused({"init", "c.####.vdb", "-o", "c.0002.vdb", "--force"}, "-o c.0002.vdb",
+                 "the volume");
+  const auto farm = [](const Names& more) {
+    Names words{"farm", "slurm",      "s.toml",   "-f", "1-2",
+                "-o",   "o.####.exr", "--passes", "4",  "--job"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect_refused(farm({"s.toml"}), "--job", "the scene");
+  expect_refused(farm({"c.0002.vdb"}), "--job", "volume.0.file");
+  expect_refused(farm({"o.0002.exr"}), "--job", "-o");
+  expect_refused(farm({"o.0002.passes_2-3.exr", "--splits", "2"}), "--job", "a part of -o");
+  const Names part{"render", cloud_vdb, "--pass-range", "0",    "-o",
+                   "a.exr",  "-q",      "--resolution", "32x18"};
+  ASSERT_EQ(run(part).code, 0);
+  expect_refused({"merge", "-o", "a.exr", "a.exr"}, "-o a.exr", "the partial image a.exr");
+  expect_refused({"merge", "-o", "b.exr", "--partial", "./a.exr", "a.exr"}, "--partial ./a.exr",
+                 "the partial image a.exr");
+  expect_refused({"merge", "-o", "b.exr", "--partial", "b.exr", "a.exr"}, "--partial b.exr",
+                 "-o b.exr");
+}
+
+TEST_F(FileClaims, InputsMayBeTheSameFile) {
+  ASSERT_EQ(render({cloud_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
+  const auto result =
+      render({cloud_vdb, "-o", "a.exr", "--passes", "1", "--reference", "ref.exr", "--set",
+              "light.2.type=environment", "--set", "light.2.image=ref.exr"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  // Rendering again over what is there is what outputs are for.
+  EXPECT_EQ(render({cloud_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
+}
+
+TEST_F(FileClaims, DashIsTheStandardOutput) {
+  const auto report =
+      render({"s.toml", "-f", "1", "-o", "a.exr", "--passes", "1", "--report", "-"});
+  ASSERT_EQ(report.code, 0) << report.error;
+  EXPECT_EQ(Json::parse(report.out)["frame"], 1);
+  const auto summary =
+      render({"s.toml", "-f", "1-2", "-o", "o.####.exr", "--passes", "1", "--summary", "-"});
+  ASSERT_EQ(summary.code, 0) << summary.error;
+  EXPECT_EQ(Json::parse(summary.out)["done"], Json::array({1, 2}));
+  EXPECT_FALSE(exists("-"));
+  expect_render_refused({"--summary", "-", "--report", "-"}, "--report -", "--summary");
+  expect_render_refused({"--summary", "-", "--progress", "openjd"}, "--summary -", "--progress");
+}
+
+} // namespace
+} // namespace vdbeam
