@@ -65,7 +65,7 @@ Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
       loaded.note = renderer_.why_unfinished(loaded.frame);
       loaded.skip = loaded.note.empty();
     }
-    if (!loaded.skip && !loaded.frame.scene.black)
+    if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty())
       loaded.frame.prepared = prepare_scene(loaded.frame.scene, previous);
   } catch (...) {
     loaded.error = std::current_exception();
@@ -144,6 +144,10 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
     outcome.reason = "a volume's file is missing; the image is black";
     renderer_.write_black(loaded.frame);
     return tell(outcome.reason);
+  }
+  if (!options_.frame.parts.empty()) {
+    renderer_.join_parts(loaded.frame);
+    return tell(fmt::format("joined from {} parts", options_.frame.parts.size()));
   }
   if (!loaded.note.empty() && loaded.note != "is not there")
     tell("rendered again: " + loaded.note);

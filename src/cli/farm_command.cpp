@@ -103,6 +103,29 @@ Scene first_scene(const SceneDocument& document, const std::vector<int>& frames)
   return document.scene_at(frames.front());
 }
 
+/// Tells at once which frames lack a file. Simulations may still be writing them, so it is no
+/// error; a job that is to do something else about them (--also=--missing=hold) is not told.
+void tell_missing(const FarmOptions& options, const SceneDocument& document,
+                  const std::vector<int>& frames) {
+  for (const std::string& option : options.also)
+    if (option.starts_with("--missing"))
+      return;
+  std::vector<int> lacking;
+  std::string reason;
+  for (const int frame : frames) {
+    try {
+      document.scene_at(frame);
+    } catch (const InputError& error) {
+      if (lacking.empty())
+        reason = error.what();
+      lacking.push_back(frame);
+    }
+  }
+  if (!lacking.empty())
+    log("note: {} of {} frames ({}) cannot be rendered as long as it stays so: {}", lacking.size(),
+        frames.size(), format_frame_range(lacking), reason);
+}
+
 /// Refuses a job file that would replace an input, and outputs of the tasks that would.
 void check_clashes(const FarmJob& job, const SceneDocument& document) {
   FileClaims claims;
@@ -138,6 +161,7 @@ FarmJob make_job(const FarmOptions& options) {
     throw InputError("--splits: a frame can be cut in parts where its end is a number of passes "
                      "and nothing else; say e.g. --passes 64");
   check_clashes(job, document);
+  tell_missing(options, document, job.frames);
   if (render.threads > 0)
     job.threads = render.threads;
   job.checkpoint = read_duration("--checkpoint", options.checkpoint);

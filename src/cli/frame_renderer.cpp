@@ -118,41 +118,79 @@ void FrameRenderer::add_metadata(Image& image, const LoadedFrame& loaded,
     image.metadata["vdbeam:region"] = region_text();
 }
 
+std::string FrameRenderer::why_no_part(const std::string& path, const LoadedFrame& loaded) const {
+  const FilmFileInfo info = read_film_info(path);
+  const PassRange range = *options_.pass_range;
+  std::vector<int> wanted(static_cast<std::size_t>(range.last - range.first + 1));
+  std::iota(wanted.begin(), wanted.end(), range.first);
+  if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame ||
+      info.passes != wanted)
+    return "is of another scene, frame or pass range";
+  read_film(path, info); // all of it: the header does not tell a truncated file
+  return "";
+}
+
+std::string FrameRenderer::why_no_image(const std::string& path, const LoadedFrame& loaded) const {
+  const Image image = read_image(path);
+  const auto text = [&](const char* name) {
+    const auto found = image.metadata.find(name);
+    return found == image.metadata.end() ? std::string() : found->second;
+  };
+  const auto marker = image.numbers.find("vdbeam:complete");
+  if (image.width != loaded.scene.image.width || image.height != loaded.scene.image.height)
+    return "has another size";
+  if (marker == image.numbers.end() || marker->second != 1)
+    return "is not marked as finished";
+  if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
+    return "is of another scene";
+  const auto frame = image.numbers.find("vdbeam:frame");
+  return frame != image.numbers.end() && frame->second == loaded.frame ? "" : "is of another frame";
+}
+
 std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
-  const std::string path = output(loaded.frame);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    return "is not there";
-  try {
-    if (options_.pass_range) {
-      const FilmFileInfo info = read_film_info(path);
-      const PassRange range = *options_.pass_range;
-      std::vector<int> wanted(static_cast<std::size_t>(range.last - range.first + 1));
-      std::iota(wanted.begin(), wanted.end(), range.first);
-      if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame ||
-          info.passes != wanted)
-        return "is of another scene, frame or pass range";
-      read_film(path, info); // all of it: the header does not tell a truncated file
-      return "";
+  const auto why = [](const std::string& path, const auto& judge) -> std::string {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+      return "is not there";
+    try {
+      return judge(path);
+    } catch (const InputError& problem) {
+      return problem.what();
     }
-    const Image image = read_image(path);
-    const auto text = [&](const char* name) {
-      const auto found = image.metadata.find(name);
-      return found == image.metadata.end() ? std::string() : found->second;
-    };
-    const auto marker = image.numbers.find("vdbeam:complete");
-    if (image.width != loaded.scene.image.width || image.height != loaded.scene.image.height)
-      return "has another size";
-    if (marker == image.numbers.end() || marker->second != 1)
-      return "is not marked as finished";
-    if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
-      return "is of another scene";
-    const auto frame = image.numbers.find("vdbeam:frame");
-    return frame != image.numbers.end() && frame->second == loaded.frame ? ""
-                                                                         : "is of another frame";
-  } catch (const InputError& problem) {
-    return problem.what();
+  };
+  const auto image = [&](const std::string& path) { return why_no_image(path, loaded); };
+  const auto part = [&](const std::string& path) { return why_no_part(path, loaded); };
+  if (!options_.pass_range)
+    return why(output(loaded.frame), image);
+  if (!options_.merged.empty() &&
+      why(substitute_frame(options_.merged, loaded.frame), image).empty())
+    return "";
+  return why(output(loaded.frame), part);
+}
+
+void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
+  const std::string hash = pass_hash(loaded.scene);
+  std::vector<std::string> paths;
+  for (const std::string& pattern : options_.parts) {
+    const std::string path = substitute_frame(pattern, loaded.frame);
+    const FilmFileInfo info = read_film_info(path);
+    if (info.pass_hash != hash || info.frame != loaded.frame)
+      throw FrameError(path + ": shows another frame, another scene, or volumes that have changed "
+                              "since; render its passes again");
+    paths.push_back(path);
   }
+  MergeSettings settings;
+  settings.passes = loaded.scene.render.passes;
+  Image image = merge_partials(paths, settings);
+  image.metadata["vdbeam:sceneHash"] = loaded.hash; // the parts' may have another number of passes
+  if (options_.region)
+    image.metadata["vdbeam:region"] = region_text();
+  if (!options_.files.preview.empty())
+    write_image(image, substitute_frame(options_.files.preview, loaded.frame), {options_.exposure});
+  write_image(image, output(loaded.frame), {options_.exposure});
+  std::error_code ignored; // a part that stays does no harm
+  for (const std::string& path : paths)
+    std::filesystem::remove(path, ignored);
 }
 
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {

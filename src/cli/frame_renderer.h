@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vdbeam::cli {
 
@@ -23,7 +24,9 @@ struct FrameOptions {
   bool early_preview = false;          ///< the preview shows a quick look before the first pass
   std::optional<PassRange> pass_range; ///< the output is a partial image of these passes
   std::optional<PixelRegion> region;
-  CheckpointSettings checkpoint; ///< without its path
+  CheckpointSettings checkpoint;  ///< without its path
+  std::vector<std::string> parts; ///< partial images to join instead of rendering; usually none
+  std::string merged;             ///< what the passes of `pass_range` are merged into, or empty
 };
 
 /// A frame that is ready to be rendered.
@@ -53,7 +56,12 @@ public:
   /// Writes what stands for a frame whose volume is missing: black, without opacity.
   void write_black(const LoadedFrame& loaded) const;
 
-  /// Why the frame's image on disk is not the finished one of this scene; empty where it is.
+  /// Joins the frame's partial images, which must be of this very scene, writes the image and
+  /// removes them. Throws InputError and FrameError.
+  void join_parts(const LoadedFrame& loaded) const;
+
+  /// Why the frame's image on disk is not the finished one of this scene; empty where it is, or
+  /// where the image is there that it was to be merged into.
   std::string why_unfinished(const LoadedFrame& loaded) const;
 
   /// Removes the frame's checkpoint and snapshot, which a finished image has outlived.
@@ -63,6 +71,8 @@ private:
   std::string output(int frame) const;
   std::string checkpoint_path(int frame) const;
   std::string region_text() const;
+  std::string why_no_image(const std::string& path, const LoadedFrame& loaded) const;
+  std::string why_no_part(const std::string& path, const LoadedFrame& loaded) const;
   void write_files(const LoadedFrame& loaded, RenderResult& result) const;
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 

@@ -68,6 +68,10 @@ void check_options(const RenderOptions& options) {
     throw InputError(one_line("-o " + frame.files.output +
                               ": --skip-existing needs an .exr; other files do not tell what "
                               "they show"));
+  if (!frame.parts.empty() && (frame.pass_range || !exr))
+    throw InputError("--from-parts: excludes --pass-range, and -o must be an .exr");
+  if (!frame.merged.empty() && (!frame.pass_range || !options.batch.skip_existing))
+    throw InputError("--skip-merged: belongs to --pass-range and --skip-existing");
   if (frame.region && !frame.files.reference.empty())
     throw InputError("--reference: excludes --region");
   if (frame.pass_range && options.batch.missing == MissingFile::black)
@@ -81,6 +85,9 @@ void check_clashes(const RenderOptions& options, const SceneDocument& document,
   FileClaims claims;
   claims.scene(document, options.scene.path(), frames);
   claims.inputs("--reference", files.reference, frames);
+  claims.inputs("--skip-merged", options.batch.frame.merged, frames);
+  for (const std::string& part : options.batch.frame.parts)
+    claims.inputs("--from-parts", part, frames);
   if (options.batch.farm != FarmFormat::plain)
     claims.output("--progress", "-");
   claims.output("--summary", options.batch.summary);
@@ -175,6 +182,17 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
   app.add_flag("--no-resume", options.no_resume, "Do not go on from a checkpoint");
   app.add_flag("--skip-existing", batch.skip_existing,
                "Leave frames alone whose finished image of this scene is there");
+  app.add_option(
+         "--skip-merged", batch.frame.merged,
+         "With --pass-range and --skip-existing: leave also frames alone whose merged image "
+         "of this scene is there")
+      ->option_text("FILE.exr");
+  app.add_option("--from-parts", batch.frame.parts,
+                 "Join partial images of this scene instead of rendering, and remove them; once "
+                 "for each part")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->option_text("PARTIAL");
   app.add_flag("--overwrite", options.overwrite,
                "Render all frames, whatever --skip-existing says");
   add_choice<bool>(app, "--on-error", batch.stop_on_error, {{"continue", false}, {"stop", true}},

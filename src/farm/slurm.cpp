@@ -73,18 +73,15 @@ std::string settings(const FarmJob& job) {
   text += fmt::format("checkpoint={}\n", seconds_text(job.checkpoint));
   text += fmt::format("time_limit={:.0f}     # seconds of one task, 0: the partition's\n",
                       60 * std::ceil(job.time_limit / 60));
+  text += "output=" + shell_word(job.output) + "\n";
   if (job.splits == 1)
-    return text + "output=" + shell_word(job.output) + "\n";
+    return text;
   const std::vector<std::string> ranges = pass_ranges(job);
-  std::vector<std::string> partials, images;
+  std::vector<std::string> partials;
   for (const std::string& range : ranges)
     partials.push_back(partial_path(job.output, range));
-  for (const int frame : job.frames)
-    images.push_back(substitute_frame(job.output, frame));
-  text += fmt::format("passes={}\n", job.passes);
   text += bash_array("pass_ranges", ranges);
   text += bash_array("partials", partials);
-  text += bash_array("images", images);
   return text + fmt::format("merge_memory={}M\n", job.merge_memory_mib);
 }
 
@@ -168,42 +165,19 @@ fi
 )sh";
 
 const char* const render_splits = R"sh(
-partial() { # IMAGE RANGE: the name of that part of the image
-  echo "${1%.*}.passes_$2.${1##*.}"
-}
-
+list=$(join "${chosen[@]}")
 if [[ $VDBEAM_PART == merge ]]; then
-  status=0
-  for ((i = first; i < first + ${#chosen[@]}; ++i)); do
-    parts=()
-    for range in "${pass_ranges[@]}"; do
-      parts+=("$(partial "${images[i]}" "$range")")
-    done
-    # A turn that was cut short after the merge has removed the parts.
-    [[ ! -e ${parts[0]} && ${images[i]} -nt $scene ]] && continue
-    if run "$vdbeam" merge -o "${images[i]}" --passes "$passes" "${parts[@]}"; then
-      rm -f "${parts[@]}"
-    else
-      status=$?
-    fi
-  done
-  exit "$status"
+  # Parts of another scene, or of volumes that were replaced meanwhile, are refused.
+  echo "frames $list, merging, $turn"
+  run "$vdbeam" render "$scene" "${options[@]}" "--frames=$list" -o "$output" --skip-existing \
+    "${partials[@]/#/--from-parts=}" --progress plain
+  exit $?
 fi
-
-# Frames that an earlier submission merged are left out; `touch` the scene to render them again.
-left=()
-for ((i = first; i < first + ${#chosen[@]}; ++i)); do
-  [[ ${images[i]} -nt $scene ]] || left+=("${frames[i]}")
-done
-if ((${#left[@]} == 0)); then
-  echo "frames $(join "${chosen[@]}") are there"
-  exit 0
-fi
-list=$(join "${left[@]}")
 range=${pass_ranges[VDBEAM_PART]}
 echo "frames $list, passes $range, $turn"
 run "$vdbeam" render "$scene" "${options[@]}" "--frames=$list" -o "${partials[VDBEAM_PART]}" \
-  --pass-range "$range" --skip-existing --checkpoint "$checkpoint" --progress plain
+  --pass-range "$range" --skip-existing --skip-merged "$output" --checkpoint "$checkpoint" \
+  --progress plain
 finish $?
 )sh";
 

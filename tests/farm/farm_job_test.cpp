@@ -149,19 +149,19 @@ TEST(Slurm, SplitTasksRenderTheirPassesAndMerge) {
   job.splits = 2;
   EXPECT_EQ(run_tasks(job, folder, "VDBEAM_PART=1"),
             "render: /show/shot 1/smoke.toml --frames=1,2 -o /show/shot 1/out/"
-            "smoke.####.passes_32-63.exr --pass-range 32-63 --skip-existing --checkpoint 300s "
-            "--progress plain\n"
+            "smoke.####.passes_32-63.exr --pass-range 32-63 --skip-existing --skip-merged "
+            "/show/shot 1/out/smoke.####.exr --checkpoint 300s --progress plain\n"
             "render: /show/shot 1/smoke.toml --frames=3 -o /show/shot 1/out/"
-            "smoke.####.passes_32-63.exr --pass-range 32-63 --skip-existing --checkpoint 300s "
-            "--progress plain\n");
+            "smoke.####.passes_32-63.exr --pass-range 32-63 --skip-existing --skip-merged "
+            "/show/shot 1/out/smoke.####.exr --checkpoint 300s --progress plain\n");
   test::write_bytes(folder.file("words"), "");
-  std::string merges;
-  for (const std::string frame : {"0001", "0002", "0003"}) {
-    const std::string stem = "/show/shot 1/out/smoke." + frame;
-    merges += "merge: -o " + stem + ".exr --passes 64 " + stem + ".passes_0-31.exr " + stem +
-              ".passes_32-63.exr\n";
-  }
-  EXPECT_EQ(run_tasks(job, folder, "VDBEAM_PART=merge"), merges);
+  const auto merge = [](const std::string& frames) {
+    return "render: /show/shot 1/smoke.toml --frames=" + frames +
+           " -o /show/shot 1/out/smoke.####.exr --skip-existing "
+           "--from-parts=/show/shot 1/out/smoke.####.passes_0-31.exr "
+           "--from-parts=/show/shot 1/out/smoke.####.passes_32-63.exr --progress plain\n";
+  };
+  EXPECT_EQ(run_tasks(job, folder, "VDBEAM_PART=merge"), merge("1,2") + merge("3"));
 }
 
 TEST(Slurm, TaskPassesTerminationOnAndKeepsTheExitCode) {
