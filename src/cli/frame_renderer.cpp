@@ -101,9 +101,9 @@ std::string FrameRenderer::checkpoint_path(int frame) const {
 }
 
 void FrameRenderer::remove_side_files(int frame) const {
-  std::error_code ignored; // a file that stays does no harm
-  std::filesystem::remove(checkpoint_path(frame), ignored);
-  std::filesystem::remove(side_file(output(frame), "snapshot"), ignored);
+  std::error_code ignored; // one that stays does no harm
+  for (const char* kind : {"checkpoint", "snapshot"})
+    std::filesystem::remove(side_file(output(frame), kind), ignored);
 }
 
 std::string FrameRenderer::region_text() const {

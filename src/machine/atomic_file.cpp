@@ -1,10 +1,10 @@
 #include "machine/atomic_file.h"
 
+#include "machine/temporary_files.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -46,16 +46,19 @@ std::string resolve_target(const std::string& path) {
 
 /// Opens a new file beside `target`; its mode follows the umask, unlike mkstemp's.
 int open_temporary(const std::string& target, std::string& temporary) {
-  static std::atomic<unsigned> counter{0};
   const fs::path folder = fs::path(target).parent_path();
   const std::string name = fs::path(target).filename().string();
   for (int attempt = 0; attempt < 100; ++attempt) {
-    // The name is cut so that it stays within the usual limit of 255 bytes.
-    temporary =
-        (folder / fmt::format(".{}.{}-{}.tmp", name.substr(0, 200), getpid(), counter++)).string();
+    temporary = (folder / temporary_name(name)).string();
     const int descriptor = open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0 || errno != EEXIST)
+    if (descriptor < 0 && errno != EEXIST)
+      return -1;
+    if (descriptor >= 0 && lock_temporary(descriptor)) {
+      remove_stale_temporaries(folder.string(), descriptor);
       return descriptor;
+    }
+    if (descriptor >= 0)
+      close(descriptor);
   }
   return -1;
 }
@@ -122,11 +125,15 @@ void AtomicFile::commit() {
     fail(errno);
   std::FILE* file = file_;
   file_ = nullptr;
-  if (std::fclose(file) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    const int error = errno;
+  // Another descriptor keeps the lock, without which the file would look like a dead process's.
+  const int lock = fcntl(fileno(file), F_DUPFD_CLOEXEC, 0);
+  const bool done = std::fclose(file) == 0 && std::rename(temporary_.c_str(), target_.c_str()) == 0;
+  const int error = errno;
+  if (!done)
     unlink(temporary_.c_str());
+  close(lock);
+  if (!done)
     fail(error);
-  }
   sync_folder(target_);
 }
 

@@ -8,6 +8,7 @@ namespace vdbeam {
 
 /// A file that appears under its name only when it is complete. Writes go to a temporary name in
 /// the same folder; commit() syncs it to the disk and renames it; without commit() it is removed.
+/// What killed processes have left in the folder is removed when a file is created there.
 class AtomicFile {
 public:
   /// Creates the temporary file. Throws FrameError where the folder is missing or not writable, or

@@ -214,5 +214,12 @@ TEST_F(BatchCommand, SnapshotOnUserSignal) {
   EXPECT_EQ(finish(child).code, 143);
 }
 
+TEST_F(BatchCommand, AFinishedFrameLeavesNothingBesideIt) {
+  for (const char* name : {"o.0001.checkpoint.exr", "o.0001.snapshot.exr"})
+    write(name, "of an earlier run");
+  ASSERT_EQ(render({cloud_vdb, "-f", "1", "-o", "o.####.exr", "--passes", "1", "-q"}).code, 0);
+  EXPECT_EQ(files(), Names{"o.0001.exr"});
+}
+
 } // namespace
 } // namespace vdbeam
