@@ -2,6 +2,7 @@
 
 #include "scene/default_scene.h"
 #include "vdbeam/error.h"
+#include "volume/density_kind.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,13 +30,8 @@ void add_shape(const GridSummary& grid, std::vector<std::string>& lines) {
   if (is_level_set(grid))
     lines.push_back(
         fmt::format("{}: is a level set; its inside is rendered as density 1", grid.name));
-  if (grid.map_type == "NonlinearFrustumMap")
-    lines.push_back(
-        fmt::format("{}: is a frustum grid, which is not supported; resample it", grid.name));
-  if (is_scalar(grid) && grid.background != 0 && !is_level_set(grid))
-    lines.push_back(fmt::format("{}: has background {:.6g}; outside its voxels the density is "
-                                "taken as 0",
-                                grid.name, grid.background));
+  if (const auto why = why_no_density(kind_of(grid)); why && is_scalar(grid))
+    lines.push_back(fmt::format("{}: cannot be rendered as density: it {}", grid.name, *why));
   if (grid.active_voxels > 0 && is_scalar(grid) && grid.minimum == 0 && grid.maximum == 0)
     lines.push_back(fmt::format("{}: all its values are 0", grid.name));
   const auto [low, high] =
@@ -48,13 +44,16 @@ void add_shape(const GridSummary& grid, std::vector<std::string>& lines) {
 } // namespace
 
 bool is_scalar(const GridSummary& grid) {
-  return grid.value_type == "float" || grid.value_type == "half";
+  return grid.value_type == "float" || grid.value_type == "half" || grid.value_type == "double";
 }
 
 std::string rendered_text(const std::string& file, const std::vector<GridSummary>& grids) {
   try {
     const Scene scene = make_default_scene(file, {grids}, {});
     const VolumeSettings& volume = scene.volumes.front();
+    for (const GridSummary& grid : grids)
+      if (const auto why = why_no_density(kind_of(grid)); why && grid.name == volume.density)
+        return fmt::format("nothing: grid \"{}\" {}", grid.name, *why);
     const EmissionSettings& emission = volume.emission;
     const std::string glow =
         !volume.glows()

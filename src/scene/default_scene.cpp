@@ -4,10 +4,10 @@
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
+#include "volume/density_kind.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -22,8 +22,7 @@ constexpr double target_optical_depth = 25;
 constexpr double largest_optical_depth = 100;
 
 bool is_density(const GridSummary& grid) {
-  return (grid.value_type == "float" || grid.value_type == "half") && !is_level_set(grid) &&
-         grid.map_type != "NonlinearFrustumMap";
+  return !is_level_set(grid) && !why_no_density(kind_of(grid));
 }
 
 const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const FramingWishes& wishes,
@@ -203,13 +202,6 @@ void light_scene(Scene& scene, const Vec3d& up_axis, bool dim) {
 }
 
 } // namespace
-
-bool is_level_set(const GridSummary& grid) {
-  std::string text = grid.grid_class;
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text == "level set";
-}
 
 Scene make_default_scene(const std::string& path, const FramingWishes& wishes) {
   return make_default_scene(path, read_summaries(path), wishes);

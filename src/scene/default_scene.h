@@ -27,9 +27,6 @@ Scene make_default_scene(const std::string& path,
                          const std::vector<std::vector<GridSummary>>& summaries,
                          const FramingWishes& wishes);
 
-/// Signed distances to a surface instead of a density.
-bool is_level_set(const GridSummary& grid);
-
 /// A commented scene file; `file` is the volume's path as it is to be written there.
 std::string scene_text(const Scene& scene, const std::string& file);
 

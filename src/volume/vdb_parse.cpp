@@ -1,6 +1,7 @@
 #include "volume/vdb_parse.h"
 
 #include "vdbeam/error.h"
+#include "volume/density_kind.h"
 #include "volume/mapped_file.h"
 #include "volume/raw_grid.h"
 #include "volume/vdb_names.h"
@@ -29,17 +30,20 @@ std::vector<std::string> grid_names(openvdb::io::File& file) {
   throw InputError(fmt::format("{}: grid \"{}\" {}", path, grid, why));
 }
 
+/// Refuses what is no density by its kind; `background` is that of the values, 0 where it does not
+/// matter.
+void check_kind(const std::string& path, const std::string& name, const openvdb::GridBase& grid,
+                bool level_set, double background) {
+  const openvdb::math::Transform& transform = grid.transform();
+  const GridKind kind{grid.valueType(), transform.mapType(), transform.isLinear(), level_set,
+                      background};
+  if (const auto why = why_no_density(kind))
+    refuse(path, name, *why);
+}
+
 /// What can be refused before the grid's voxels are read.
 void check_kind(const std::string& path, const std::string& name, const openvdb::GridBase& grid) {
-  if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>())
-    refuse(path, name,
-           fmt::format("holds {} values, but only float and half grids can be rendered",
-                       grid.valueType()));
-  const openvdb::math::Transform& transform = grid.transform();
-  if (!transform.isLinear())
-    refuse(path, name,
-           fmt::format("has a {}, not an affine transform; resample it to a uniform grid",
-                       transform.mapType()));
+  check_kind(path, name, grid, false, 0);
 }
 
 std::array<double, 12> affine_rows(const std::string& path, const std::string& name,
@@ -133,20 +137,6 @@ void write_leaves(const std::vector<const Leaf*>& leaves, float background, int 
 }
 
 template <class Grid>
-void check_background(const std::string& path, const std::string& name, const Grid& grid,
-                      bool level_set) {
-  if (level_set && !(grid.background() > 0))
-    refuse(path, name,
-           fmt::format("is a level set with the background {}, which must be above 0",
-                       grid.background()));
-  if (!level_set && grid.background() != 0)
-    refuse(path, name,
-           fmt::format("has the background value {}, so the medium would have no end; set the "
-                       "background to 0 (or, for a level set, its class to \"level set\")",
-                       grid.background()));
-}
-
-template <class Grid>
 void write_grid(const std::string& path, const std::string& name, const Grid& grid,
                 Background background, int descriptor) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
@@ -159,7 +149,7 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
           openvdb::GridBase::META_FILE_VOXEL_COUNT))
     header.declared_voxels = declared->value();
   if (level_set || background == Background::refused)
-    check_background(path, name, grid, level_set);
+    check_kind(path, name, grid, level_set, static_cast<double>(grid.background()));
 
   std::vector<const Leaf*> leaves;
   header.active_voxels = active_tile_voxels(grid.tree());

@@ -1,4 +1,5 @@
 #include "cli_fixture.h"
+#include "volume_factory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,29 @@ TEST_F(InfoCommand, ShowsGridsAndWhatWouldBeRendered) {
                            "grid \"density\", with extinction", "temperature", "vec3s",
                            "looks wrong   flame: is empty"})
     EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
+}
+
+/// Of every kind of volume, also those that cannot be rendered, and for the same reason.
+TEST_F(InfoCommand, AgreesWithRenderAboutEveryKindOfVolume) {
+  int refused = 0;
+  for (const VolumeKind& kind : volume_kinds()) {
+    VolumeOptions options;
+    options.size = 16;
+    write_volume(kind.name, file("v.vdb"), options);
+    const auto info = run({"info", "v.vdb"});
+    const auto render_it = render({"v.vdb", "-o", "v.exr", "--passes", "1", "-q"});
+    ASSERT_EQ(info.code, 0) << kind.name << info.error;
+    const std::size_t nothing = info.out.find("rendered      nothing: ");
+    EXPECT_EQ(nothing == std::string::npos, render_it.code == 0) << kind.name << "\n"
+                                                                 << info.out << render_it.error;
+    if (nothing == std::string::npos)
+      continue;
+    ++refused;
+    // Behind the file's name both say the same.
+    const std::string why = render_it.error.substr(std::string("v.vdb: ").size());
+    EXPECT_NE(info.out.find(why), std::string::npos) << kind.name << "\n" << info.out << why;
+  }
+  EXPECT_GE(refused, 2); // a background, a frustum
 }
 
 TEST_F(InfoCommand, OneBadFileDoesNotHideTheOthers) {
