@@ -104,6 +104,8 @@ void FrameRenderer::remove_side_files(int frame) const {
   std::error_code ignored; // one that stays does no harm
   for (const char* kind : {"checkpoint", "snapshot"})
     std::filesystem::remove(side_file(output(frame), kind), ignored);
+  for (const std::string& part : options_.parts)
+    std::filesystem::remove(substitute_frame(part, frame), ignored);
 }
 
 std::string FrameRenderer::region_text() const {
@@ -188,9 +190,7 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   if (!options_.files.preview.empty())
     write_image(image, substitute_frame(options_.files.preview, loaded.frame), {options_.exposure});
   write_image(image, output(loaded.frame), {options_.exposure});
-  std::error_code ignored; // a part that stays does no harm
-  for (const std::string& path : paths)
-    std::filesystem::remove(path, ignored);
+  remove_side_files(loaded.frame);
 }
 
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {

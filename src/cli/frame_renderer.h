@@ -64,7 +64,7 @@ public:
   /// where the image is there that it was to be merged into.
   std::string why_unfinished(const LoadedFrame& loaded) const;
 
-  /// Removes the frame's checkpoint and snapshot, which a finished image has outlived.
+  /// Removes the frame's checkpoint, snapshot and parts, which a finished image has outlived.
   void remove_side_files(int frame) const;
 
 private:

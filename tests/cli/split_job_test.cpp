@@ -112,7 +112,7 @@ TEST_F(SplitJob, OtherPassesAndSettingsAreRenderedAgain) {
 TEST_F(SplitJob, AReplacedVolumeIsRenderedAgain) {
   submit("4");
   run_all();
-  fs::copy_file(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0020.vdb", folder_ / "c.vdb",
+  fs::copy_file(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb", folder_ / "c.vdb",
                 fs::copy_options::overwrite_existing);
   // A simulation's file may be older than the picture.
   fs::last_write_time(folder_ / "c.vdb",
@@ -125,7 +125,7 @@ TEST_F(SplitJob, StalePartsAreNotMerged) {
   submit("4");
   ASSERT_EQ(task("0"), 0) << read("log.txt");
   ASSERT_EQ(task("1"), 0) << read("log.txt");
-  fs::copy_file(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0020.vdb", folder_ / "c.vdb",
+  fs::copy_file(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb", folder_ / "c.vdb",
                 fs::copy_options::overwrite_existing);
   EXPECT_EQ(task("merge"), 3) << read("log.txt");
   EXPECT_NE(read("log.txt").find("volumes that have changed"), std::string::npos)
