@@ -1,14 +1,43 @@
-# cmake --install: the program, the static library, its headers and a package for
-# find_package(vdbeam), which defines vdbeam::vdbeam.
+# cmake --install: the program with its manual page, completions, documentation and sample scenes; the
+# static library, its headers and a package for find_package(vdbeam), which defines vdbeam::vdbeam.
 include(CMakePackageConfigHelpers)
 set(vdbeam_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdbeam)
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
+
 if(TARGET vdbeam_cli)
-  install(TARGETS vdbeam_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS vdbeam_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+
+  # The program writes its own manual page and completions, so that they cannot differ from --help.
+  set(pages ${PROJECT_BINARY_DIR}/generated/pages)
+  file(MAKE_DIRECTORY ${pages})
+  add_custom_command(OUTPUT ${pages}/vdbeam.1 ${pages}/vdbeam ${pages}/_vdbeam
+    COMMAND vdbeam_cli generate man > ${pages}/vdbeam.1
+    COMMAND vdbeam_cli generate bash > ${pages}/vdbeam
+    COMMAND vdbeam_cli generate zsh > ${pages}/_vdbeam
+    DEPENDS vdbeam_cli VERBATIM)
+  add_custom_target(vdbeam_pages ALL DEPENDS ${pages}/vdbeam.1 ${pages}/vdbeam ${pages}/_vdbeam)
+  install(FILES ${pages}/vdbeam.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  install(FILES ${pages}/vdbeam COMPONENT program
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  # Debian's zsh looks for the completions of packages in a folder of their own.
+  install(CODE "
+    set(folder site-functions)
+    if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+      set(folder vendor-completions)
+    endif()
+    file(INSTALL \"${pages}/_vdbeam\"
+         DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${folder}\")"
+    COMPONENT program)
+
+  install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          COMPONENT program)
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program
+          PATTERN reference EXCLUDE)
 endif()
 install(TARGETS vdbeam EXPORT vdbeamTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/vdbeam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT vdbeamTargets NAMESPACE vdbeam:: DESTINATION ${vdbeam_package_dir})
 configure_package_config_file(cmake/vdbeamConfig.cmake.in
@@ -20,3 +49,7 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/vdbeamConfig.cmake
               ${PROJECT_BINARY_DIR}/generated/vdbeamConfigVersion.cmake
               cmake/VdbeamLibraries.cmake
         DESTINATION ${vdbeam_package_dir})
+
+if(PROJECT_IS_TOP_LEVEL AND TARGET vdbeam_cli)
+  include(VdbeamPackage)
+endif()

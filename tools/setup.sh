@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
   # compiler and build tools
-  g++ cmake ninja-build pkg-config ccache
+  g++ cmake ninja-build pkg-config ccache dpkg-dev
   # OpenVDB; its development package does not pull in all that its headers and find module need
   libopenvdb-dev libboost-iostreams-dev libblosc-dev zlib1g-dev
   # the other libraries

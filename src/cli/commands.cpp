@@ -5,7 +5,7 @@
 namespace vdbeam::cli {
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 8> table{{
+  static constexpr std::array<Command, 9> table{{
       {"render", "Render a scene or a VDB to EXR", add_render},
       {"info", "Show what VDB files hold, what would be rendered, what looks wrong", add_info},
       {"init", "Write a commented scene file for a VDB", add_init},
@@ -14,6 +14,7 @@ std::span<const Command> commands() {
       {"merge", "Join partial images of one frame, bit for bit", add_merge},
       {"farm", "Write a job file for a render farm", add_farm},
       {"help", "Tell about a command", add_help},
+      {"generate", "Write the manual page or a shell's completion", add_generate},
   }};
   return table;
 }

@@ -17,6 +17,7 @@ CommandRun add_compare(CLI::App& app);
 CommandRun add_merge(CLI::App& app);
 CommandRun add_farm(CLI::App& app);
 CommandRun add_help(CLI::App& app);
+CommandRun add_generate(CLI::App& app);
 
 struct Command {
   const char* name;

@@ -51,6 +51,10 @@ std::string option_usage(const CLI::Option& option) {
   return option.get_name(false, true) + (text.empty() ? "" : " " + text);
 }
 
+std::vector<const CLI::App*> visible_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); });
+}
+
 std::vector<std::string> option_groups(const CLI::App& app) {
   std::vector<std::string> groups = app.get_groups();
   std::stable_partition(groups.begin(), groups.end(),

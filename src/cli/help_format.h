@@ -26,6 +26,9 @@ std::string option_usage(const CLI::Option& option);
 void group_options(CLI::App& app, const std::string& group,
                    std::initializer_list<const char*> options);
 
+/// An app's commands that help shows.
+std::vector<const CLI::App*> visible_commands(const CLI::App& app);
+
 /// An app's groups of options, in the order of help.
 std::vector<std::string> option_groups(const CLI::App& app);
 

@@ -3,6 +3,7 @@
 #include "cli/streams.h"
 #include "report/report.h"
 #include "text/frame_range.h"
+#include "text/missing_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -28,6 +29,17 @@ std::string with_pattern(const fs::path& path) {
       .string();
 }
 
+/// "s.<UDIM>.exr" becomes "s.####.exr", "s.%V.####.exr" becomes "s.####.exr".
+std::string without_token(const std::string& path, const std::string& token) {
+  std::string result = path;
+  const std::size_t at = result.rfind(token);
+  result.replace(at, token.size(), has_frame_pattern(path) ? "" : "####");
+  if (const std::size_t dots = result.find("..", at > 0 ? at - 1 : 0);
+      has_frame_pattern(path) && dots != std::string::npos)
+    result.erase(dots, 1);
+  return result;
+}
+
 void check_one(const std::string& option, const std::string& name) {
   std::error_code error;
   const fs::path path(name);
@@ -36,7 +48,10 @@ void check_one(const std::string& option, const std::string& name) {
     fail(option, name, "is a folder; add a file's name");
   if (!fs::exists(folder, error))
     fail(option, name,
-         fmt::format("there is no folder {0}; make it with: mkdir -p {0}", folder.string()));
+         unexpanded_hint(folder.string()).empty()
+             ? fmt::format("there is no folder {0}; make it with: mkdir -p {0}", folder.string())
+             : fmt::format("there is no folder {}{}", folder.string(),
+                           unexpanded_hint(folder.string())));
   if (!fs::is_directory(folder, error))
     fail(option, name, fmt::format("{} is not a folder", folder.string()));
   if (access(folder.c_str(), W_OK | X_OK) != 0)
@@ -52,6 +67,10 @@ void check_output_path(const std::string& option, const std::string& path,
                        const std::vector<int>& frames) {
   if (path.empty())
     return;
+  if (const std::string token = foreign_token(path); !token.empty())
+    fail(option, path,
+         fmt::format("{} does not stand for the frame number; write {}", token,
+                     without_token(path, token)));
   if (frames.size() > 1 && !has_frame_pattern(path))
     fail(
         option, path,

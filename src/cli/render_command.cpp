@@ -150,6 +150,10 @@ int run_render(RenderOptions& options) {
   if (options.overwrite)
     options.batch.skip_existing = false;
   check_before_rendering(options, document, frames);
+  const FrameFiles& files = frame.files;
+  if (frame.exposure != 0 && files.preview.empty() &&
+      output_format(files.output).extension == ".exr" && !frame.quiet)
+    fmt::print(stderr, "note: --exposure brightens only a --preview or a .png; there is none\n");
   handle_signals();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }

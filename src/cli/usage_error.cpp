@@ -20,8 +20,7 @@ bool is_option(const std::string& word) {
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* sub :
-       app.get_subcommands([](const CLI::App* s) { return !s->get_group().empty(); }))
+  for (const CLI::App* sub : visible_commands(app))
     names.push_back(sub->get_name());
   return names;
 }

@@ -2,8 +2,10 @@
 
 #include "scene/default_scene.h"
 #include "scene/scene_reader.h"
+#include "scene/toml_remedy.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
+#include "text/missing_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
@@ -24,11 +26,11 @@ std::string read_text(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error))
     throw InputError(one_line(fmt::format("{}: is a folder, not a scene file or VDB", path)));
+  if (fs::is_character_file(path, error))
+    throw InputError(one_line(path + ": is a device, not a scene file or VDB"));
   std::ifstream stream(path, std::ios::binary);
   if (!stream)
-    throw InputError(one_line(fmt::format("{}: cannot be opened: {}", path,
-                                          fs::exists(path, error) ? "no permission to read it"
-                                                                  : "there is no such file")));
+    throw InputError(one_line(path + ": cannot be opened: no permission to read it"));
   std::string text, chunk(1 << 16, '\0');
   while (text.size() <= longest_scene_file &&
          (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) ||
@@ -36,6 +38,11 @@ std::string read_text(const std::string& path) {
     text.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
   if (text.size() > longest_scene_file)
     throw InputError(one_line(fmt::format("{}: is too large for a scene file", path)));
+  for (const auto& [magic, kind] :
+       {std::pair("\x76\x2f\x31\x01", "an OpenEXR picture"), std::pair("\x89PNG", "a PNG picture"),
+        std::pair("#?RADIANCE", "a Radiance picture")})
+    if (text.starts_with(magic))
+      throw InputError(one_line(fmt::format("{}: is {}, not a scene file or VDB", path, kind)));
   return text;
 }
 
@@ -48,8 +55,9 @@ toml::table parse_toml(const std::string& text, const std::string& path) {
     if (const auto colon = reason.find(": ");
         reason.starts_with("Error while") && colon < reason.size())
       reason.erase(0, colon + 2);
-    throw InputError(one_line(
-        fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, reason)));
+    const std::string line =
+        one_line(fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, reason));
+    throw InputError(line + toml_remedy(reason, text, error.source().begin.line));
   }
 }
 
@@ -117,6 +125,8 @@ bool is_vdb_file(const std::string& path) {
 
 SceneDocument::SceneDocument(const std::string& path, const std::vector<Override>& overrides)
     : path_(path), folder_(fs::path(path).parent_path()) {
+  if (std::error_code error; !fs::exists(path, error) && vdbeam::frames_on_disk(path).empty())
+    throw InputError(missing_file_text(path));
   if (is_vdb_file(path)) {
     const Scene scene = make_default_scene(path, wishes_of(overrides));
     notes_ = scene.notes;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace vdbeam {
 namespace {
@@ -37,6 +38,21 @@ std::string format_list(const std::vector<double>& list, KeyKind kind) {
     text += (text.empty() ? "" : ", ") + number;
   }
   return "[" + text + "]";
+}
+
+/// What other programs call some of the choices.
+std::optional<std::string> synonym_of(const std::string& word,
+                                      const std::vector<std::string>& choices) {
+  static const std::map<std::string, std::string> synonyms{
+      {"sun", "distant"},         {"directional", "distant"},  {"dome", "environment"},
+      {"skydome", "environment"}, {"sky", "environment"},      {"hdri", "environment"},
+      {"omni", "point"},          {"hg", "henyey_greenstein"}, {"double_hg", "two_lobe"},
+      {"blackbody", "planck"},    {"epan", "epanechnikov"}};
+  const auto found = synonyms.find(word);
+  if (found == synonyms.end() ||
+      std::find(choices.begin(), choices.end(), found->second) == choices.end())
+    return std::nullopt;
+  return found->second;
 }
 
 } // namespace
@@ -84,7 +100,9 @@ std::optional<std::string> SceneKey::complaint(const KeyValue& value) const {
     return number_complaint(*number);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end()) {
-      const auto near = nearest_word(*text, choices);
+      auto near = nearest_word(*text, choices);
+      if (const auto synonym = synonym_of(*text, choices); !near)
+        near = synonym;
       return fmt::format("must be {}{}{}", join_words(choices, "or"), got(),
                          near ? "; did you mean " + *near + "?" : "");
     }

@@ -3,6 +3,7 @@
 #include "scene/animation.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
+#include "text/missing_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -84,7 +85,29 @@ Scene SceneReader::read(const toml::table& root) {
         one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
   }
   validate_consistency(scene_, [this](const std::string& key) { return locate(key); });
+  note_idle_keys();
   return std::move(scene_);
+}
+
+/// Tells of what is right but cannot be what was meant.
+void SceneReader::note_idle_keys() {
+  for (std::size_t i = 0; i < scene_.volumes.size(); ++i)
+    for (const char* name : {"kelvin", "kelvin_offset", "reference", "law"}) {
+      const SceneKey& key = *find_key(SceneSection::emission, name);
+      const std::string path = key_path(key, i);
+      // A file by vdbeam init has every key, with its default where it does not matter.
+      if (scene_.volumes[i].emission.temperature.empty() && locations_.contains(path) &&
+          key.format(key.get(scene_, i)) != key.default_text())
+        scene_.notes.push_back(
+            fmt::format("{}: {} does nothing without a temperature grid", locate(path), path));
+    }
+  // Nobody wants a picture of 1.6 degrees or less; half a turn is pi in radians.
+  constexpr double narrow = 1.6, degrees = 180 / 3.14159265358979323846;
+  if (scene_.camera.fov < narrow)
+    scene_.notes.push_back(fmt::format("{}: camera.fov = {} is in degrees; if radians are meant, "
+                                       "write {:.3g}",
+                                       locate("camera.fov"), scene_.camera.fov,
+                                       scene_.camera.fov * degrees));
 }
 
 void SceneReader::read_section(SceneSection section, const toml::node& node) {
@@ -191,6 +214,10 @@ std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
   // A path typed in a shell is relative to where it was typed.
   const std::string pattern = (is_override(node) ? fs::path(text) : folder_ / text).string();
   int number = frame_;
+  if (key.section == SceneSection::volume && time_ && !has_frame_pattern(pattern))
+    scene_.notes.push_back(fmt::format("{}: volume.{}.time does nothing: file names a single file, "
+                                       "not a sequence like smoke.####.vdb",
+                                       location_of(node), index));
   if (key.section == SceneSection::volume && time_ && has_frame_pattern(pattern)) {
     const auto mapped = time_->file_frame(frame_, frames_on_disk(pattern));
     if (!mapped) {
@@ -223,9 +250,11 @@ std::string SceneReader::resolve_missing(const std::string& key, const std::stri
   const std::string file = substitute_frame(pattern, number);
   const std::vector<int> frames = frames_on_disk(pattern);
   if (missing_ != MissingFile::hold || frames.empty())
-    throw InputError(one_line(
-        fmt::format("{}: {}: there is no file {}{}", location_of(node), key, file,
-                    frames.empty() ? "" : "; there are frames " + format_frame_range(frames))));
+    throw InputError(fmt::format(
+        "{}: {}: {}", location_of(node), key,
+        frames.empty() ? missing_file_text(pattern)
+                       : one_line(fmt::format("there is no file {}; there are frames {}", file,
+                                              format_frame_range(frames)))));
   int held = frames.front();
   for (const int frame : frames)
     if (frame <= number)
@@ -277,7 +306,13 @@ void SceneReader::place_volume(std::size_t index) {
     return found == placement_.end() ? Vec3d(standard)
                                      : Vec3d(found->second[0], found->second[1], found->second[2]);
   };
-  const Vec3d translate = get("translate", 0), angles = get("rotate", 0), scale = get("scale", 1);
+  const Vec3d factors = get("scale", 1);
+  if (factors.x * factors.y * factors.z == 0) {
+    const std::string key = fmt::format("volume.{}.scale", index);
+    throw InputError(fmt::format("{}: {} must not be 0 in any direction, got [{}, {}, {}]",
+                                 locate(key), key, factors.x, factors.y, factors.z));
+  }
+  const Vec3d translate = get("translate", 0), angles = get("rotate", 0), scale = factors;
   const auto rotate = [](double& a, double& b, double degrees) {
     const double radians = degrees * 3.14159265358979323846 / 180;
     const double c = std::cos(radians), s = std::sin(radians);

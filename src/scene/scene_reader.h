@@ -27,6 +27,7 @@ public:
   Scene read(const toml::table& root);
 
 private:
+  void note_idle_keys();
   void read_section(SceneSection section, const toml::node& node);
   void read_list(SceneSection section, const toml::node& node);
   void read_table(SceneSection section, std::size_t index, const toml::table& table);

@@ -83,14 +83,28 @@ int take_width(const std::string& path, std::size_t& position) {
   return width;
 }
 
+/// `${F4}` or `<F4>` at `begin`.
+std::optional<Pattern> find_bracketed(const std::string& path, std::size_t begin) {
+  const std::string_view rest = std::string_view(path).substr(begin);
+  const bool braces = rest.starts_with("${F");
+  if (!braces && !rest.starts_with("<F") && !rest.starts_with("<f"))
+    return std::nullopt;
+  std::size_t end = begin + (braces ? 3 : 2);
+  const int width = take_width(path, end);
+  if (end >= path.size() || path[end] != (braces ? '}' : '>'))
+    return std::nullopt;
+  return Pattern{begin, end + 1 - begin, width};
+}
+
 std::optional<Pattern> find_pattern(const std::string& path, std::size_t start) {
   for (std::size_t i = start; i < path.size(); ++i) {
     std::size_t end = i + 1;
-    if (path[i] == '#') {
-      while (end < path.size() && path[end] == '#')
+    if (path[i] == '#' || path[i] == '@') {
+      while (end < path.size() && path[end] == path[i])
         ++end;
       const int count = static_cast<int>(end - i);
-      return Pattern{i, end - i, count == 1 ? 4 : count};
+      if (path[i] == '#' || count > 1) // a single @ is a letter like others
+        return Pattern{i, end - i, count == 1 ? 4 : count};
     }
     if (path[i] == '%') {
       const int width = take_width(path, end);
@@ -102,6 +116,8 @@ std::optional<Pattern> find_pattern(const std::string& path, std::size_t start) 
       const int width = take_width(path, end);
       return Pattern{i, end - i, width};
     }
+    if (const auto pattern = find_bracketed(path, i))
+      return pattern;
   }
   return std::nullopt;
 }
@@ -159,6 +175,28 @@ std::string substitute_frame(const std::string& path, int frame) {
     position = pattern->begin + pattern->length;
   }
   return result + path.substr(position);
+}
+
+std::string foreign_token(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  while (const auto pattern = find_pattern(name, 0))
+    name.replace(pattern->begin, pattern->length, "0");
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (name[i] == '*' || name[i] == '?')
+      return name.substr(i, 1);
+    if (name[i] == '%' && i + 1 < name.size() && (name[i + 1] == 'V' || name[i + 1] == 'v'))
+      return name.substr(i, 2);
+    if (name[i] == '<')
+      if (const std::size_t end = name.find('>', i); end != std::string::npos)
+        return name.substr(i, end + 1 - i);
+  }
+  return {};
+}
+
+std::string first_token(const std::string& name) {
+  if (const auto pattern = find_pattern(name, 0))
+    return name.substr(pattern->begin, pattern->length);
+  return foreign_token(name);
 }
 
 std::string frame_pattern_of(const std::string& path) {

@@ -14,11 +14,19 @@ std::vector<int> parse_frame_range(const std::string& text);
 std::string format_frame_range(const std::vector<int>& frames);
 
 /// True where the path holds a frame number's place: `####` (one digit each; a single `#` is four),
-/// `%04d` or `%d`, `$F4` or `$F`.
+/// `@@@@` (at least two), `%04d` or `%d`, `$F4`, `${F4}` or `<F4>`, and each of these without
+/// digits.
 bool has_frame_pattern(const std::string& path);
 
 /// The path with every such place filled in, as printf's %0Nd would write the number.
 std::string substitute_frame(const std::string& path, int frame);
+
+/// What stands in a file's name like a placeholder, but not for the frame number: "<UDIM>",
+/// "<frame>" (of how many digits?), "%V", "*". Empty where there is no such thing.
+std::string foreign_token(const std::string& path);
+
+/// The first placeholder of a name, of a frame number or any other; empty where there is none.
+std::string first_token(const std::string& name);
 
 /// The pattern that a file of a sequence follows: "smoke.0020.vdb" gives "smoke.####.vdb", by the
 /// last digits of its name. Empty for a name without digits.

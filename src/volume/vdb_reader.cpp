@@ -31,6 +31,8 @@ std::uint64_t check_file(const std::string& path) {
     throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
   if (!S_ISREG(status.st_mode))
     throw InputError(path + ": is not a regular file");
+  if (status.st_size == 0)
+    throw FrameError(path + ": is empty (0 bytes): perhaps it is still being copied");
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0)
     throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));

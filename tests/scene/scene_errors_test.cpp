@@ -23,7 +23,20 @@ INSTANTIATE_TEST_SUITE_P(
     Syntax, BadSceneFile,
     ::testing::Values(
         BadScene{"[image]\nwidth = 1\nwidth = 2\n",
-                 "s.toml:3: not valid TOML: cannot redefine existing integer 'width'"},
+                 "s.toml:3: not valid TOML: cannot redefine existing integer 'width'; it is there "
+                 "already, in line 2"},
+        BadScene{"[[light]]\ntype = 'point'\n[light]\ntype = 'point'\n",
+                 "s.toml:3: not valid TOML: cannot redefine existing array 'light' as table; write "
+                 "[[light]], in double brackets"},
+        BadScene{"[[light]]\ntype = point\n",
+                 "s.toml:2: not valid TOML: could not determine value type; a text needs quotes: "
+                 "\"...\""},
+        BadScene{"[camera]\nfov = 24,5\n",
+                 "s.toml:2: not valid TOML: expected a comment or whitespace, saw ','; decimals "
+                 "have a point: 24.5"},
+        BadScene{"[[volume]]\nfile = \"C:\\shot\\cloud.vdb\"\n",
+                 "s.toml:2: not valid TOML: unknown escape sequence '\\s'; write a path with / or "
+                 "in single quotes: 'C:\\shot\\cloud.vdb'"},
         BadScene{"\n\n[image\n", "s.toml:3: not valid TOML: expected ']', saw '\\n'"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -104,10 +117,14 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2: render.estimator must be beam, march or path, got \"beams\"; did you "
                  "mean beam?"},
         BadScene{"[[light]]\ntype = 'sun'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot or environment, got \"sun\""},
+                 "s.toml:2: light.0.type must be distant, point, spot or environment, got \"sun\"; "
+                 "did you mean distant?"},
+        BadScene{"[[light]]\ntype = 'dome'\n",
+                 "s.toml:2: light.0.type must be distant, point, spot or environment, got "
+                 "\"dome\"; did you mean environment?"},
         BadScene{VOLUME "phase = 'hg'\n",
                  "s.toml:3: volume.0.phase.type must be isotropic, henyey_greenstein, rayleigh, "
-                 "two_lobe or mie, got \"hg\""}));
+                 "two_lobe or mie, got \"hg\"; did you mean henyey_greenstein?"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Consistency, BadSceneFile,
@@ -118,6 +135,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[[light]]\n", "s.toml:1: light.0 needs type: kind of light"},
         BadScene{"[[volume]]\nfile = 'fog.vdb'\n",
                  "s.toml:2: volume.0.file: there is no file fog.vdb"},
+        BadScene{"[[volume]]\nfile = 'clowd.vdb'\n",
+                 "s.toml:2: volume.0.file: there is no file clowd.vdb; did you mean cloud.vdb?"},
+        BadScene{
+            "[[volume]]\nfile = '$SHOT/cloud.vdb'\n",
+            "s.toml:2: volume.0.file: there is no file $SHOT/cloud.vdb; $SHOT is not expanded: "
+            "write out the path"},
+        BadScene{"[[volume]]\nfile = '~/cloud.vdb'\n",
+                 "s.toml:2: volume.0.file: there is no file ~/cloud.vdb; ~ is not expanded: write "
+                 "out the path"},
+        BadScene{"[[volume]]\nfile = 'shot/cloud.vdb'\n",
+                 "s.toml:2: volume.0.file: there is no file shot/cloud.vdb, nor its folder"},
         BadScene{"[[volume]]\nfile = '.'\n",
                  "s.toml:2: volume.0.file: there is no file ., which is a folder"},
         BadScene{"[[light]]\ntype = 'environment'\nimage = 'sky.exr'\n",
@@ -133,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[[light]]\ntype = 'spot'\ncone_angle = 3\ncone_falloff = 4\n",
                  "s.toml:4: light.0.cone_falloff must be at most cone_angle (3), got 4"},
         BadScene{VOLUME "scale = [1, 0, 1]\n",
-                 "s.toml:3: volume.0.transform must be invertible (no scale may be 0)"},
+                 "s.toml:3: volume.0.scale must not be 0 in any direction, got [1, 0, 1]"},
         BadScene{VOLUME "translate = [1, 0, 1]\ntransform = [1,0,0,0, 0,1,0,0, 0,0,1,0]\n",
                  "s.toml:4: volume.0.transform excludes translate: write one or the other"},
         BadScene{"[camera]\nposition = [1, 2, 3]\nlook_at = [1, 2, 3]\n",
@@ -163,6 +191,55 @@ TEST_F(SceneErrors, MissingFrameNamesTheFramesThereAre) {
     EXPECT_EQ(without_folder(error.what()),
               "q.toml:2: volume.0.file: there is no file s.0003.vdb; there are frames 1,2,5");
   }
+}
+
+TEST_F(SceneErrors, WrongPlaceholderNamesTheSequenceBesideIt) {
+  for (const char* name : {"s.0001.vdb", "s.0002.vdb", "s.0005.vdb"})
+    write(name, "");
+  for (const char* name : {"s.*.vdb", "s.<UDIM>.vdb", "s.<frame>.vdb", "s.###.vdb", "s.$F.vdb"})
+    EXPECT_EQ(error_of("[[volume]]\nfile = '" + std::string(name) + "'\n"),
+              "s.toml:2: volume.0.file: there is no file " + std::string(name) +
+                  "; there is s.####.vdb, frames 1,2,5");
+}
+
+TEST_F(SceneErrors, WhatIsNoSceneIsNamed) {
+  const auto error_of_file = [this](const std::string& path) {
+    try {
+      load_scene(path);
+    } catch (const InputError& error) {
+      return without_folder(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error_of_file(write("a.exr", "\x76\x2f\x31\x01...")),
+            "a.exr: is an OpenEXR picture, not a scene file or VDB");
+  EXPECT_EQ(error_of_file(write("a.png", "\x89PNG...")),
+            "a.png: is a PNG picture, not a scene file or VDB");
+  EXPECT_EQ(error_of_file("/dev/null"), "/dev/null: is a device, not a scene file or VDB");
+  EXPECT_EQ(error_of_file(file("b.exr")), "there is no file b.exr; did you mean a.exr?");
+}
+
+TEST_F(SceneErrors, WhatCannotBeMeantIsNoted) {
+  const std::string volume = "[[volume]]\nfile = 'cloud.vdb'\n";
+  const std::string light = "[[light]]\ntype = 'point'\n";
+  const auto notes = [&](const std::string& text) {
+    std::string all;
+    for (const std::string& note : load(text).notes)
+      all += without_folder(note) + "\n";
+    return all;
+  };
+  EXPECT_EQ(notes(volume + light + "[camera]\nfov = 24\n"), "");
+  EXPECT_EQ(notes(volume + light + "[camera]\nfov = 0.42\n"),
+            "s.toml:6: camera.fov = 0.42 is in degrees; if radians are meant, write 24.1\n");
+  EXPECT_EQ(notes(volume + "time = { speed = 2 }\n" + light),
+            "s.toml:2: volume.0.time does nothing: file names a single file, not a sequence like "
+            "smoke.####.vdb\n");
+  EXPECT_EQ(notes(volume + "emission = { intensity = 'flame', kelvin = 900 }\n" + light),
+            "s.toml:3: volume.0.emission.kelvin does nothing without a temperature grid\n");
+  EXPECT_EQ(notes(volume + "emission = { intensity = 'flame', temperature = 't', kelvin = 900 }\n" +
+                  light),
+            "");
+  EXPECT_EQ(notes(volume + "emission = { intensity = 'flame', kelvin = 1 }\n" + light), "");
 }
 
 TEST_F(SceneErrors, FirstMistakeOfTheFileIsTold) {

@@ -67,18 +67,40 @@ TEST(FramePattern, EveryNotation) {
   EXPECT_EQ(substitute_frame("a.%d.vdb", 7), "a.7.vdb");
   EXPECT_EQ(substitute_frame("a.$F4.vdb", 12), "a.0012.vdb");
   EXPECT_EQ(substitute_frame("a.$F.vdb", 12), "a.12.vdb");
+  EXPECT_EQ(substitute_frame("a.${F4}.vdb", 12), "a.0012.vdb");
+  EXPECT_EQ(substitute_frame("a.<F4>.vdb", 12), "a.0012.vdb");
+  EXPECT_EQ(substitute_frame("a.<f3>.<F>.vdb", 12), "a.012.12.vdb");
+  EXPECT_EQ(substitute_frame("a.@@@@.vdb", 12), "a.0012.vdb");
   EXPECT_EQ(substitute_frame("a.####.vdb", -7), "a.-007.vdb");
   EXPECT_EQ(substitute_frame("f####/a_%03d.$F2", 5), "f0005/a_005.05");
 }
 
 TEST(FramePattern, OtherNamesStayAsTheyAre) {
-  for (const char* name : {"a.0007.vdb", "100%.vdb", "%s.vdb", "$FRAME", "$HIP/a", "a%04x"}) {
+  for (const char* name : {"a.0007.vdb", "100%.vdb", "%s.vdb", "$FRAME", "$HIP/a", "a%04x",
+                           "me@home", "<UDIM>", "<F4", "${F4", "${FF}", "<Frame>", "s.*.vdb"}) {
     if (std::string(name) != "$FRAME") {
       EXPECT_FALSE(has_frame_pattern(name)) << name;
       EXPECT_EQ(substitute_frame(name, 3), name);
     }
   }
   EXPECT_TRUE(has_frame_pattern("a.####.vdb"));
+}
+
+TEST(FramePattern, ForeignPlaceholdersAreFound) {
+  EXPECT_EQ(foreign_token("s.<UDIM>.exr"), "<UDIM>");
+  EXPECT_EQ(foreign_token("s.<frame>.exr"), "<frame>");
+  EXPECT_EQ(foreign_token("s.%V.%04d.exr"), "%V");
+  EXPECT_EQ(foreign_token("s.*.exr"), "*");
+  for (const char* path :
+       {"s.exr", "s.####.exr", "s.<F4>.exr", "s.${F4}.exr", "a*b/s.exr", "a<b.exr"})
+    EXPECT_EQ(foreign_token(path), "") << path;
+}
+
+TEST(FramePattern, IsFoundFromAFile) {
+  EXPECT_EQ(frame_pattern_of("a/smoke.0020.vdb"), "a/smoke.####.vdb");
+  EXPECT_EQ(frame_pattern_of("v2_smoke12.vdb"), "v2_smoke##.vdb");
+  EXPECT_EQ(frame_pattern_of("smoke.7.vdb"), "smoke.%d.vdb");
+  EXPECT_EQ(frame_pattern_of("smoke.vdb"), "");
 }
 
 using FramesOnDisk = test::SceneTest;

@@ -41,8 +41,17 @@ TEST_F(ReadErrors, missing_and_unreadable_files) {
   EXPECT_EQ(refusal("/dev/zero"), ": is not a regular file");
   test::write_bytes(folder_.file("text.vdb"), "a text, not a volume");
   EXPECT_EQ(refusal(folder_.file("text.vdb")), ": is not a VDB file");
-  test::write_bytes(folder_.file("empty.vdb"), "");
-  EXPECT_EQ(refusal(folder_.file("empty.vdb")), ": is not a VDB file");
+}
+
+TEST_F(ReadErrors, empty_files_may_still_be_copied) {
+  const std::string path = folder_.file("empty.vdb");
+  test::write_bytes(path, "");
+  try {
+    read_density_grid(path, "density");
+    FAIL();
+  } catch (const FrameError& error) { // trying again may help
+    EXPECT_EQ(error.what(), path + ": is empty (0 bytes): perhaps it is still being copied");
+  }
 }
 
 TEST_F(ReadErrors, missing_grids) {

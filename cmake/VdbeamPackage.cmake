@@ -1,0 +1,21 @@
+# cpack: vdbeam_VERSION_ARCH.deb with the program, libvdbeam-dev_VERSION_ARCH.deb with the library.
+# dpkg-shlibdeps finds what the program depends on.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME vdbeam)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_CONTACT "The vdbeam authors <vdbeam@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME vdbeam)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvdbeam-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "libopenvdb-dev, libtbb-dev, libopenexr-dev, libimath-dev, libpng-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libhwy-dev")
+include(CPack)
