@@ -1,12 +1,18 @@
 #include "cli/commands.h"
 #include "cli/grid_notes.h"
 #include "cli/streams.h"
+#include "text/frame_range.h"
+#include "text/missing_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "volume/vdb_reader.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 
 namespace vdbeam::cli {
 namespace {
@@ -55,14 +61,64 @@ void print_file(const std::string& file) {
   print_output(text);
 }
 
+/// The VDBs of a folder, in the order of their names.
+std::vector<std::string> volumes_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".vdb")
+      files.push_back(entry.path().string());
+  if (files.empty())
+    throw InputError(one_line(folder + ": is a folder without a .vdb file"));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The first, the middle and the last file of a sequence.
+std::vector<std::string> samples_of(const std::string& pattern) {
+  const std::vector<int> frames = frames_on_disk(pattern);
+  if (frames.empty())
+    throw InputError(missing_file_text(pattern));
+  const std::set<int> shown{frames.front(), frames[frames.size() / 2], frames.back()};
+  print_output(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
+             shown.size() == 1 ? "is" : "are", format_frame_range({shown.begin(), shown.end()})));
+  std::vector<std::string> files;
+  for (const int frame : shown)
+    files.push_back(substitute_frame(pattern, frame));
+  return files;
+}
+
+/// The files that a word of the command line stands for.
+std::vector<std::string> files_of(const std::string& word) {
+  std::error_code error;
+  if (std::filesystem::is_directory(word, error))
+    return volumes_in(word);
+  if (std::filesystem::exists(word, error))
+    return {word};
+  if (has_frame_pattern(word))
+    return samples_of(word);
+  throw InputError(missing_file_text(word));
+}
+
 /// One unreadable file does not hide the others.
 int run_info(const InfoOptions& options) {
   int code = 0;
-  for (const std::string& file : options.files) {
+  std::vector<std::string> files;
+  for (const std::string& word : options.files) {
+    try {
+      const std::vector<std::string> found = files_of(word);
+      files.insert(files.end(), found.begin(), found.end());
+    } catch (const Error& error) {
+      if (options.files.size() == 1)
+        throw;
+      log_line(error.what());
+      code = static_cast<int>(error.code());
+    }
+  }
+  for (const std::string& file : files) {
     try {
       print_file(file);
     } catch (const Error& error) {
-      if (options.files.size() == 1)
+      if (files.size() == 1 && code == 0)
         throw;
       log_line(error.what());
       code = code == 0 ? static_cast<int>(error.code()) : code;
@@ -75,10 +131,14 @@ int run_info(const InfoOptions& options) {
 
 CommandRun add_info(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
-  app.add_option("files", options->files, "VDB files")->required()->option_text("FILE...");
+  app.add_option("files", options->files,
+                 "VDB files, folders of them, or sequences like smoke.####.vdb")
+      ->required()
+      ->option_text("FILE...");
   app.footer(R"(Examples:
   vdbeam info cloud.vdb
-  vdbeam info smoke/*.vdb)");
+  vdbeam info smoke/*.vdb
+  vdbeam info smoke/smoke.####.vdb              the first, the middle and the last frame)");
   return [options] { return run_info(*options); };
 }
 

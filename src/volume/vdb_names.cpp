@@ -26,7 +26,27 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 } // namespace
+
+std::string same_grid_name(const std::string& wanted, const std::vector<std::string>& names) {
+  std::string found;
+  for (const std::string& name : names) {
+    if (name == wanted)
+      return name;
+    if (lower_case(name) != lower_case(wanted))
+      continue;
+    if (!found.empty())
+      return {};
+    found = name;
+  }
+  return found;
+}
 
 std::string missing_grid_message(const std::string& path, const std::string& wanted,
                                  const std::vector<std::string>& names) {

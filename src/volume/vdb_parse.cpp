@@ -26,6 +26,17 @@ std::vector<std::string> grid_names(openvdb::io::File& file) {
   return names;
 }
 
+/// OpenVDB also finds a grid by its name where several share it: then the first of them.
+std::string find_grid(openvdb::io::File& file, const std::string& path, const std::string& wanted) {
+  if (file.hasGrid(wanted))
+    return wanted;
+  const std::vector<std::string> names = grid_names(file);
+  const std::string name = same_grid_name(wanted, names);
+  if (name.empty())
+    throw InputError(missing_grid_message(path, wanted, names));
+  return name;
+}
+
 [[noreturn]] void refuse(const std::string& path, const std::string& grid, const std::string& why) {
   throw InputError(fmt::format("{}: grid \"{}\" {}", path, grid, why));
 }
@@ -184,21 +195,19 @@ void write_grid_names(const std::string& path, int descriptor) {
     write_all(descriptor, (name + '\n').data(), name.size() + 1);
 }
 
-void require_density_grid(const std::string& path, const std::string& grid_name) {
+std::string require_density_grid(const std::string& path, const std::string& grid_name) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
-  if (!file.hasGrid(grid_name))
-    throw InputError(missing_grid_message(path, grid_name, grid_names(file)));
-  check_kind(path, grid_name,
-             *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(grid_name)));
+  const std::string name = find_grid(file, path, grid_name);
+  check_kind(path, name, *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(name)));
+  return name;
 }
 
-void write_raw_grid(const std::string& path, const std::string& grid_name, Background background,
+void write_raw_grid(const std::string& path, const std::string& wanted, Background background,
                     int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files
-  if (!file.hasGrid(grid_name))
-    throw InputError(missing_grid_message(path, grid_name, grid_names(file)));
+  const std::string grid_name = find_grid(file, path, wanted);
   check_kind(path, grid_name, *file.readGridMetadata(grid_name));
   const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
   check_kind(path, grid_name, grid);

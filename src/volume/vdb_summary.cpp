@@ -141,8 +141,8 @@ void write_encoded(const GridSummary& summary, int descriptor) {
 
 } // namespace
 
-void write_header(const std::string& path, const std::string& grid_name, int descriptor) {
-  require_density_grid(path, grid_name);
+void write_header(const std::string& path, const std::string& wanted, int descriptor) {
+  const std::string grid_name = require_density_grid(path, wanted);
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
   const openvdb::GridBase& grid =

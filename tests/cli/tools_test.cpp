@@ -52,6 +52,19 @@ TEST_F(InfoCommand, OneBadFileDoesNotHideTheOthers) {
   EXPECT_NE(result.out.find("2531378 active"), std::string::npos);
 }
 
+TEST_F(InfoCommand, TakesPatternsAndFolders) {
+  const auto pattern = run({"info", smoke_pattern});
+  ASSERT_EQ(pattern.code, 0) << pattern.error;
+  EXPECT_TRUE(pattern.out.starts_with(smoke_pattern + ": frames 1,12,24; shown are 1,12,24\n"))
+      << pattern.out;
+  const auto folder = run({"info", VDBEAM_SOURCE_DIR "/data/smoke"});
+  EXPECT_EQ(folder.code, 0) << folder.error;
+  EXPECT_EQ(folder.out, pattern.out.substr(pattern.out.find('\n') + 1));
+  std::filesystem::create_directory(folder_ / "none");
+  EXPECT_EQ(run({"info", "none"}).error, "none: is a folder without a .vdb file\n");
+  EXPECT_NE(run({"info", "x.####.vdb"}).error.find("there is no file"), std::string::npos);
+}
+
 TEST_F(InitCommand, WritesASceneThatLoads) {
   const auto result = run({"init", cloud_vdb, "-o", "s.toml"});
   ASSERT_EQ(result.code, 0) << result.error;

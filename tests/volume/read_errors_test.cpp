@@ -65,6 +65,16 @@ TEST_F(ReadErrors, missing_grids) {
             "\"density[0]\"?");
 }
 
+TEST_F(ReadErrors, capitals_do_not_matter_where_one_grid_is_meant) {
+  const std::string path = make("noise");
+  EXPECT_EQ(read_density_grid(path, "Density").active_voxels,
+            read_density_grid(path, "density").active_voxels);
+  EXPECT_EQ(read_grid_header(path, "DENSITY").name, "density");
+  EXPECT_EQ(same_grid_name("Flame", {"flame", "Flame"}), "Flame");
+  EXPECT_EQ(same_grid_name("FLAME", {"flame", "Flame"}), ""); // which one?
+  EXPECT_EQ(same_grid_name("fire", {"flame"}), "");
+}
+
 TEST_F(ReadErrors, long_lists_of_grids_are_cut) {
   std::vector<std::string> names;
   for (int i = 0; i < 30; ++i)
