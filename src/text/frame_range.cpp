@@ -178,9 +178,7 @@ std::string substitute_frame(const std::string& path, int frame) {
 }
 
 std::string foreign_token(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
-  while (const auto pattern = find_pattern(name, 0))
-    name.replace(pattern->begin, pattern->length, "0");
+  const std::string name = substitute_frame(std::filesystem::path(path).filename().string(), 0);
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (name[i] == '*' || name[i] == '?')
       return name.substr(i, 1);
