@@ -6,7 +6,7 @@ source tools/common.sh
 
 build release vdbeam_cli
 mkdir -p out
-stage render build/release/vdbeam render data/cloud.toml -o out/cloud.exr --preview out/cloud.png
+stage render build/release/vdbeam render data/sunlit_cloud.toml -o out/cloud.exr --preview out/cloud.png
 
 echo
 printf '%s' "$stage_lines"

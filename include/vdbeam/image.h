@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -8,9 +9,9 @@ namespace vdbeam {
 
 /// One named plane of floats, row-major from the top left.
 struct ImageChannel {
-  std::string name;         ///< EXR name: "R", "volume_direct.R", "volume_Z", ...
-  std::vector<float> data;  ///< width * height values
-  bool half = true;         ///< stored as half in the file
+  std::string name;        ///< EXR name: "R", "volume_direct.R", "depth.Z", ...
+  std::vector<float> data; ///< width * height values
+  bool half = true;        ///< stored as half in the file
 };
 
 /// An image as it goes to or comes from a file.
@@ -22,9 +23,12 @@ struct Image {
   int x = 0, y = 0;
   int full_width = 0, full_height = 0;
   std::vector<ImageChannel> channels;
-  std::map<std::string, std::string> metadata;       ///< string attributes
-  std::map<std::string, double> numbers;             ///< double attributes (report values)
-  std::map<std::string, std::vector<float>> matrices; ///< 16 floats, row-major (worldToCamera, ...)
+  /// String attributes; "timeCode" ("01:02:03:04") becomes one of OpenEXR's own type.
+  std::map<std::string, std::string> metadata;
+  std::map<std::string, double> numbers; ///< double attributes, but for those named in `integers`
+  std::set<std::string> integers;        ///< numbers that are whole
+  /// 16 floats, row-major (worldToCamera, ...), or the 3 of a point.
+  std::map<std::string, std::vector<float>> matrices;
 
   const ImageChannel* find(const std::string& name) const {
     for (const ImageChannel& channel : channels)

@@ -14,7 +14,10 @@ void write_exr(const Image& image, const std::string& path);
 /// anything that is not such a file, within bounded memory.
 Image read_image(const std::string& path);
 
-/// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr.
-void write_png(const Image& image, const std::string& path, double exposure = 0);
+/// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` says how
+/// highlights are shown: "filmic" rolls them off, "srgb" clips them (docs/output.md). Throws
+/// InputError for another view.
+void write_png(const Image& image, const std::string& path, double exposure = 0,
+               const std::string& view = "filmic");
 
 } // namespace vdbeam

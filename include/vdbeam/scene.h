@@ -17,6 +17,7 @@ namespace vdbeam {
 struct ImageSettings {
   int width = 640;  ///< pixels
   int height = 360; ///< pixels
+  std::optional<double> fps = std::nullopt; ///< frames per second of the shot, for the image's attributes alone
 };
 
 struct CameraSettings {
@@ -56,7 +57,7 @@ struct VolumeSettings {
 };
 
 /// volume: one that glows, which stands among the volumes of a scene and not among its lights.
-enum class LightType { distant, point, spot, environment, volume };
+enum class LightType { distant, point, spot, environment, sky, volume };
 enum class DirectLight { automatic, sampled, photons };
 
 struct LightSettings {
@@ -68,9 +69,13 @@ struct LightSettings {
   Rgb intensity{1, 1, 1};            ///< point, spot [W sr^-1]
   double cone_angle = 30;            ///< spot: half angle where the light ends, degrees
   double cone_falloff = 5;           ///< spot: width of the smooth edge inside it, degrees
-  Rgb radiance{1, 1, 1};             ///< environment: constant, or the image's factor
+  Rgb radiance{1, 1, 1};             ///< environment: constant, or the image's factor; sky: factor
+  Rgb zenith{0.07f, 0.19f, 0.52f};   ///< sky: radiance straight up
+  Rgb horizon{0.44f, 0.56f, 0.72f};  ///< sky: radiance at the horizon
+  Rgb ground{0.15f, 0.15f, 0.145f};  ///< sky: radiance from below the horizon
   std::string image;                 ///< environment: lat-long EXR or HDR, empty for constant
   double rotation = 0;               ///< environment: about the up axis, degrees
+  bool visible = true;               ///< to the camera; a hidden light still lights the medium
   std::optional<DirectLight> direct; ///< overrides render.direct for this light
 };
 

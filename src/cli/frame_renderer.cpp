@@ -209,12 +209,12 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     try {
       if (!files.preview.empty())
         write_image(result.image, substitute_frame(files.preview, loaded.frame),
-                    {options_.exposure});
+                    {options_.exposure, options_.view});
     } catch (const FrameError& problem) {
       lost_preview = problem;
     }
     if (!options_.pass_range) // whose film is written already
-      write_image(result.image, context.output, {options_.exposure});
+      write_image(result.image, context.output, {options_.exposure, options_.view});
     if (!result.quick_look)
       remove_side_files(loaded.frame);
   } else if (result.quick_look) {
@@ -236,10 +236,10 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
   Film film(loaded.scene.image.width, loaded.scene.image.height);
   result.image = film.develop();
   add_metadata(result.image, loaded, result);
-  write_image(result.image, output(loaded.frame), {options_.exposure});
+  write_image(result.image, output(loaded.frame), {options_.exposure, options_.view});
   if (!options_.files.preview.empty())
     write_image(result.image, substitute_frame(options_.files.preview, loaded.frame),
-                {options_.exposure});
+                {options_.exposure, options_.view});
 }
 
 bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,

@@ -20,6 +20,7 @@ struct FrameFiles {
 struct FrameOptions {
   FrameFiles files;
   double exposure = 0;
+  std::string view = "filmic"; ///< view transform of the preview
   bool quiet = false;
   bool early_preview = false;          ///< the preview shows a quick look before the first pass
   std::optional<PassRange> pass_range; ///< the output is a partial image of these passes

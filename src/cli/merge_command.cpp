@@ -2,6 +2,7 @@
 #include "cli/file_claims.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
+#include "cli/view_option.h"
 #include "image/output_formats.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -17,6 +18,7 @@ struct MergeOptions {
   std::vector<std::string> partials;
   std::string output, preview;
   double exposure = 0;
+  std::string view;
   MergeSettings settings;
   bool quiet = false;
 };
@@ -36,8 +38,8 @@ int run_merge(const MergeOptions& options) {
     throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
   const Image image = merge_partials(options.partials, options.settings);
   if (!options.preview.empty())
-    write_image(image, options.preview, {options.exposure});
-  write_image(image, options.output, {options.exposure});
+    write_image(image, options.preview, {options.exposure, options.view});
+  write_image(image, options.output, {options.exposure, options.view});
   if (!options.quiet)
     log("{}: {} of {}", options.output,
                count_text(static_cast<std::uint64_t>(image.numbers.at("vdbeam:passes")), "pass"),
@@ -66,6 +68,7 @@ CommandRun add_merge(CLI::App& app) {
       ->option_text("FILE.png");
   app.add_option("--exposure", options->exposure, "Stops that brighten the preview")
       ->option_text("STOPS");
+  add_view(app, options->view);
   app.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
   app.footer(R"(The image is bit for bit that of an undivided render of the same passes.
 

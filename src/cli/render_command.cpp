@@ -6,6 +6,7 @@
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
+#include "cli/view_option.h"
 #include "image/output_formats.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -228,6 +229,7 @@ CommandRun add_render(CLI::App& app) {
       ->option_text("FILE.png");
   app.add_option("--exposure", options->batch.frame.exposure, "Stops that brighten the preview")
       ->option_text("STOPS");
+  add_view(app, options->batch.frame.view);
   app.add_option("--reference", options->batch.frame.files.reference,
                  "The true image: errors against it go to the report")
       ->option_text("FILE.exr");

@@ -9,6 +9,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   photons_.trace_and_build(pass, statistics);
   const World& world = photons_.world();
   const int channels = photons_.map().channels();
+  const bool first_flights = photons_.map().has_first_flights();
   WeightSettings weights;
   weights.store = world.settings.store;
   weights.albedo_in_power = photons_.plan().albedo_in_power;
@@ -16,14 +17,20 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   shade_tiles(input_, photons_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
     scratch.tile.radiance.assign(static_cast<std::size_t>(channels) * BeamTile::ray_count, 0);
+    scratch.tile.first_flight.assign(first_flights ? scratch.tile.radiance.size() : 0, 0);
     scratch.statistics.contributions += photons_.map().query(scratch.tile).contributions;
-    const float* radiance = scratch.tile.radiance.data();
+    const auto light_of = [&](const std::vector<float>& values, int i) {
+      return channels == 1 ? Rgb(values[i])
+                           : Rgb(values[i], values[BeamTile::ray_count + i],
+                                 values[2 * BeamTile::ray_count + i]);
+    };
     for (int i = 0; i < TileRays::count; ++i)
       if (scratch.rays[i].inside) {
         scratch.statistics.lookups += scratch.rays[i].profile.empty() ? 0 : 1;
-        image.indirect[scratch.rays[i].pixel] =
-            channels == 1 ? Rgb(radiance[i])
-                          : Rgb(radiance[i], radiance[256 + i], radiance[512 + i]);
+        const std::size_t pixel = scratch.rays[i].pixel;
+        image.indirect[pixel] = light_of(scratch.tile.radiance, i);
+        if (first_flights)
+          image.move_to_direct(pixel, light_of(scratch.tile.first_flight, i));
       }
   });
 }

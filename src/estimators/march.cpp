@@ -18,7 +18,9 @@ public:
     reach_ = world.settings.store == PhotonStore::scatter ? 4 * photons.map().mean_radius() : 0;
   }
 
-  Rgb march(const TileRays::PixelRay& ray, Rng& rng, RenderStatistics& counts) {
+  /// What the photons scatter into the ray, and in `straight` what of it comes straight from
+  /// lights.
+  Rgb march(const TileRays::PixelRay& ray, Rng& rng, RenderStatistics& counts, Rgb& straight) {
     const Medium& medium = world_.medium;
     const float begin =
         std::max(static_cast<float>(-ray.camera.shift), ray.profile.front() - reach_);
@@ -28,6 +30,8 @@ public:
     ProfileCursor cursor(ray.profile);
     std::vector<float> before(medium.volumes.size()), after(medium.volumes.size());
     gathered_.resize(medium.phases.size());
+    straight_.resize(medium.phases.size());
+    straight = {};
     Rgb sum;
     for (int i = 0; i < steps; ++i) {
       const float t = begin + step * (static_cast<float>(i) + rng.uniform());
@@ -38,10 +42,14 @@ public:
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
         const QueryCounts c =
             photons_.map().query_point(ray.camera.ray().at(t), ray.camera.ray().direction,
-                                       medium.gathered_phases(), gathered_.data());
+        const QueryCounts c = photons_.map().query_point(
+            ray.camera.ray().at(t), ray.camera.ray().direction, medium.gathered_phases(),
+            gathered_.data(), straight_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
-        sum += weigh(before, after, step);
+        sum += weigh(before, after, step, gathered_);
+        if (photons_.map().has_first_flights())
+          straight += weigh(before, after, step, straight_);
       }
       before = after;
     }
@@ -49,7 +57,8 @@ public:
   }
 
 private:
-  Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step) const {
+  Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
+            const std::vector<Rgb>& gathered) const {
     const std::vector<Volume>& volumes = world_.medium.volumes;
     const bool scatter = world_.settings.store == PhotonStore::scatter;
     Rgb tau, piece;
@@ -67,7 +76,7 @@ private:
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes.size());
         const float albedo = photons_.plan().albedo_in_power ? 1 : volumes[v].albedo[c];
-        sum[c] += whole * share * albedo * gathered_[volumes[v].phase_index][c];
+        sum[c] += whole * share * albedo * gathered[volumes[v].phase_index][c];
       }
     }
     return sum;
@@ -76,7 +85,8 @@ private:
   const World& world_;
   const PhotonPass& photons_;
   float step_ = 0, reach_ = 0;
-  std::vector<Rgb> gathered_;
+  std::vector<Rgb> gathered_; ///< per phase function
+  std::vector<Rgb> straight_; ///< what of it comes straight from lights
 };
 
 } // namespace
@@ -91,7 +101,9 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
                   if (!ray.inside || ray.profile.empty())
                     continue;
                   Rng rng(key, RngStage::march, ray.pixel);
-                  image.indirect[ray.pixel] = marcher.march(ray, rng, scratch.statistics);
+                  Rgb straight;
+                  image.indirect[ray.pixel] = marcher.march(ray, rng, scratch.statistics, straight);
+                  image.move_to_direct(ray.pixel, straight);
                 }
               });
 }

@@ -18,11 +18,14 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-/// The lights that the camera ray meets, seen through the medium; `tr` is its transmittance.
+/// The visible lights that the camera ray meets, seen through the medium; `tr` is its
+/// transmittance.
 Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfile& profile,
                    const Rgb& tr) {
   Rgb beyond, sum;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    if (!world.lights.visible(i))
+      continue;
     const LightHit hit = world.lights[i].emitted_radiance(camera.whole());
     if (hit.distance == infinity)
       beyond += hit.radiance;
@@ -44,8 +47,8 @@ void shade_profile(const World& world, const CameraRay& camera, const DepthProfi
     const float opacity =
         -mean_component(Rgb(std::expm1(-tau.x), std::expm1(-tau.y), std::expm1(-tau.z)));
     image.opacity[pixel] = opacity;
-    image.depth[pixel] =
-        static_cast<float>((profile.opacity_depth() + camera.shift * opacity) / world.space.scale);
+    image.depth[pixel] = static_cast<float>(
+        (profile.opacity_depth(world.medium) + camera.shift * opacity) / world.space.scale);
   }
   image.background[pixel] = lights_through(world, camera, profile, tr);
   if (!image.emission.empty() && !camera.segment.empty()) {

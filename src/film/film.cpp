@@ -83,7 +83,7 @@ inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) 
 Film::Film(int width, int height, bool glows)
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
-      depth_(pixels()), depth_passes_(pixels()), squares_(3 * pixels()), history_(width, height) {}
+      depth_(pixels()), squares_(3 * pixels()), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -103,8 +103,6 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
     invalid += add_values(emission_, emission, 3 * begin, 3 * end);
   invalid += add_values(opacity_, pass.opacity.data(), begin, end);
   invalid += add_values(depth_, pass.depth.data(), begin, end);
-  for (std::size_t i = begin; i < end; ++i)
-    depth_passes_[i] += finite_or_zero(pass.depth[i]) > 0 ? 1 : 0;
   for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
     const double total = double{finite_or_zero(direct[i])} + finite_or_zero(indirect[i]) +
                          finite_or_zero(background[i]) +
@@ -137,8 +135,6 @@ void Film::merge(const Film& other) {
       merge_values(emission_, other.emission_, 3 * begin, 3 * end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
-    for (std::size_t i = begin; i < end; ++i)
-      depth_passes_[i] += other.depth_passes_[i];
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
       squares_[i] += other.squares_[i];
   });
@@ -166,7 +162,6 @@ std::vector<FilmPlane> Film::planes() {
   }
   add("opacity", opacity_, 1, 0);
   add("depth", depth_, 1, 0);
-  planes.push_back({"depth_passes", depth_passes_.data(), 1});
   const auto add_history = [&](const char* name, auto& values) {
     for (std::size_t first = 0; first < values.size(); first += pixels())
       planes.push_back({fmt::format("history.{}.{}", name, first / pixels()), &values[first], 1});
@@ -195,18 +190,25 @@ Image Film::develop() const {
   Image image;
   image.width = width_;
   image.height = height_;
-  for (const char* name : {"R", "G", "B", "A", "volume.R", "volume.G", "volume.B",
+  // Blender reads a layer's channel only where its last part is one of R G B A X Y Z V U.
+  for (const char* name : {"R", "G", "B", "A", "volume.R", "volume.G", "volume.B", "volume.A",
                            "volume_direct.R", "volume_direct.G", "volume_direct.B",
                            "volume_indirect.R", "volume_indirect.G", "volume_indirect.B"})
     image.channels.push_back({name, std::vector<float>(pixels())});
-  for (const char* name : {"volume_opacity", "volume_Z"})
-    image.channels.push_back({name, std::vector<float>(pixels()), false});
+  image.channels.push_back({"depth.Z", std::vector<float>(pixels()), false});
   if (glows_)
     for (const char* name : {"volume_emission.R", "volume_emission.G", "volume_emission.B"})
       image.channels.push_back({name, std::vector<float>(pixels())});
 
-  enum : std::size_t { rgb = 0, alpha = 3, volume = 4, direct = 7, indirect = 10, opacity = 13 };
-  constexpr std::size_t emission = 15;
+  enum : std::size_t {
+    rgb = 0,
+    alpha = 3,
+    volume = 4,
+    volume_alpha = 7,
+    direct = 8,
+    indirect = 11
+  };
+  constexpr std::size_t depth = 14, emission = 15;
   const double passes = std::max(passes_, 1);
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto set = [&](std::size_t channel, std::size_t i, double sum, double count) {
@@ -223,8 +225,11 @@ Image Film::develop() const {
           set(emission + c, i, emission_.high(3 * i + c), passes);
       }
       set(alpha, i, opacity_.high(i), passes);
-      set(opacity, i, opacity_.high(i), passes);
-      set(opacity + 1, i, depth_.high(i), std::max(depth_passes_[i], 1u));
+      set(volume_alpha, i, opacity_.high(i), passes);
+      if (opacity_.high(i) > 0)
+        set(depth, i, depth_.high(i), opacity_.high(i));
+      else
+        image.channels[depth].data[i] = empty_depth;
     }
   });
   return image;

@@ -15,6 +15,8 @@
 #include <ImfPartType.h>
 #include <ImfRationalAttribute.h>
 #include <ImfStringAttribute.h>
+#include <ImfTimeCodeAttribute.h>
+#include <ImfVecAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,8 +49,15 @@ void copy_attributes(const Imf::Header& header, Image& image) {
       image.numbers[it.name()] = real->value();
     else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute))
       image.numbers[it.name()] = single->value();
-    else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&attribute))
+    else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&attribute)) {
       image.numbers[it.name()] = integer->value();
+      image.integers.insert(it.name());
+    } else if (const auto* code = dynamic_cast<const Imf::TimeCodeAttribute*>(&attribute))
+      image.metadata[it.name()] =
+          fmt::format("{:02}:{:02}:{:02}:{:02}", code->value().hours(), code->value().minutes(),
+                      code->value().seconds(), code->value().frame());
+    else if (const auto* point = dynamic_cast<const Imf::V3fAttribute*>(&attribute))
+      image.matrices[it.name()].assign(point->value().getValue(), point->value().getValue() + 3);
     else if (const auto* ratio = dynamic_cast<const Imf::RationalAttribute*>(&attribute))
       image.numbers[it.name()] = ratio->value();
     else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute))

@@ -8,15 +8,20 @@
 #include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfTimeCodeAttribute.h>
+#include <ImfVecAttribute.h>
 #include <fmt/format.h>
 #include <half.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace vdbeam {
 namespace {
@@ -44,6 +49,15 @@ bool fits_half(const ImageChannel& channel) {
   return largest == 0 || (largest <= HALF_MAX && largest >= 16 * HALF_NRM_MIN);
 }
 
+/// Hours, minutes, seconds and frames, as "01:02:03:04"; any other text is left out.
+void add_time_code(Imf::Header& header, const std::string& text) {
+  int part[4] = {};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%2d:%2d:%2d:%2d%c", &part[0], &part[1], &part[2], &part[3],
+                  &end) == 4)
+    Imf::addTimeCode(header, Imf::TimeCode(part[0], part[1], part[2], part[3]));
+}
+
 } // namespace
 
 Imf::Header exr_header(const Image& image, const std::string& path) {
@@ -55,15 +69,27 @@ Imf::Header exr_header(const Image& image, const std::string& path) {
   Imf::Header header(display, data);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709, D65
-  for (const auto& [name, text] : image.metadata)
-    header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, text] : image.metadata) {
+    if (name == "timeCode")
+      add_time_code(header, text);
+    else
+      header.insert(name, Imf::StringAttribute(text));
+  }
   for (const auto& [name, value] : image.numbers) {
-    if (name == "framesPerSecond") // a standard attribute with a type of its own
+    if (name == "framesPerSecond") // standard attributes with types of their own
       Imf::addFramesPerSecond(header, Imf::guessExactFps(value));
+    else if (name == "utcOffset")
+      Imf::addUtcOffset(header, static_cast<float>(value));
+    else if (image.integers.contains(name) && std::abs(value) <= std::numeric_limits<int>::max())
+      header.insert(name, Imf::IntAttribute(static_cast<int>(value)));
     else
       header.insert(name, Imf::DoubleAttribute(value));
   }
   for (const auto& [name, values] : image.matrices) {
+    if (values.size() == 3) {
+      header.insert(name, Imf::V3fAttribute({values[0], values[1], values[2]}));
+      continue;
+    }
     if (values.size() != 16)
       throw FrameError(
           fmt::format("{}: matrix {} has {} values instead of 16", path, name, values.size()));

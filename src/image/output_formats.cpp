@@ -19,7 +19,7 @@ constexpr OutputFormat formats[] = {
      }},
     {".png", "8-bit sRGB preview",
      [](const Image& image, const std::string& path, const WriteOptions& options) {
-       write_png(image, path, options.exposure);
+       write_png(image, path, options.exposure, options.view);
      }},
 };
 

@@ -10,7 +10,8 @@ namespace vdbeam {
 
 /// What a writer may use besides the image.
 struct WriteOptions {
-  double exposure = 0; ///< stops, for 8-bit formats
+  double exposure = 0;         ///< stops, for 8-bit formats
+  std::string view = "filmic"; ///< view transform of 8-bit formats
 };
 
 /// One kind of output file.

@@ -3,6 +3,7 @@
 #include "vdbeam/vec.h"
 
 #include <cstdint>
+#include <cmath>
 #include <vector>
 
 namespace vdbeam {
@@ -11,13 +12,14 @@ namespace vdbeam {
 /// left.
 struct PassImage {
   int width = 0, height = 0;
-  std::vector<Rgb> direct;     ///< single scattering of lights estimated by shadow rays
-  std::vector<Rgb> indirect;   ///< everything else scattered in the volume
+  std::vector<Rgb> direct;     ///< light that was scattered once, whatever found it
+  std::vector<Rgb> indirect;   ///< light that was scattered more often
   std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
   std::vector<Rgb> emission;   ///< the medium's own light, Tr * j; empty where nothing glows
   std::vector<float> opacity;  ///< 1 - Tr of the whole ray (mean over channels)
-  /// Opacity times the mean distance [world] of the first collision: integral of Tr sigma_t t dt.
-  /// Sum over passes, divided by the sum of opacity, it is the mean depth (AOV volume_Z).
+  /// Opacity times the mean distance [world] at which light is extinguished: the integral of
+  /// Tr sigma_t t dt (mean over channels). Its sum over the passes divided by the sum of opacity is
+  /// the depth of the medium.
   std::vector<float> depth;
   /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
   /// which all of them are unless the pass was stopped.
@@ -43,6 +45,15 @@ struct PassImage {
   std::size_t tile_of(int x, int y) const {
     return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
            static_cast<std::size_t>(x / tile_width);
+  }
+  /// Of the pixel's indirect light, `light` was scattered once only. No kernel but that of fourth
+  /// order, whose values may be negative, gives more than there is but for rounding.
+  void move_to_direct(std::size_t pixel, const Rgb& light) {
+    direct[pixel] += light;
+    for (int c = 0; c < 3; ++c) {
+      const float whole = indirect[pixel][c], rest = whole - light[c];
+      indirect[pixel][c] = std::abs(rest) < 1e-6f * std::abs(whole) ? 0 : rest;
+    }
   }
   /// What the pixel shows in all.
   Rgb total(std::size_t pixel) const {

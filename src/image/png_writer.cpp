@@ -1,3 +1,4 @@
+#include "image/view_transform.h"
 #include "machine/atomic_file.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -23,26 +24,38 @@ unsigned char encode_srgb(double linear) {
 }
 
 std::vector<unsigned char> encode_pixels(const Image& image, const std::string& path,
-                                         double exposure) {
+                                         double exposure, const ViewTransform& view) {
   const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
-  const double scale = std::exp2(exposure);
-  std::vector<unsigned char> bytes(pixels * 3);
+  const ImageChannel* channels[3];
   const char* const names[] = {"R", "G", "B"};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const ImageChannel* channel = image.find(names[c]);
-    if (!channel || channel->data.size() != pixels || pixels == 0)
+  for (int c = 0; c < 3; ++c) {
+    channels[c] = image.find(names[c]);
+    if (!channels[c] || channels[c]->data.size() != pixels || pixels == 0)
       throw FrameError(
           fmt::format("{}: cannot be written: the image has no channel {}", path, names[c]));
-    for (std::size_t i = 0; i < pixels; ++i)
-      bytes[3 * i + c] = encode_srgb(channel->data[i] * scale);
+  }
+  constexpr double brightest = 1e30; // infinity, too, has a colour
+  const double scale = std::exp2(exposure);
+  std::vector<unsigned char> bytes(pixels * 3);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    Vec3d radiance;
+    for (int c = 0; c < 3; ++c) {
+      const double value = static_cast<double>(channels[c]->data[i]) * scale;
+      radiance[c] = value > 0 ? std::min(value, brightest) : 0;
+    }
+    const Vec3d shown = view.apply(radiance);
+    for (int c = 0; c < 3; ++c)
+      bytes[3 * i + static_cast<std::size_t>(c)] = encode_srgb(shown[c]);
   }
   return bytes;
 }
 
 } // namespace
 
-void write_png(const Image& image, const std::string& path, double exposure) {
-  const std::vector<unsigned char> pixels = encode_pixels(image, path, exposure);
+void write_png(const Image& image, const std::string& path, double exposure,
+               const std::string& view) {
+  const std::vector<unsigned char> pixels =
+      encode_pixels(image, path, exposure, view_transform(view));
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);

@@ -9,11 +9,12 @@
 namespace vdbeam {
 
 std::span<const LightKind> light_table() {
-  static constexpr std::array<LightKind, 4> table{{
+  static constexpr std::array<LightKind, 5> table{{
       {LightType::distant, "distant", make_distant_light},
       {LightType::point, "point", make_point_light},
       {LightType::spot, "spot", make_spot_light},
       {LightType::environment, "environment", make_environment_light},
+      {LightType::sky, "sky", make_sky_light},
   }};
   return table;
 }

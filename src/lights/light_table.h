@@ -22,6 +22,7 @@ std::unique_ptr<Light> make_distant_light(const LightSettings&, const LightConte
 std::unique_ptr<Light> make_point_light(const LightSettings&, const LightContext&);
 std::unique_ptr<Light> make_spot_light(const LightSettings&, const LightContext&);
 std::unique_ptr<Light> make_environment_light(const LightSettings&, const LightContext&);
+std::unique_ptr<Light> make_sky_light(const LightSettings&, const LightContext&);
 
 /// Mean flux of photons from a fixed stream, for lights whose power has no short formula.
 Rgb estimate_power(const Light& light);

@@ -31,17 +31,20 @@ struct BeamTile {
   struct Profile {
     double t_begin = 0; ///< double, so that a far camera costs the knots no precision
     float step = 1;
-    int knots = 0;                   ///< 0: this sub-tile sees nothing
-    std::size_t offset = 0;          ///< into `weights` of [(group * weight_channels + c)][knot][16]
+    int knots = 0;          ///< 0: this sub-tile sees nothing
+    std::size_t offset = 0; ///< into `weights` of [(group * weight_channels + c)][knot][16]
   };
   Profile profiles[subtile_count];
-  std::vector<float> weights;        ///< 64-byte alignment not required
-  int weight_channels = 1;           ///< 1, or 3 where extinction is chromatic
+  std::vector<float> weights;                         ///< 64-byte alignment not required
+  int weight_channels = 1;                            ///< 1, or 3 where extinction is chromatic
   const std::vector<PhaseFunction>* phases = nullptr; ///< one per group
 
   /// Out: per channel of the photons (1 or 3), per ray, sum over photons and groups of
   /// K(d, r) * W(t) * p(cos) * power. Channel-major: radiance[c * ray_count + ray]. Added to.
   std::vector<float> radiance;
+  /// Out: the part of it that comes from photons on their first flight, single scattering. Empty
+  /// where the map has no such photons.
+  std::vector<float> first_flight;
 };
 
 /// What a query did, for the report and for tuning.

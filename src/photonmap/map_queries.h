@@ -19,7 +19,8 @@ struct MapView {
 QueryCounts query_tile(const MapView& map, BeamTile& tile);
 QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance);
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
-                        const std::vector<PhaseFunction>& phases, Rgb* in_scattered);
+                        const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
+                        Rgb* first_flight = nullptr);
 
 /// SIMD targets that this binary has and this machine can run, best first, as Highway's bits; and a
 /// way to confine the queries to some of them (0: all), for tests.

@@ -8,18 +8,23 @@
 namespace vdbeam {
 
 /// Photons as tracing leaves them, structure of arrays.
-/// With fluence storage `power` is flux / majorant at the collision [W m^2-ish: power times length],
-/// so that sum_i K * power is the fluence; the ray supplies sigma_s.
+/// With fluence storage `power` is flux / majorant at the collision [W m^2-ish: power times
+/// length], so that sum_i K * power is the fluence; the ray supplies sigma_s.
 struct PhotonList {
-  std::vector<Vec3f> position;  ///< render space
-  std::vector<Vec3f> direction; ///< unit direction of travel; empty where no phase function needs it
-  std::vector<Rgb> power;       ///< per photon, already divided by the number of emitted photons
+  std::vector<Vec3f> position; ///< render space
+  std::vector<Vec3f>
+      direction;          ///< unit direction of travel; empty where no phase function needs it
+  std::vector<Rgb> power; ///< per photon, already divided by the number of emitted photons
+
+  /// 1 for photons that come straight from a light; empty where none does.
+  std::vector<std::uint8_t> first_flight;
 
   std::size_t size() const { return position.size(); }
   void append(const PhotonList& other) {
     position.insert(position.end(), other.position.begin(), other.position.end());
     direction.insert(direction.end(), other.direction.begin(), other.direction.end());
     power.insert(power.end(), other.power.begin(), other.power.end());
+    first_flight.insert(first_flight.end(), other.first_flight.begin(), other.first_flight.end());
   }
 };
 

@@ -11,15 +11,17 @@
 namespace vdbeam {
 
 /// Photons in full blocks of 16, each block a structure of arrays: one row of 16 floats per field.
-/// The last block is padded with photons of radius 0 and power 0.
+/// The last block is padded with photons of radius 0 and power 0. The power of photons that come
+/// straight from a light is stored with a minus sign: queries tell their light from the rest, and a
+/// sign costs no memory.
 class PhotonBlocks {
 public:
   static constexpr std::size_t width = 16;
   enum Field : int { x = 0, y = 1, z = 2, radius = 3, power = 4 };
 
   PhotonBlocks() = default;
-  PhotonBlocks(std::size_t count, int channels, bool directions)
-      : count_(count), channels_(channels), directions_(directions),
+  PhotonBlocks(std::size_t count, int channels, bool directions, bool first_flights = false)
+      : count_(count), channels_(channels), directions_(directions), first_flights_(first_flights),
         stride_(width * (4 + channels + (directions ? 3 : 0))),
         rows_(block_count() * stride_, 0.0f) {}
 
@@ -27,6 +29,8 @@ public:
   std::size_t block_count() const { return (count_ + width - 1) / width; }
   int channels() const { return channels_; }
   bool has_directions() const { return directions_; }
+  /// Some photons come straight from a light.
+  bool has_first_flights() const { return first_flights_; }
   /// First field of the direction's three; only where has_directions().
   int direction_field() const { return power + channels_; }
 
@@ -46,7 +50,7 @@ public:
 private:
   std::size_t count_ = 0;
   int channels_ = 1;
-  bool directions_ = false;
+  bool directions_ = false, first_flights_ = false;
   std::size_t stride_ = 0;
   std::vector<float, tbb::cache_aligned_allocator<float>> rows_;
 };

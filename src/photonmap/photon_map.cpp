@@ -39,7 +39,8 @@ std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
 
 PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedPhoton>& order,
                            int channels) {
-  PhotonBlocks blocks(order.size(), channels, !photons.direction.empty());
+  PhotonBlocks blocks(order.size(), channels, !photons.direction.empty(),
+                      !photons.first_flight.empty());
   const auto fill_block = [&](std::size_t block) {
     const std::size_t begin = block * PhotonBlocks::width;
     const std::size_t count = std::min(PhotonBlocks::width, order.size() - begin);
@@ -51,8 +52,10 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedP
       const std::uint32_t from = order[begin + lane].index;
       for (int axis = 0; axis < 3; ++axis)
         put(axis, lane, order[begin + lane].position[axis]);
+      const bool first_flight = !photons.first_flight.empty() && photons.first_flight[from] != 0;
       for (int c = 0; c < channels; ++c)
-        put(PhotonBlocks::power + c, lane, photons.power[from][c]);
+        put(PhotonBlocks::power + c, lane,
+            first_flight ? -photons.power[from][c] : photons.power[from][c]);
       if (blocks.has_directions())
         for (int axis = 0; axis < 3; ++axis)
           put(blocks.direction_field() + axis, lane, photons.direction[from][axis]);
@@ -134,6 +137,9 @@ std::size_t PhotonMap::bytes() const {
 int PhotonMap::channels() const {
   return data_->blocks.channels();
 }
+bool PhotonMap::has_first_flights() const {
+  return data_->blocks.has_first_flights();
+}
 bool PhotonMap::has_directions() const {
   return data_->blocks.has_directions();
 }
@@ -159,9 +165,9 @@ QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const
 }
 
 QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
-                                   const std::vector<PhaseFunction>& phases,
-                                   Rgb* in_scattered) const {
-  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered);
+                                   const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
+                                   Rgb* first_flight) const {
+  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered, first_flight);
 }
 
 } // namespace vdbeam

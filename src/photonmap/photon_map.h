@@ -82,9 +82,12 @@ public:
 
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
   /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
-  /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size()).
+  /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size())
+  /// and, unless it is null, likewise first_flight, to what of it comes straight from lights.
   QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
-                          const std::vector<PhaseFunction>& phases, Rgb* in_scattered) const;
+                          const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
+                          Rgb* first_flight = nullptr) const;
+  bool has_first_flights() const; ///< photons that come straight from a light
 
 private:
   struct Data;

@@ -125,11 +125,22 @@ struct PhotonLanes {
                                        hn::Mul(hn::Set(d, -direction[2]), field(df + 2))));
   }
   HWY_INLINE void add(V16 value, int channel, LaneSums& sums) const {
+    add_power(value, hn::Abs(power(channel)), channel, sums);
+  }
+  /// The same for photons on their first flight, whose power has a minus sign.
+  HWY_INLINE void add_first_flight(V16 value, int channel, LaneSums& sums) const {
+    const D16 d;
+    add_power(value, hn::Max(hn::Neg(power(channel)), hn::Zero(d)), channel, sums);
+  }
+
+private:
+  HWY_INLINE V16 power(int channel) const {
+    return field(PhotonBlocks::power + channel % blocks.channels());
+  }
+  HWY_INLINE void add_power(V16 value, V16 power, int channel, LaneSums& sums) const {
     const D16 d;
     float* sum = sums.lanes[channel] + lane;
-    hn::Store(hn::MulAdd(value, field(PhotonBlocks::power + channel % blocks.channels()),
-                         hn::Load(d, sum)),
-              d, sum);
+    hn::Store(hn::MulAdd(value, power, hn::Load(d, sum)), d, sum);
   }
 };
 
@@ -238,7 +249,8 @@ QueryCounts ray_on_target(const MapView& map, const PhotonMap::RayProfile& profi
 
 /// At most phases_at_once phase functions.
 QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f& towards,
-                            const PhaseFunction* phases, std::size_t count, LaneSums* sums) {
+                            const PhaseFunction* phases, std::size_t count, LaneSums* sums,
+                            LaneSums* first_flight) {
   const D16 d;
   const KernelPolynomial kernel = ball_polynomial(map.shape);
   const float x[3] = {point.x, point.y, point.z};
@@ -264,8 +276,11 @@ QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f&
         hn::IfThenElseZero(hit, hn::Mul(kernel_value(kernel, k), hn::Mul(inverse_area, inverse)));
     for (std::size_t g = 0; g < count; ++g) {
       const auto scattered = hn::Mul(value, phase_lanes(photons, phases[g], direction));
-      for (int c = 0; c < photons.blocks.channels(); ++c)
+      for (int c = 0; c < photons.blocks.channels(); ++c) {
         photons.add(scattered, c, sums[g]);
+        if (photons.blocks.has_first_flights())
+          photons.add_first_flight(scattered, c, first_flight[g]);
+      }
     }
   };
   walk_tree(
@@ -306,17 +321,21 @@ QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, 
 }
 
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
-                        const std::vector<PhaseFunction>& phases, Rgb* in_scattered) {
+                        const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
+                        Rgb* first_flight) {
   QueryCounts counts;
   for (std::size_t first = 0; first < phases.size(); first += phases_at_once) {
     const std::size_t count = std::min(phases_at_once, phases.size() - first);
-    LaneSums sums[phases_at_once];
+    LaneSums sums[phases_at_once], first_sums[phases_at_once];
     if (!map.tree.levels.empty())
       counts = HWY_DYNAMIC_DISPATCH(point_on_target)(map, point, direction, phases.data() + first,
-                                                     count, sums);
+                                                     count, sums, first_sums);
     for (std::size_t g = 0; g < count; ++g) {
-      const Rgb total = sums[g].total();
-      in_scattered[first + g] = map.blocks.channels() == 1 ? Rgb(total.x) : total;
+      const bool grey = map.blocks.channels() == 1;
+      const Rgb total = sums[g].total(), straight = first_sums[g].total();
+      in_scattered[first + g] = grey ? Rgb(total.x) : total;
+      if (first_flight)
+        first_flight[first + g] = grey ? Rgb(straight.x) : straight;
     }
   }
   return counts;

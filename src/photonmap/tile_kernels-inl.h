@@ -46,6 +46,7 @@ struct Candidates {
   alignas(64) float reach[slots];       ///< per ray: radius / step
   alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
   alignas(64) float power[3][slots];
+  alignas(64) float signed_power[slots]; ///< where the map tells first flights apart
 };
 
 /// What is the same for all of a query.
@@ -173,6 +174,8 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
       writer.write(d, part.field(PhotonBlocks::power + c % query.power_channels),
                    out.power[c] + at);
   writer.write(d, strength, out.strength + at);
+  if (query.blocks.has_first_flights())
+    writer.write(d, part.field(PhotonBlocks::power), out.signed_power + at);
   if (s.per_ray) {
     writer.write(d, p.f, out.fraction + at);
     writer.write(d, hn::Mul(p.w, inverse_step), out.depth + at);

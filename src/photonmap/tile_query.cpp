@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <cmath>
+
 #include "photonmap/tile_shade-inl.h"
 #include "photonmap/tree_walk-inl.h"
 
@@ -126,14 +128,25 @@ public:
     for (int c = 0; c < channels; ++c)
       for (int r = 0; r < BeamTile::ray_count; ++r)
         if (frame_.active >> (r / BeamTile::rays_per_subtile) & 1)
-          tile.radiance[static_cast<std::size_t>(c * BeamTile::ray_count + r)] +=
-              sums_[c][r] * frame_.subtiles[r / 16].scale[r % 16];
+          add_ray(tile, c, r);
   }
 
   QueryCounts counts;
 
 private:
   static constexpr std::size_t hit_capacity = 64;
+
+  void add_ray(BeamTile& tile, int channel, int ray) const {
+    const auto at = static_cast<std::size_t>(channel * BeamTile::ray_count + ray);
+    const float scale = frame_.subtiles[ray / 16].scale[ray % 16];
+    if (!query_.blocks.has_first_flights()) {
+      tile.radiance[at] += sums_[channel][ray] * scale;
+      return;
+    }
+    const float first = -first_sums_[channel][ray] * scale; // of powers with a minus sign
+    tile.first_flight[at] += first;
+    tile.radiance[at] += sums_[channel][ray] * scale + first;
+  }
 
   void prefetch_block(std::size_t block) const {
     const float* row = query_.blocks.row(block, 0);
@@ -161,7 +174,24 @@ private:
     if (candidates_.count == 0)
       return;
     counts.candidates += candidates_.count * BeamTile::rays_per_subtile;
-    counts.contributions += shaders_[s](query_, frame_.subtiles[s], candidates_, s * 16, sums_);
+    rest_.count = first_.count = 0;
+    if (query_.blocks.has_first_flights()) {
+      for (std::size_t i = 0; i < candidates_.count; ++i) {
+        const bool first = std::signbit(candidates_.signed_power[i]);
+        rest_.index[rest_.count] = first_.index[first_.count] = static_cast<std::uint16_t>(i);
+        rest_.count += !first;
+        first_.count += first;
+      }
+    } else {
+      for (; rest_.count < candidates_.count; ++rest_.count)
+        rest_.index[rest_.count] = static_cast<std::uint16_t>(rest_.count);
+    }
+    const SubtileFrame& subtile = frame_.subtiles[s];
+    if (rest_.count > 0)
+      counts.contributions += shaders_[s](query_, subtile, candidates_, rest_, s * 16, sums_);
+    if (first_.count > 0)
+      counts.contributions +=
+          shaders_[s](query_, subtile, candidates_, first_, s * 16, first_sums_);
     candidates_.count = 0;
   }
 
@@ -171,7 +201,9 @@ private:
   std::size_t hit_count_ = 0;
   BlockHit hits_[hit_capacity];
   Candidates candidates_;
+  Selection rest_, first_; ///< candidates by what they are, of which one sum each
   alignas(64) TileSums sums_ = {};
+  alignas(64) TileSums first_sums_ = {}; ///< of photons on their first flight
 };
 
 QueryCounts query_tile_on_target(const MapView& map, const TileFrame& frame, BeamTile& tile,
@@ -197,6 +229,8 @@ QueryCounts query_tile(const MapView& map, BeamTile& tile) {
   const std::size_t size = static_cast<std::size_t>(channels) * BeamTile::ray_count;
   if (tile.radiance.size() < size)
     tile.radiance.resize(size, 0.0f);
+  if (map.blocks.has_first_flights() && tile.first_flight.size() < size)
+    tile.first_flight.resize(size, 0.0f);
   if (map.tree.levels.empty())
     return {};
   const Vec3f far_side =

@@ -125,11 +125,18 @@ HWY_INLINE void scattering(const TileQuery& query, const SubtileFrame& s, const 
   }
 }
 
-/// Adds all candidates to the sub-tile's sums; returns the number of (ray, photon) pairs in
-/// kernels.
+/// Which candidates to shade, by number.
+struct Selection {
+  std::size_t count = 0;
+  std::uint16_t index[Candidates::slots];
+};
+
+/// Adds the selected candidates to the sub-tile's sums; returns the number of (ray, photon) pairs
+/// in kernels.
 template <class Config>
 HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, const Candidates& c,
-                                 std::size_t first_ray, TileSums& sums) {
+                                 const Selection& selection, std::size_t first_ray,
+                                 TileSums& sums) {
   const D16 d;
   const I16 di;
   const auto zero = hn::Zero(d);
@@ -144,7 +151,8 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
       sum1 = hn::Load(d, out + BeamTile::ray_count);
       sum2 = hn::Load(d, out + 2 * BeamTile::ray_count);
     }
-    for (std::size_t i = 0; i < c.count; ++i) {
+    for (std::size_t j = 0; j < selection.count; ++j) {
+      const std::size_t i = selection.index[j];
       KnotLookup<Config> knots;
       auto k = approach<Config>(c, i, s, ray, knots);
       const auto inside = hn::Gt(k, zero);
@@ -180,7 +188,7 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
 }
 
 using Shader = std::uint64_t (*)(const TileQuery&, const SubtileFrame&, const Candidates&,
-                                 std::size_t, TileSums&);
+                                 const Selection&, std::size_t, TileSums&);
 
 template <bool per_ray, PhaseMode phase, bool plain>
 Shader choose_channels(const TileQuery& query) {

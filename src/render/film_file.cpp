@@ -19,7 +19,7 @@ namespace vdbeam {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "doubles are stored low half first");
-constexpr const char* film_format = "3";
+constexpr const char* film_format = "4";
 constexpr int largest_side = 65536;
 
 Imath::Box2i data_window(const Image& header) {
@@ -86,6 +86,7 @@ void write_planes(const FilmFileInfo& info, Film& film, AtomicFile& file) {
   header.numbers["vdbeam:frame"] = info.frame;
   header.numbers["vdbeam:seconds"] = info.seconds;
   header.numbers["vdbeam:passes"] = static_cast<double>(info.passes.size());
+  header.integers.insert({"vdbeam:frame", "vdbeam:passes"});
   header.numbers.erase("vdbeam:complete");
   Imf::Header exr = exr_header(header, file.path());
   const Imath::Box2i window = exr.dataWindow();

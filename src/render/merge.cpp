@@ -92,6 +92,7 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   image.full_height = header.full_height;
   image.metadata = header.metadata;
   image.numbers = header.numbers;
+  image.integers = header.integers;
   image.matrices = header.matrices;
   for (const char* name : {"vdbeam:film", "vdbeam:arithmetic", "vdbeam:invalidValues"})
     image.metadata.erase(name);
@@ -100,6 +101,7 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   image.numbers["vdbeam:passes"] = film.passes();
   image.numbers["vdbeam:seconds"] = info.seconds;
   image.numbers["vdbeam:complete"] = 1;
+  image.integers.insert({"vdbeam:passes", "vdbeam:complete"});
   add_error_metadata(image, error_record(film, image.metadata["vdbeam:estimator"] == "path"));
   return image;
 }

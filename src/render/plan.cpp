@@ -22,12 +22,17 @@ struct Needs {
   bool glows = false, glow_visible = false;
 };
 
+/// Light that comes smoothly from all around: escaping rays find it as well as shadow rays would.
+bool is_smooth_sky(const LightSettings& light) {
+  return light.type == LightType::sky ||
+         (light.type == LightType::environment && light.image.empty());
+}
+
 /// Whether single scattering of a light is left to photons (the rule that the renderer follows).
 bool left_to_photons(const LightSettings& light, const RenderSettings& render) {
   DirectLight direct = light.direct.value_or(render.direct);
   if (direct == DirectLight::automatic)
-    direct = light.type == LightType::environment && light.image.empty() ? DirectLight::photons
-                                                                         : DirectLight::sampled;
+    direct = is_smooth_sky(light) ? DirectLight::photons : DirectLight::sampled;
   return direct == DirectLight::photons;
 }
 
@@ -54,13 +59,14 @@ Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
   }
   needs.several_bounces = !scene.render.max_bounces || *scene.render.max_bounces > 1;
   for (const LightSettings& light : scene.lights) {
-    const bool environment = light.type == LightType::environment;
+    const bool environment = light.type == LightType::environment || light.type == LightType::sky;
     needs.environment = needs.environment || environment;
     const Rgb& colour = light.type == LightType::distant ? light.irradiance
                         : environment                    ? light.radiance
                                                          : light.intensity;
-    needs.coloured = needs.coloured || !is_grey(colour) || !light.image.empty();
-    const bool escaping_rays = environment && light.image.empty();
+    needs.coloured =
+        needs.coloured || !is_grey(colour) || !light.image.empty() || light.type == LightType::sky;
+    const bool escaping_rays = is_smooth_sky(light);
     if (scene.render.estimator == EstimatorType::path ? escaping_rays
                                                       : left_to_photons(light, scene.render))
       needs.first_flight = true;

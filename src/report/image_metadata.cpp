@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -57,6 +60,23 @@ std::vector<float> flatten(const Matrix& m) {
   return values;
 }
 
+/// When the picture was made, and which moment of the shot it shows.
+void add_time(Image& image, const Scene& scene, int frame) {
+  image.metadata["capDate"] = fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
+  image.numbers["utcOffset"] = 0;
+  if (!scene.image.fps)
+    return;
+  const double fps = *scene.image.fps;
+  image.numbers["framesPerSecond"] = fps;
+  // A time code counts whole frames, of which it holds at most 30 in a second and a day in all.
+  const int count = static_cast<int>(std::ceil(fps - 1e-6));
+  if (frame < 0 || count > 30 || frame / count >= 24 * 3600)
+    return;
+  const int seconds = frame / count;
+  image.metadata["timeCode"] = fmt::format("{:02}:{:02}:{:02}:{:02}", seconds / 3600,
+                                           seconds / 60 % 60, seconds % 60, frame % count);
+}
+
 } // namespace
 
 void add_error_metadata(Image& image, const PassRecord& record) {
@@ -80,7 +100,9 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   for (const auto& [name, version] : component_versions())
     if (name == "vdbeam")
       image.metadata["software"] = "vdbeam " + version;
-  image.metadata["vdbeam:scene"] = scene.path;
+  std::error_code error; // where there is no working folder, the path stays as it was written
+  const std::filesystem::path absolute = std::filesystem::absolute(scene.path, error);
+  image.metadata["vdbeam:scene"] = error ? scene.path : absolute.lexically_normal().string();
   image.metadata["vdbeam:sceneHash"] = hash;
   image.metadata["vdbeam:estimator"] = enum_name(scene.render.estimator);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
@@ -104,6 +126,16 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.numbers["vdbeam:clampedPixels"] = static_cast<double>(result.statistics.clamped_pixels);
   }
   image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
+  for (const char* name : {"vdbeam:frame", "vdbeam:complete", "vdbeam:seed", "vdbeam:passes",
+                           "vdbeam:photonsStored", "vdbeam:clampedPixels"})
+    if (image.numbers.contains(name))
+      image.integers.insert(name);
+  add_time(image, scene, frame);
+  image.numbers["vdbeam:cameraFov"] = scene.camera.fov;
+  const Vec3d& position = scene.camera.position;
+  image.matrices["vdbeam:cameraPosition"] = {static_cast<float>(position.x),
+                                             static_cast<float>(position.y),
+                                             static_cast<float>(position.z)};
   const Matrix view = world_to_camera(scene.camera);
   image.matrices["worldToCamera"] = flatten(view);
   image.matrices["worldToNDC"] = flatten(product(view, camera_to_ndc(scene.camera, scene.image)));

@@ -22,7 +22,7 @@ Json number(double x) {
 
 Json value_json(const SceneKey& key, const KeyValue& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value))
-    return *whole;
+    return key.kind == KeyKind::boolean ? Json(*whole != 0) : Json(*whole);
   if (const auto* real = std::get_if<double>(&value))
     return number(*real);
   if (const auto* text = std::get_if<std::string>(&value))

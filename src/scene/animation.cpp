@@ -136,7 +136,8 @@ private:
 };
 
 bool is_numeric(KeyKind kind) {
-  return kind != KeyKind::text && kind != KeyKind::file && kind != KeyKind::choice;
+  return kind != KeyKind::boolean && kind != KeyKind::text && kind != KeyKind::file &&
+         kind != KeyKind::choice;
 }
 
 } // namespace

@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numbers>
 
 namespace vdbeam {
 namespace {
@@ -61,14 +63,14 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
 /// What a grid's shape says about camera and extinction.
 struct VolumeShape {
   std::string grid;
-  Boxd bounds;
-  double mean_depth = 0;    ///< of a mean line along the longest side, at extinction 1
-  double largest_depth = 0; ///< of the densest value along the shortest side, at extinction 1
+  std::vector<Vec3d> points; ///< a body around them holds all that is to be seen
+  double mean_depth = 0;     ///< of a mean line along the longest side, at extinction 1
+  double largest_depth = 0;  ///< of the densest value along the shortest side, at extinction 1
 
   void extend(const GridSummary& summary) {
     if (summary.active_voxels == 0)
       return;
-    bounds.extend(summary.world_bounds);
+    add_points(summary);
     std::array<double, 3> sides{};
     double cells = 1;
     for (int i = 0; i < 3; ++i) {
@@ -82,6 +84,28 @@ struct VolumeShape {
     const double fill = level_set ? 0.5 : static_cast<double>(summary.active_voxels) / cells;
     mean_depth = std::max(mean_depth, (level_set ? 1 : summary.mean) * fill * *longest);
     largest_depth = std::max(largest_depth, (level_set ? 1 : summary.maximum) * *shortest);
+  }
+  void add_points(const GridSummary& summary) {
+    // A voxel's value fades out over a voxel around it.
+    const Vec3d lower = Vec3d(summary.index_lower) - Vec3d(1);
+    const Vec3d size = Vec3d(summary.index_upper) + Vec3d(1) - lower;
+    const auto add_box = [&](const Vec3d& from, const Vec3d& to) {
+      for (int corner = 0; corner < 8; ++corner)
+        points.push_back(summary.index_to_world.point(
+            lower + size * Vec3d(corner & 1 ? to.x : from.x, corner & 2 ? to.y : from.y,
+                                 corner & 4 ? to.z : from.z)));
+    };
+    if (summary.outline.empty()) {
+      add_box(Vec3d(0), Vec3d(1));
+      return;
+    }
+    constexpr int steps = GridSummary::outline_steps;
+    for (int y = 0; y < steps; ++y)
+      for (int x = 0; x < steps; ++x) {
+        const int* column = &summary.outline[2 * static_cast<std::size_t>(steps * y + x)];
+        if (column[0] <= column[1])
+          add_box(Vec3d(x, y, column[0]) / steps, Vec3d(x + 1, y + 1, column[1] + 1) / steps);
+      }
   }
   double extinction() const {
     return std::min(target_optical_depth / mean_depth, largest_optical_depth / largest_depth);
@@ -118,10 +142,9 @@ VolumeShape find_shape(const std::string& path,
     }
     shape.extend(grid);
   }
-  if (shape.bounds.empty()) {
+  if (shape.points.empty()) {
     notes.push_back(fmt::format("{}: grid \"{}\" is empty", path, shape.grid));
-    shape.bounds.extend(Vec3d(-1));
-    shape.bounds.extend(Vec3d(1));
+    shape.points = {Vec3d(-1), Vec3d(1)};
   }
   return shape;
 }
@@ -152,53 +175,84 @@ struct Viewer {
   }
 };
 
-void frame_camera(Scene& scene, const Boxd& bounds, const FramingWishes& wishes) {
-  const Viewer viewer(wishes.up);
-  CameraSettings& camera = scene.camera;
-  camera.up = wishes.up;
-  const Vec3d target = bounds.center();
-  const Vec3d towards = viewer.direction(0.35, 0.2, 1);
-  const Vec3d right = normalize(cross(camera.up, towards)), up = cross(towards, right);
+constexpr double margin = 0.9; // share of the picture that the object may fill
 
-  std::vector<Vec3d> corners; // in the camera's axes, relative to the target
-  Vec3d reach;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3d offset =
-        Vec3d(i & 1 ? bounds.upper.x : bounds.lower.x, i & 2 ? bounds.upper.y : bounds.lower.y,
-              i & 4 ? bounds.upper.z : bounds.lower.z) -
-        target;
-    corners.emplace_back(dot(offset, right), dot(offset, up), dot(offset, towards));
-    reach = max(reach, Vec3d(std::abs(corners.back().x), std::abs(corners.back().y), 0));
+/// Where the camera must stand so that points, given in its own axes, fill one side of the picture:
+/// |x - centre| <= slope (distance - z) for every point.
+struct Fit {
+  double right = -std::numeric_limits<double>::infinity(), left = right;
+  double slope; ///< tangent of half the angle of view, less the margin
+
+  void add(double x, double z) {
+    right = std::max(right, x + slope * z);
+    left = std::max(left, -x + slope * z);
   }
-  const double shape = reach.x / reach.y;
-  const auto [width, height] = shape > 1.3    ? std::pair(640, 360)
-                               : shape < 0.77 ? std::pair(360, 480)
-                                              : std::pair(480, 480);
-  scene.image.width = wishes.width.value_or(width);
-  scene.image.height = wishes.height.value_or(height);
+  double centre() const { return (right - left) / 2; }
+  double distance() const { return (right + left) / 2 / slope; }
+};
 
-  constexpr double margin = 0.95; // share of the picture that the box may fill
-  const double half_height = std::tan(camera.fov / 2 * 3.14159265358979323846 / 180) * margin;
-  const double half_width = half_height * scene.image.width / scene.image.height;
-  double distance = 0;
-  for (const Vec3d& corner : corners)
-    distance = std::max(distance, corner.z + std::max(std::abs(corner.x) / half_width,
-                                                      std::abs(corner.y) / half_height));
+void frame_camera(Scene& scene, const std::vector<Vec3d>& points, const Vec3d& up_axis,
+                  const FramingWishes& wishes) {
+  CameraSettings& camera = scene.camera;
+  camera.up = up_axis;
+  // The camera looks slightly upwards: the sky is behind the object, the horizon low.
+  const Vec3d towards = Viewer(up_axis).direction(0.35, -0.17, 1);
+  const Vec3d right = normalize(cross(camera.up, towards)), up = cross(towards, right);
+  scene.image.width = wishes.width.value_or(960);
+  scene.image.height = wishes.height.value_or(540);
+
+  Boxd bounds;
+  for (const Vec3d& point : points)
+    bounds.extend(point);
+  const Vec3d middle = bounds.center();
+  Fit across, upright;
+  upright.slope = std::tan(camera.fov / 2 * std::numbers::pi / 180) * margin;
+  across.slope = upright.slope * scene.image.width / scene.image.height;
+  for (const Vec3d& point : points) {
+    const Vec3d offset = point - middle;
+    across.add(dot(offset, right), dot(offset, towards));
+    upright.add(dot(offset, up), dot(offset, towards));
+  }
+  const Vec3d target = middle + right * across.centre() + up * upright.centre();
+  const double distance = std::max(across.distance(), upright.distance());
   const double size = length(bounds.size());
   camera.look_at = round_point(target, size);
   camera.position = round_point(target + towards * distance, size);
 }
 
-/// `dim`: what glows shows beside a low light only.
-void light_scene(Scene& scene, const Vec3d& up_axis, bool dim) {
+/// A sunny day; `dusk`: what glows shows in the dark only.
+void light_scene(Scene& scene, const Vec3d& up_axis, bool dusk) {
   LightSettings sun;
   sun.type = LightType::distant;
-  sun.direction = round_point(Viewer(up_axis).direction(-0.55, -0.66, -0.44), 1);
-  sun.irradiance = Rgb(dim ? 0.5f : 5.0f);
+  sun.direction = round_point(Viewer(up_axis).direction(-0.75, -0.5, -0.42), 1);
+  sun.irradiance = dusk ? Rgb(0.12f, 0.16f, 0.25f) : Rgb(7.0f, 5.6f, 4.0f);
+  sun.angular_radius = 0.27;
   LightSettings sky;
-  sky.type = LightType::environment;
-  sky.radiance = Rgb(dim ? 0.025f : 0.25f);
+  sky.type = LightType::sky;
+  if (dusk) {
+    sky.zenith = {0.01f, 0.018f, 0.045f};
+    sky.horizon = {0.1f, 0.06f, 0.045f};
+    sky.ground = {0.012f, 0.011f, 0.011f};
+  }
   scene.lights = {sun, sky};
+}
+
+/// Whose axis points up, and how that is known.
+Vec3d choose_up(const std::string& path, const std::vector<std::vector<GridSummary>>& summaries,
+                const FramingWishes& wishes, std::vector<std::string>& notes) {
+  if (wishes.up)
+    return *wishes.up;
+  bool mantaflow = false;
+  for (const std::vector<GridSummary>& grids : summaries)
+    for (const GridSummary& grid : grids)
+      mantaflow = mantaflow || grid.from_mantaflow;
+  notes.push_back(mantaflow ? fmt::format("{}: Z is up, as in Blender, whose simulator wrote the "
+                                          "file; for Y: --set camera.up=[0,1,0]",
+                                          path)
+                            : fmt::format("{}: Y is taken to be up; for Z: "
+                                          "--set camera.up=[0,0,1]",
+                                          path));
+  return mantaflow ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0);
 }
 
 } // namespace
@@ -213,7 +267,8 @@ Scene make_default_scene(const std::string& path,
   Scene scene;
   scene.path = path;
   const VolumeShape shape = find_shape(path, summaries, wishes, scene.notes);
-  frame_camera(scene, shape.bounds, wishes);
+  const Vec3d up = choose_up(path, summaries, wishes, scene.notes);
+  frame_camera(scene, shape.points, up, wishes);
 
   VolumeSettings volume;
   volume.file = path;
@@ -231,7 +286,7 @@ Scene make_default_scene(const std::string& path,
   volume.emission = default_emission(path, summaries, scene.notes);
   const bool fire = volume.glows();
   volume.albedo = Rgb(fire ? 0.7f : 0.98f); // the smoke of a fire is dark
-  light_scene(scene, wishes.up, fire);
+  light_scene(scene, up, fire);
   scene.volumes.push_back(volume);
   return scene;
 }

@@ -11,7 +11,7 @@ namespace vdbeam {
 
 /// What the user said about the picture of a bare VDB.
 struct FramingWishes {
-  Vec3d up{0, 1, 0}; ///< unit
+  std::optional<Vec3d> up; ///< unit
   std::optional<int> width, height;
   std::optional<std::string> grid;
 };

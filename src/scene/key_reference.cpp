@@ -15,7 +15,8 @@ std::string values_text(const SceneKey& key, const char* quote) {
       text += fmt::format("{}{}\"{}\"{}", text.empty() ? "" : ", ", quote, choice, quote);
     return text;
   }
-  std::string text = key.kind == KeyKind::integer    ? "whole number"
+  std::string text = key.kind == KeyKind::boolean    ? "true or false"
+                     : key.kind == KeyKind::integer  ? "whole number"
                      : key.kind == KeyKind::number   ? "number"
                      : key.kind == KeyKind::text     ? "text"
                      : key.kind == KeyKind::file     ? "path"
@@ -24,7 +25,7 @@ std::string values_text(const SceneKey& key, const char* quote) {
                      : key.kind == KeyKind::duration ? "duration"
                                                      : "12 numbers";
   const std::string range = key.range.text();
-  if (range != "any")
+  if (range != "any" && key.kind != KeyKind::boolean)
     text += (range.front() == '>' ? " " : " in ") + range;
   return text;
 }

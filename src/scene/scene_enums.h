@@ -32,11 +32,12 @@ struct EnumNames<EmissionLaw> {
 };
 template <>
 struct EnumNames<LightType> {
-  static constexpr std::array<std::pair<LightType, std::string_view>, 4> table{
+  static constexpr std::array<std::pair<LightType, std::string_view>, 5> table{
       {{LightType::distant, "distant"},
        {LightType::point, "point"},
        {LightType::spot, "spot"},
-       {LightType::environment, "environment"}}};
+       {LightType::environment, "environment"},
+       {LightType::sky, "sky"}}};
 };
 template <>
 struct EnumNames<DirectLight> {

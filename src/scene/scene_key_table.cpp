@@ -18,6 +18,8 @@ template <class T>
 constexpr KeyKind kind_of() {
   if constexpr (std::is_enum_v<T>)
     return KeyKind::choice;
+  else if constexpr (std::is_same_v<T, bool>)
+    return KeyKind::boolean;
   else if constexpr (std::is_integral_v<T>)
     return KeyKind::integer;
   else if constexpr (std::is_same_v<T, double>)
@@ -106,6 +108,13 @@ void add_image_and_camera(Table& table) {
   table.add("height", &ImageSettings::height, "height of the picture")
       .unit("pixels")
       .within(1, 65536);
+
+  table
+      .add("fps", &ImageSettings::fps,
+           "frames per second, for the attributes framesPerSecond and timeCode of the image")
+      .within(1, 1000)
+      .absent("none")
+      .keeps_picture();
 
   table.section(SceneSection::camera);
   table.add("position", &CameraSettings::position, "where the camera stands").unit("world");
@@ -197,16 +206,32 @@ void add_light(Table& table) {
       .unit("degrees")
       .within(0, 90)
       .types({"spot"});
-  table.add("radiance", &L::radiance, "radiance of the sky, or the factor of its image")
+  table
+      .add("radiance", &L::radiance,
+           "radiance from everywhere; with an image or for a sky: factor of what follows")
       .unit("W / m^2 / sr")
       .at_least(0)
-      .types({"environment"});
+      .types({"environment", "sky"});
+  table.add("zenith", &L::zenith, "radiance straight up")
+      .unit("W / m^2 / sr")
+      .at_least(0)
+      .types({"sky"});
+  table.add("horizon", &L::horizon, "radiance at the horizon")
+      .unit("W / m^2 / sr")
+      .at_least(0)
+      .types({"sky"});
+  table.add("ground", &L::ground, "radiance of what lies below the horizon")
+      .unit("W / m^2 / sr")
+      .at_least(0)
+      .types({"sky"});
   table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
       .kind(KeyKind::file)
       .types({"environment"});
   table.add("rotation", &L::rotation, "turns the sky about the camera's up axis")
       .unit("degrees")
       .types({"environment"});
+  table.add("visible", &L::visible,
+            "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
 }
 

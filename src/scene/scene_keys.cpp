@@ -114,7 +114,7 @@ std::optional<std::string> SceneKey::complaint(const KeyValue& value) const {
 
 std::string SceneKey::format(const KeyValue& value) const {
   if (const auto* whole = std::get_if<std::int64_t>(&value))
-    return fmt::format("{}", *whole);
+    return kind == KeyKind::boolean ? (*whole ? "true" : "false") : fmt::format("{}", *whole);
   if (const auto* number = std::get_if<double>(&value))
     return fmt::format("{}", *number);
   if (const auto* text = std::get_if<std::string>(&value))
@@ -140,6 +140,8 @@ std::string SceneKey::default_text() const {
 
 std::string SceneKey::kind_text() const {
   switch (kind) {
+  case KeyKind::boolean:
+    return "true or false";
   case KeyKind::integer:
     return "a whole number";
   case KeyKind::number:

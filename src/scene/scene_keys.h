@@ -15,10 +15,21 @@ namespace vdbeam {
 enum class SceneSection { image, camera, volume, phase, emission, light, render };
 
 /// What a key's value is in the file.
-enum class KeyKind { integer, number, text, file, choice, vector, color, duration, matrix };
+enum class KeyKind {
+  boolean,
+  integer,
+  number,
+  text,
+  file,
+  choice,
+  vector,
+  color,
+  duration,
+  matrix
+};
 
-/// A value between the file and the settings: absent ("auto", "none"), a whole number, a number, a
-/// text or choice, or a list of numbers.
+/// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a
+/// boolean), a number, a text or choice, or a list of numbers.
 using KeyValue =
     std::variant<std::monostate, std::int64_t, double, std::string, std::vector<double>>;
 

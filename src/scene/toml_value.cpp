@@ -56,6 +56,9 @@ std::optional<KeyValue> convert(const SceneKey& key, const toml::node& node) {
     return value ? std::optional<KeyValue>(*value) : std::nullopt;
   };
   switch (key.kind) {
+  case KeyKind::boolean:
+    return node.is_boolean() ? std::optional<KeyValue>(std::int64_t{node.as_boolean()->get()})
+                             : std::nullopt;
   case KeyKind::integer:
     return wrap(whole_number_of(node));
   case KeyKind::number:

@@ -102,16 +102,21 @@ float DepthProfile::sharpest_piece() const {
   return sharpest;
 }
 
-float DepthProfile::opacity_depth() const {
-  float sum = 0, tau = 0, before = 1;
-  for (std::size_t knot = 1; knot < t_.size(); ++knot) {
-    const float piece = total(knot) - tau, after = std::exp(-total(knot));
-    const float t = t_[knot - 1] + mean_collision(piece) * (t_[knot] - t_[knot - 1]);
-    sum += (before - after) * t;
-    tau += piece;
-    before = after;
+float DepthProfile::opacity_depth(const Medium& medium) const {
+  float sum = 0;
+  const int channels = medium.chromatic ? 3 : 1;
+  for (int c = 0; c < channels; ++c) {
+    float tau = 0, before = 1;
+    for (std::size_t knot = 1; knot < t_.size(); ++knot) {
+      const float tau_after = this->channels(medium, knot)[c];
+      const float piece = tau_after - tau;
+      const float t = t_[knot - 1] + mean_collision(piece) * (t_[knot] - t_[knot - 1]);
+      sum += before * -std::expm1(-piece) * t; // a difference of exponentials would lose digits
+      tau = tau_after;
+      before = std::exp(-tau_after);
+    }
   }
-  return sum;
+  return sum / static_cast<float>(channels);
 }
 
 } // namespace vdbeam

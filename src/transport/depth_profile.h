@@ -46,8 +46,9 @@ public:
   /// Largest optical depth of one piece, weighted with what is seen of it: how fine a resampling
   /// has to be.
   float sharpest_piece() const;
-  /// Integral of Tr sigma_t t dt (mean over channels is not taken: strongest channel).
-  float opacity_depth() const;
+  /// Integral of Tr sigma_t t dt, mean over channels: opacity times the mean distance of what
+  /// makes the medium opaque.
+  float opacity_depth(const Medium& medium) const;
 
 private:
   void build_single(const Volume& volume, const Segment& segment, float limit);

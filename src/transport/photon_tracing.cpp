@@ -49,7 +49,10 @@ struct LightPath : Flight {
 class PathTracer {
 public:
   PathTracer(const World& world, const PhotonPassSettings& settings)
-      : world_(world), settings_(settings) {}
+      : world_(world), settings_(settings),
+        first_flights_(std::find(settings.skip_first_flight.begin(),
+                                 settings.skip_first_flight.end(),
+                                 false) != settings.skip_first_flight.end()) {}
 
   /// The paths `begin` to `end` of a pass, of which light i sends first[i] to first[i + 1]. Several
   /// are under way at a time and take turns at every collision, so that one path computes while the
@@ -157,10 +160,13 @@ private:
     if (settings_.directions)
       photons.direction.push_back(path.segment.ray.direction);
     photons.power.push_back(power * settings_.albedo / probability);
+    if (first_flights_)
+      photons.first_flight.push_back(path.bounces == 0);
   }
 
   const World& world_;
   const PhotonPassSettings& settings_;
+  bool first_flights_; ///< of some light are stored
 };
 
 } // namespace
@@ -202,6 +208,7 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
   pass.photons.position.reserve(stored);
   pass.photons.direction.reserve(settings.directions ? stored : 0);
   pass.photons.power.reserve(stored);
+  pass.photons.first_flight.reserve(stored);
   for (PathTracer& tracer : tracers)
     pass.photons.append(tracer.photons);
   pass.mean_collisions =

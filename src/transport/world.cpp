@@ -182,7 +182,7 @@ bool grey_scene(const Scene& scene, const World& world) {
     grey = grey && is_grey(volume.albedo);
   for (const LightSettings& light : scene.lights)
     grey = grey && is_grey(light.irradiance) && is_grey(light.intensity) &&
-           is_grey(light.radiance) && light.image.empty();
+           is_grey(light.radiance) && light.image.empty() && light.type != LightType::sky;
   for (const VolumeSettings& volume : scene.volumes)
     grey = grey && (!volume.glows() ||
                     (volume.emission.temperature.empty() && is_grey(volume.emission.color)));

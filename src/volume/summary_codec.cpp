@@ -38,6 +38,8 @@ void for_each_field(Summary& s, Field field) {
   field("nan", s.bad_values.nan);
   field("infinite", s.bad_values.infinite);
   field("negative", s.bad_values.negative);
+  field("from_mantaflow", s.from_mantaflow);
+  field("outline", s.outline);
 }
 
 } // namespace

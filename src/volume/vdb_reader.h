@@ -41,7 +41,14 @@ struct GridSummary {
   double voxel_size[3] = {0, 0, 0};
   double minimum = 0, maximum = 0, mean = 0; ///< over active voxels, scalar float grids only
   double background = 0;
-  GridRepairs bad_values; ///< counted, not changed; a level set has no bad negative ones
+  GridRepairs bad_values;      ///< counted, not changed; a level set has no bad negative ones
+  bool from_mantaflow = false; ///< written by Mantaflow, Blender's simulator, whose Z axis is up
+  /// Where the grid holds something, for framing it: the bounding box is divided into outline_steps
+  /// cells along each axis; for each column of cells along z (x fastest) the first and the last
+  /// cell that holds more than a hundredth of the maximum, or two numbers of which the first is
+  /// larger.
+  std::vector<int> outline;
+  static constexpr int outline_steps = 32;
 };
 
 /// How far an untrusted file may go before it is refused.

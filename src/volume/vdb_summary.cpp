@@ -41,6 +41,62 @@ struct ValueStatistics {
   }
 };
 
+/// Finds GridSummary::outline.
+class Outline {
+public:
+  Outline(const openvdb::CoordBBox& box, double threshold)
+      : box_(box), threshold_(threshold),
+        columns_(2 * std::size_t{GridSummary::outline_steps} * GridSummary::outline_steps) {
+    for (std::size_t i = 0; i < columns_.size(); i += 2)
+      columns_[i] = GridSummary::outline_steps; // the last of an empty column is 0
+  }
+
+  void add(openvdb::CoordBBox part, double value) {
+    part.intersect(box_);
+    if (!(value > threshold_) || part.empty())
+      return;
+    int low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = cell(part.min()[axis], axis);
+      high[axis] = cell(part.max()[axis], axis);
+    }
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x) {
+        int* column = &columns_[2 * static_cast<std::size_t>(GridSummary::outline_steps * y + x)];
+        column[0] = std::min(column[0], low[2]);
+        column[1] = std::max(column[1], high[2]);
+      }
+  }
+  std::vector<int> columns() && { return std::move(columns_); }
+
+private:
+  int cell(int index, int axis) const {
+    const std::int64_t offset = std::int64_t{index} - box_.min()[axis];
+    const std::int64_t size = std::int64_t{box_.max()[axis]} - box_.min()[axis] + 1;
+    return static_cast<int>(offset * GridSummary::outline_steps / size);
+  }
+
+  openvdb::CoordBBox box_;
+  double threshold_;
+  std::vector<int> columns_;
+};
+
+template <class Grid>
+std::vector<int> find_outline(const Grid& grid, const openvdb::CoordBBox& box, double threshold) {
+  Outline outline(box, threshold);
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->cbeginValueOn(); value; ++value)
+      outline.add({value.getCoord(), value.getCoord()}, value.getValue());
+  auto tile = grid.tree().cbeginValueOn();
+  tile.setMaxDepth(Grid::TreeType::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    openvdb::CoordBBox part;
+    tile.getBoundingBox(part);
+    outline.add(part, tile.getValue());
+  }
+  return std::move(outline).columns();
+}
+
 /// Counts by hand what OpenVDB's own functions would count through TBB.
 template <class Grid>
 void summarize_tree(const Grid& grid, GridSummary& summary) {
@@ -105,6 +161,8 @@ GridSummary summarize_grid(const std::string& name, const openvdb::GridBase& gri
   summary.grid_class = openvdb::GridBase::gridClassToMenuName(grid.getGridClass());
   summary.index_lower = Vec3<std::int64_t>(0);
   summary.index_upper = Vec3<std::int64_t>(-1);
+  summary.from_mantaflow =
+      grid.getMetadata<openvdb::Vec3IMetadata>("file_base_resolution") != nullptr;
   summarize_map(grid.transform(), summary);
   return summary;
 }
@@ -162,8 +220,12 @@ void write_summary(const std::string& path, const std::string& grid_name, int de
   grid.apply<openvdb::GridTypes>([&summary](const auto& typed) {
     summarize_tree(typed, summary);
     openvdb::CoordBBox box;
-    if (summary.active_voxels > 0 && typed.tree().evalActiveVoxelBoundingBox(box))
-      set_bounds(typed, box, summary);
+    if (summary.active_voxels == 0 || !typed.tree().evalActiveVoxelBoundingBox(box))
+      return;
+    set_bounds(typed, box, summary);
+    if constexpr (std::is_floating_point_v<typename std::decay_t<decltype(typed)>::ValueType>)
+      if (typed.getGridClass() != openvdb::GRID_LEVEL_SET)
+        summary.outline = find_outline(typed, box, summary.maximum / 100);
   });
   write_encoded(summary, descriptor);
 }

@@ -135,7 +135,7 @@ TEST_F(BatchCommand, PartialImagesMerge) {
   ASSERT_EQ(with({"-o", "a.exr", "--pass-range", "0-1"}), 0);
   ASSERT_EQ(with({"-o", "b.exr", "--pass-range", "2"}), 0);
   EXPECT_EQ(run({"merge", "-o", "m.exr", "--passes", "3", "b.exr", "a.exr"}).code, 0);
-  for (const char* channel : {"R", "A", "volume_Z"})
+  for (const char* channel : {"R", "A", "depth.Z"})
     EXPECT_EQ(read_image(file("m.exr")).find(channel)->data,
               read_image(file("whole.exr")).find(channel)->data);
   // The merged image is the finished one of this scene.

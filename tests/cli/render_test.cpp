@@ -20,7 +20,7 @@ TEST_F(RenderCommand, WritesImagePreviewAndReport) {
   const Image image = read_image(file("a.exr"));
   EXPECT_EQ(image.width, 32);
   EXPECT_EQ(image.height, 18);
-  for (const char* channel : {"R", "G", "B", "A", "volume_Z"})
+  for (const char* channel : {"R", "G", "B", "A", "depth.Z"})
     EXPECT_NE(image.find(channel), nullptr) << channel;
 
   const Json report = Json::parse(read("r.json"));

@@ -93,9 +93,9 @@ TEST(Film, DevelopsSumsOfOutputs) {
   EXPECT_EQ(image.find("volume.G")->data[0], 11.0f);
   EXPECT_EQ(image.find("volume_direct.B")->data[0], 1.5f);
   EXPECT_EQ(image.find("volume_indirect.R")->data[0], 5.0f);
-  EXPECT_EQ(image.find("volume_opacity")->data[0], 0.25f);
-  EXPECT_EQ(image.find("volume_Z")->data, (std::vector<float>{4, 0})) << "only passes that hit";
-  EXPECT_FALSE(image.find("volume_Z")->half);
+  EXPECT_EQ(image.find("volume.A")->data[0], 0.25f);
+  EXPECT_EQ(image.find("depth.Z")->data, (std::vector<float>{8, 1e10f})) << "sum over opacity";
+  EXPECT_FALSE(image.find("depth.Z")->half);
   EXPECT_TRUE(image.find("R")->half);
 }
 
@@ -103,7 +103,20 @@ TEST(Film, IsBlackBeforeTheFirstPass) {
   const Image image = Film(3, 2).develop();
   EXPECT_EQ(image.channels.size(), 15u);
   for (const ImageChannel& channel : image.channels)
-    EXPECT_EQ(channel.data, std::vector<float>(6, 0.0f)) << channel.name;
+    EXPECT_EQ(channel.data, std::vector<float>(6, channel.name == "depth.Z" ? 1e10f : 0.0f))
+        << channel.name;
+}
+
+// Blender 3.4 drops other channels ("multilayer read: unknown channel token"); Nuke and OpenImageIO
+// take any.
+TEST(Film, ChannelsHaveNamesThatBlenderShows) {
+  const Image image = Film(1, 1, true).develop();
+  for (const ImageChannel& channel : image.channels) {
+    const std::size_t dot = channel.name.rfind('.');
+    const std::string last = dot == std::string::npos ? channel.name : channel.name.substr(dot + 1);
+    EXPECT_EQ(last.size(), 1u) << channel.name;
+    EXPECT_NE(std::string("RGBAXYZVU").find(last), std::string::npos) << channel.name;
+  }
 }
 
 TEST(Film, ManyPassesOfAConstantGiveTheConstant) {
@@ -189,7 +202,7 @@ TEST(Film, InvalidValuesAreCountedAndIgnored) {
   film.add(bad);
   EXPECT_EQ(film.invalid_values(), 3u);
   EXPECT_EQ(film.develop().find("R")->data[0], before.find("R")->data[0] / 2);
-  EXPECT_EQ(film.develop().find("volume_Z")->data[0], before.find("volume_Z")->data[0]);
+  EXPECT_EQ(film.develop().find("depth.Z")->data[0], before.find("depth.Z")->data[0]);
   EXPECT_TRUE(std::isfinite(film.mrse_estimate()));
   Film other(2, 1);
   other.merge(film);

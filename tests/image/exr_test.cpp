@@ -29,8 +29,8 @@ Image make_image(int width, int height) {
   image.height = height;
   std::mt19937 random(7);
   std::lognormal_distribution<float> values;
-  for (const char* name : {"R", "G", "B", "A", "volume_direct.R", "volume_Z"}) {
-    ImageChannel channel{name, {}, std::string(name) != "volume_Z"};
+  for (const char* name : {"R", "G", "B", "A", "volume_direct.R", "depth.Z"}) {
+    ImageChannel channel{name, {}, std::string(name) != "depth.Z"};
     for (int i = 0; i < width * height; ++i)
       channel.data.push_back(values(random));
     image.channels.push_back(channel);
@@ -80,12 +80,23 @@ TEST(Exr, KeepsAttributes) {
   image.metadata["vdbeam.scene"] = "cloud.toml";
   image.numbers["vdbeam.seconds"] = 0.1;
   image.numbers["framesPerSecond"] = 24;
+  image.numbers["vdbeam.frame"] = -7;
+  image.numbers["vdbeam.seed"] = 3e10; // too large for an integer attribute
+  image.integers = {"vdbeam.frame", "vdbeam.seed"};
+  image.metadata["timeCode"] = "01:02:03:04";
+  image.matrices["position"] = {1, 2, 3};
   image.matrices["worldToCamera"] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
   write_exr(image, folder.file("a.exr"));
   const Image back = read_image(folder.file("a.exr"));
   EXPECT_EQ(back.metadata.at("vdbeam.scene"), "cloud.toml");
   EXPECT_EQ(back.numbers.at("vdbeam.seconds"), 0.1);
   EXPECT_EQ(back.numbers.at("framesPerSecond"), 24);
+  EXPECT_EQ(back.numbers.at("vdbeam.frame"), -7);
+  EXPECT_EQ(back.numbers.at("vdbeam.seed"), 3e10);
+  EXPECT_TRUE(back.integers.contains("vdbeam.frame"));
+  EXPECT_FALSE(back.integers.contains("vdbeam.seed"));
+  EXPECT_EQ(back.metadata.at("timeCode"), "01:02:03:04");
+  EXPECT_EQ(back.matrices.at("position"), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(back.matrices.at("worldToCamera"), image.matrices.at("worldToCamera"));
 
   Imf::InputFile file(folder.file("a.exr").c_str());

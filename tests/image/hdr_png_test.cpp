@@ -1,4 +1,5 @@
 #include "image/output_formats.h"
+#include "image/view_transform.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -172,7 +173,7 @@ TEST(Png, EncodesSrgbAndSurvivesAnyValue) {
   const float infinity = std::numeric_limits<float>::infinity();
   const Image image =
       make_grey({0, 0.001f, 0.18f, 0.5f, 1, 7, -3, std::nanf(""), infinity, -infinity});
-  write_png(image, folder.file("a.png"));
+  write_png(image, folder.file("a.png"), 0, "srgb");
   const std::vector<unsigned char> pixels = read_png(folder.file("a.png"));
   // 18 % grey is sRGB 118, half is 188 (IEC 61966-2-1).
   const unsigned char expected[] = {0, 3, 118, 188, 255, 255, 0, 0, 255, 0};
@@ -183,8 +184,47 @@ TEST(Png, EncodesSrgbAndSurvivesAnyValue) {
 
 TEST(Png, ExposureIsInStops) {
   TempFolder folder;
-  write_png(make_grey({0.25f}), folder.file("a.png"), 1);
+  write_png(make_grey({0.25f}), folder.file("a.png"), 1, "srgb");
   EXPECT_EQ(read_png(folder.file("a.png"))[0], 188);
+}
+
+TEST(ViewTransform, FilmicKeepsShadowsAndRollsHighlightsOff) {
+  const auto view = view_transform("filmic").apply;
+  EXPECT_EQ(view(Vec3d(0)), Vec3d(0));
+  for (const double x : {0.01, 0.18, 0.35})
+    EXPECT_NEAR(view(Vec3d(x)).y, x, 1e-12) << "as it is";
+  double before = 0;
+  for (double x = 0.01; x < 1000; x *= 1.2) {
+    const double y = view(Vec3d(x)).x;
+    EXPECT_GT(y, before) << "no two brightnesses look the same";
+    EXPECT_LT(y, 1);
+    before = y;
+  }
+  EXPECT_GT(before, 0.99);
+  EXPECT_LT(view(Vec3d(4)).x, 0.93) << "room above white";
+}
+
+TEST(ViewTransform, FilmicFadesBrightColoursInTheirOwnOrder) {
+  const auto view = view_transform("filmic").apply;
+  double saturation = 1;
+  for (double scale = 0.25; scale < 500; scale *= 2) { // the orange of a flame
+    const Vec3d shown = view(Vec3d(1, 0.4, 0.1) * scale);
+    EXPECT_GT(shown.x, shown.y);
+    EXPECT_GT(shown.y, shown.z);
+    EXPECT_LE(1 - shown.z / shown.x, saturation + 1e-9);
+    saturation = 1 - shown.z / shown.x;
+  }
+  EXPECT_LT(saturation, 0.5);
+  const Vec3d blue = view({0, 0, 1e30});
+  EXPECT_EQ(blue.x, 0);
+  EXPECT_LE(blue.z, 1 + 1e-12);
+}
+
+TEST(ViewTransform, UnknownNamesAreInputErrors) {
+  EXPECT_THROW(view_transform("flimic"), InputError);
+  TempFolder folder;
+  EXPECT_THROW(write_png(make_grey({1}), folder.file("a.png"), 0, "none"), InputError);
+  EXPECT_TRUE(folder.names().empty());
 }
 
 TEST(Png, FailuresAreFrameErrors) {

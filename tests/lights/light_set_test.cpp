@@ -36,6 +36,17 @@ TEST(LightSet, HoldsAllLightsAndTheirPolicies) {
   EXPECT_EQ(lights[1].type(), LightType::distant);
 }
 
+TEST(LightSet, HiddenLightsLightButDoNotShow) {
+  LightSettings hidden = sky(2);
+  hidden.visible = false;
+  const OccupiedRegion region = region_of({cube({}, 1)});
+  const LightSet lights({sky(1), hidden}, {0, 1, 0}, RenderSpace{}, region);
+  EXPECT_TRUE(lights.visible(0));
+  EXPECT_FALSE(lights.visible(1));
+  EXPECT_FLOAT_EQ(escaped_radiance(lights[1], {0, 1, 0}).x, 2);
+  EXPECT_GT(lights[1].power().x, 0);
+}
+
 TEST(LightSet, MissingImageIsAnInputError) {
   LightSettings settings = sky(1);
   settings.image = "/nonexistent/sky.exr";

@@ -58,7 +58,7 @@ TEST(SampleFire, FrameInWhichTheFireIsOut) {
   const RenderResult result = render(small_fire(18));
   EXPECT_FALSE(result.plan.needs("emission"));
   EXPECT_EQ(mean(result.image, "volume_emission.R"), 0);
-  EXPECT_GT(mean(result.image, "volume_opacity"), 0.05);
+  EXPECT_GT(mean(result.image, "volume.A"), 0.05);
   const Image only = render(small_fire(18, {"volume.0.extinction=0", "light.0.irradiance=0",
                                             "light.1.radiance=0"}))
                          .image;

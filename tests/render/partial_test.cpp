@@ -160,7 +160,7 @@ TEST(Region, PixelsAreThoseOfTheWholeImage) {
     const Image part = render(scene, hooks).image;
     ASSERT_EQ(part.width, 22);
     ASSERT_EQ(part.height, 14);
-    for (const char* name : {"R", "volume_indirect.G", "volume_Z"})
+    for (const char* name : {"R", "volume_indirect.G", "depth.Z"})
       for (int y = 0; y < part.height; ++y)
         for (int x = 0; x < part.width; ++x)
           ASSERT_EQ(part.find(name)->data[static_cast<std::size_t>(y * part.width + x)],
@@ -179,8 +179,7 @@ TEST(Region, IsADataWindowInTheFile) {
   ASSERT_EQ(read.width, 40);
   ASSERT_EQ(read.height, 23);
   EXPECT_EQ(read.find("A")->data[4 * 40 + 20], 0);
-  EXPECT_EQ(read.find("volume_opacity")->data[12 * 40 + 20],
-            part.find("volume_opacity")->data[7 * 22 + 11]);
+  EXPECT_EQ(read.find("volume.A")->data[12 * 40 + 20], part.find("volume.A")->data[7 * 22 + 11]);
   hooks.region = PixelRegion{9, 5, 41, 19};
   EXPECT_THROW(render(small_cloud(), hooks), InputError);
 }

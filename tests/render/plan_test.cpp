@@ -218,7 +218,7 @@ TEST(Plan, CameraThatSeesAnEdge) {
 TEST(Plan, EstimatesMemory) {
   const Outcome r = run(base());
   EXPECT_GT(r.plan.photon_bytes, 2000 * r.statistics.bytes_per_photon / 2);
-  EXPECT_GE(r.plan.film_bytes, 64u * 160);
+  EXPECT_GE(r.plan.film_bytes, 64u * 156);
 }
 
 /// make_plan needs the files' headers only, and says of the view what the renderer says.

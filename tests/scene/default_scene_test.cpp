@@ -1,4 +1,6 @@
 #include "scene_fixture.h"
+#include "vdbeam/render.h"
+#include "volume_factory.h"
 
 #include <cmath>
 
@@ -20,10 +22,11 @@ TEST_F(DefaultScene, ShowsABareVdb) {
   ASSERT_EQ(scene.lights.size(), 2u);
   EXPECT_EQ(scene.lights[0].type, LightType::distant);
   EXPECT_LT(scene.lights[0].direction.y, 0);
-  EXPECT_EQ(scene.lights[1].type, LightType::environment);
+  EXPECT_EQ(scene.lights[1].type, LightType::sky);
   EXPECT_EQ(scene.render.passes, 64);
-  ASSERT_EQ(scene.notes.size(), 1u);
-  EXPECT_NE(scene.notes[0].find("extinction"), std::string::npos);
+  ASSERT_EQ(scene.notes.size(), 2u);
+  EXPECT_NE(scene.notes[0].find("Y is taken to be up"), std::string::npos);
+  EXPECT_NE(scene.notes[1].find("extinction"), std::string::npos);
   EXPECT_NO_THROW(validate_scene(scene));
 }
 
@@ -75,6 +78,65 @@ TEST_F(DefaultScene, FileNamesAreQuoted) {
   std::filesystem::copy_file(cloud, odd);
   const std::string path = write("odd.toml", scene_template(odd, folder_.string()));
   EXPECT_EQ(load_scene(path).volumes.at(0).file, odd);
+}
+
+/// What of the picture the grid's voxels fill: columns and rows, as shares of width and height.
+struct Filled {
+  double left = 1, right = 0, top = 1, bottom = 0;
+};
+Filled filled_part(const std::string& path, const std::vector<std::string>& overrides = {}) {
+  std::vector<std::string> all{"image.width=96", "image.height=54", "render.passes=1",
+                               "render.estimator=path", "render.max_bounces=1"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const Scene scene = load_scene(path, 1, all);
+  const RenderResult result = render(scene);
+  const std::vector<float>& opacity = result.image.find("A")->data;
+  Filled part;
+  for (int y = 0; y < 54; ++y)
+    for (int x = 0; x < 96; ++x)
+      if (opacity[static_cast<std::size_t>(96 * y + x)] > 0.02f) {
+        part.left = std::min(part.left, x / 96.0);
+        part.right = std::max(part.right, (x + 1) / 96.0);
+        part.top = std::min(part.top, y / 54.0);
+        part.bottom = std::max(part.bottom, (y + 1) / 54.0);
+      }
+  return part;
+}
+
+/// Nothing is cut off, and one side of the picture is nearly full; the object stands in its middle.
+void expect_framed(const Filled& part) {
+  EXPECT_GT(part.left, 0.01);
+  EXPECT_GT(part.top, 0.01);
+  EXPECT_LT(part.right, 0.99);
+  EXPECT_LT(part.bottom, 0.99);
+  EXPECT_GT(std::max(part.right - part.left, part.bottom - part.top), 0.8);
+  EXPECT_NEAR((part.left + part.right) / 2, 0.5, 0.05);
+  EXPECT_NEAR((part.top + part.bottom) / 2, 0.5, 0.05);
+}
+
+TEST_F(DefaultScene, FramesTheObjectTightly) {
+  expect_framed(filled_part(cloud));
+  expect_framed(filled_part(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb"));
+  expect_framed(filled_part(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb", {"camera.up=[1,0,0]"}));
+}
+
+TEST_F(DefaultScene, DoesNotCropSmallGrids) {
+  VolumeOptions options;
+  options.size = 8;
+  write_volume("box", file("box.vdb"), options);
+  expect_framed(filled_part(file("box.vdb")));
+}
+
+TEST_F(DefaultScene, BlendersSimulationsStandUpright) {
+  const std::string smoke = VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb";
+  const Scene scene = load_scene(smoke);
+  EXPECT_EQ(scene.camera.up, Vec3d(0, 0, 1));
+  EXPECT_LT(scene.camera.position.y, scene.camera.look_at.y); // looks along +Y
+  EXPECT_LT(scene.lights[0].direction.z, 0);
+  EXPECT_NE(scene.notes.at(0).find("Z is up"), std::string::npos);
+  const Scene asked = load_scene(smoke, 1, {"camera.up=[0,1,0]"});
+  EXPECT_EQ(asked.camera.up, Vec3d(0, 1, 0));
+  EXPECT_EQ(asked.notes.at(0).find("is up"), std::string::npos) << "nothing is assumed";
 }
 
 TEST_F(DefaultScene, BadVolumes) {
