@@ -40,8 +40,6 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c =
-            photons_.map().query_point(ray.camera.ray().at(t), ray.camera.ray().direction,
         const QueryCounts c = photons_.map().query_point(
             ray.camera.ray().at(t), ray.camera.ray().direction, medium.gathered_phases(),
             gathered_.data(), straight_.data());

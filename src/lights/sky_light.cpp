@@ -13,7 +13,7 @@ double mean(const Rgb& c) {
 }
 
 /// A clear sky whose radiance depends on the elevation alone: from the horizon it falls off towards
-/// the zenith, and a thin band of haze leads to the ground below.
+/// the zenith, and a band of haze leads to the ground below.
 class SkyLight final : public Light {
 public:
   SkyLight(const LightSettings& settings, const LightContext& context)
@@ -70,7 +70,7 @@ private:
       const auto haze = static_cast<float>(std::pow(1 - x, 5));
       return zenith_ + (horizon_ - zenith_) * haze;
     }
-    constexpr double band = 0.05; // about 3 degrees
+    constexpr double band = 0.25; // about 14 degrees
     const double rest = std::max(0.0, 1 + x / band);
     return ground_ + (horizon_ - ground_) * static_cast<float>(rest * rest);
   }

@@ -239,7 +239,7 @@ TEST(Png, FailuresAreFrameErrors) {
 TEST(OutputFormats, EveryFormatWritesItsFile) {
   TempFolder folder;
   for (const OutputFormat& format : output_formats()) {
-    const std::string path = folder.file("a" + std::string(format.extension));
+    const std::string path = folder.file(std::string("a").append(format.extension));
     write_image(make_grey({0.5f, 1}), path);
     EXPECT_GT(read_bytes(path).size(), 0u) << path;
   }

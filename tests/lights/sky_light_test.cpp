@@ -71,7 +71,7 @@ TEST(SkyLight, SamplesWhatItShows) {
 }
 
 TEST(SkyLight, PhotonsBringItsFluenceIntoTheBox) {
-  const OrientedBox box = skew_box();
+  const Parallelepiped box = skew_box();
   const MadeLight made(sky(), region_of({box}));
   const Emission emission = emit_many(made, 60000, box);
   expect_mean(emission.fluence, over_sphere([&](double y) -> double {

@@ -170,7 +170,7 @@ TEST(DepthProfile, DepthIsTheMeanOfTheFirstCollision) {
   DepthProfile profile;
   profile.build(subject.medium, {{{-1, 0.01f, 0.02f}, {1, 0, 0}}, 0, 3}, 1e-6f);
   const double s = 0.7 * 8, end = std::exp(-s);
-  EXPECT_NEAR(profile.opacity_depth(medium), 0.5 * (1 - end) + (1 - end) / s - end, 2e-4);
+  EXPECT_NEAR(profile.opacity_depth(subject.medium), 0.5 * (1 - end) + (1 - end) / s - end, 2e-4);
 }
 
 /// Two volumes that overlap in part, on lattices of different origin and size, both chromatic.
