@@ -57,18 +57,15 @@ int compare_with_two(const CompareOptions& options) {
               second = read_image(options.second);
   const ImageError error = naming(options.image, options.reference,
                                   [&] { return image_error(image, reference, second); });
-  if (options.json)
-    print_json(Json{{"image", options.image},
-                    {"reference", options.reference},
-                    {"second", options.second},
-                    {"rmse", error.rmse},
-                    {"mrse", error.mrse},
-                    {"relmse", error.relmse},
-                    {"bias", error.bias}});
-  else
-    fmt::print("free of the references' noise:\n"
-               "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\n",
-               error.rmse, error.mrse, error.relmse, 100 * error.bias);
+  const std::string text =
+      fmt::format("free of the references' noise:\n"
+                  "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\n",
+                  error.rmse, error.mrse, error.relmse, 100 * error.bias);
+  const Json json{{"image", options.image},   {"reference", options.reference},
+                  {"second", options.second}, {"rmse", error.rmse},
+                  {"mrse", error.mrse},       {"relmse", error.relmse},
+                  {"bias", error.bias}};
+  print_output(options.json ? json_text(json) : text);
   return 0;
 }
 

@@ -42,8 +42,8 @@ int run_merge(const MergeOptions& options) {
   write_image(image, options.output, {options.exposure, options.view});
   if (!options.quiet)
     log("{}: {} of {}", options.output,
-               count_text(static_cast<std::uint64_t>(image.numbers.at("vdbeam:passes")), "pass"),
-               count_text(options.partials.size(), "file"));
+        count_text(static_cast<std::uint64_t>(image.numbers.at("vdbeam:passes")), "pass"),
+        count_text(options.partials.size(), "file"));
   return 0;
 }
 

@@ -2,8 +2,8 @@
 
 #include "vdbeam/vec.h"
 
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace vdbeam {
