@@ -179,7 +179,7 @@ TEST(Region, IsADataWindowInTheFile) {
   ASSERT_EQ(read.width, 40);
   ASSERT_EQ(read.height, 23);
   EXPECT_EQ(read.find("A")->data[4 * 40 + 20], 0);
-  EXPECT_EQ(read.find("volume.A")->data[12 * 40 + 20], part.find("volume.A")->data[7 * 22 + 11]);
+  EXPECT_EQ(read.find("depth.Z")->data[12 * 40 + 20], part.find("depth.Z")->data[7 * 22 + 11]);
   hooks.region = PixelRegion{9, 5, 41, 19};
   EXPECT_THROW(render(small_cloud(), hooks), InputError);
 }
