@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "--set light.radiance=1: say which light: light.0 to light.1"},
         BadOverride{"light.0.radiance=1",
                     "--set light.0.radiance=1: light.0.radiance does not belong to type "
-                    "\"distant\", only to environment"},
+                    "\"distant\", only to environment and sky"},
         BadOverride{"volume.0.extinction.x=1",
                     "--set volume.0.extinction.x=1: there is no volume.0.extinction.x"},
         BadOverride{"light.1.radiance.7=1",

@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nseed = 1\n",
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
-                 "s.toml:2: unknown key image.zzz; its keys are width and height"},
+                 "s.toml:2: unknown key image.zzz; its keys are width, height and fps"},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
                               "light and render"}));
 
@@ -117,10 +117,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2: render.estimator must be beam, march or path, got \"beams\"; did you "
                  "mean beam?"},
         BadScene{"[[light]]\ntype = 'sun'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot or environment, got \"sun\"; "
+                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
                  "did you mean distant?"},
         BadScene{"[[light]]\ntype = 'dome'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot or environment, got "
+                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
                  "\"dome\"; did you mean environment?"},
         BadScene{VOLUME "phase = 'hg'\n",
                  "s.toml:3: volume.0.phase.type must be isotropic, henyey_greenstein, rayleigh, "

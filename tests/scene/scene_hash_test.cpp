@@ -32,7 +32,7 @@ TEST_F(SceneHash, EveryKeyThatChangesThePictureChangesIt) {
     else if (auto* number = std::get_if<double>(&value))
       *number += 0.125;
     else if (auto* whole = std::get_if<std::int64_t>(&value))
-      ++*whole;
+      *whole = key.kind == KeyKind::boolean ? 1 - *whole : *whole + 1;
     else if (key.kind == KeyKind::choice)
       value = value == KeyValue(key.choices[0]) ? key.choices[1] : key.choices[0];
     else if (key.kind == KeyKind::text)
