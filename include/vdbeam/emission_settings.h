@@ -9,9 +9,9 @@ namespace vdbeam {
 /// How the brightness of a black body follows its temperature.
 enum class EmissionLaw { planck, stefan_boltzmann, none };
 
-/// Light that a volume sends out by itself: j(x) = scale * color * intensity(x) * blackbody(x)
-/// [radiance / world], where intensity is 1 without an intensity grid and blackbody is 1 without a
-/// temperature grid (docs/physics.md).
+/// Light that a volume emits: j(x) = scale * color * intensity(x) * blackbody(x) [radiance /
+/// world], where intensity is 1 without an intensity grid and blackbody is 1 without a temperature
+/// grid (docs/physics.md).
 struct EmissionSettings {
   std::string intensity;   ///< grid name; empty: none
   std::string temperature; ///< grid name; empty: none
@@ -20,9 +20,9 @@ struct EmissionSettings {
   EmissionLaw law = EmissionLaw::planck;
   double reference = 1500; ///< the temperature [K] at which the blackbody's luminance is 1
   Rgb color{1, 1, 1};
-  double scale = 1; ///< radiance per world unit
+  double scale = 1; ///< radiance per world unit where intensity, color and black body are all 1
 
-  /// Anything may glow at all.
+  /// True where the settings can give any emission.
   bool glows() const {
     return (!intensity.empty() || !temperature.empty()) && scale > 0 && max_component(color) > 0;
   }

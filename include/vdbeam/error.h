@@ -15,7 +15,7 @@ enum class ExitCode : int {
   terminated = 143,
 };
 
-/// One clear line for the user: what is wrong, where, and what would be right.
+/// An error with one line for the user: what is wrong, where, and the remedy.
 class Error : public std::runtime_error {
 public:
   Error(ExitCode code, const std::string& line) : std::runtime_error(line), code_(code) {}

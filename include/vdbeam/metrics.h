@@ -17,7 +17,7 @@ struct ImageError {
 
 /// rmse, mrse, relmse, bias. Throws InputError where sizes differ or R, G, B are missing.
 ImageError image_error(const Image& image, const Image& reference);
-/// The same and FLIP.
+/// The same, with FLIP.
 ImageError compare_images(const Image& image, const Image& reference);
 /// Error of an image v against the truth, of which `a` and `b` are two independent, unbiased and
 /// noisy pictures, free of their noise on average:
@@ -27,10 +27,10 @@ ImageError compare_images(const Image& image, const Image& reference);
 /// that it does not weigh itself. No pixel is left out of relmse. Where v is nearly exact mrse may
 /// come out negative; rmse is then 0. flip is not set. Throws InputError like the above.
 ImageError image_error(const Image& image, const Image& a, const Image& b);
-/// Temporal error of two frames that follow each other: the error of their difference, which is
-/// what the eye sees as flicker, mean((dv - dr)^2 / (r + 0.01)^2) with dv = after - before, dr the
-/// references' difference and r their mean. Frames with independent noise of mrse e have 2 e.
-/// Throws InputError like image_error.
+/// Temporal error of two successive frames: the error of their difference, which is visible as
+/// flicker, mean((dv - dr)^2 / (r + 0.01)^2) with dv = after - before, dr the references'
+/// difference and r their mean. Two frames with independent noise and an MRSE of e each have a
+/// temporal error of 2 e. Throws InputError like image_error.
 double temporal_error(const Image& before, const Image& after, const Image& reference_before,
                       const Image& reference_after);
 

@@ -7,17 +7,17 @@
 
 namespace vdbeam {
 
-/// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB.
-/// `overrides` are "key.path=value" strings, applied last. `frame` replaces ####, %04d and $F4 in
-/// paths. Throws InputError "file:line: key ..." for anything that is not a valid scene.
+/// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB. `overrides` are
+/// "key.path=value" strings, applied last. `frame` replaces ####, %04d and $F4 in paths. Throws
+/// InputError "file:line: key ..." if this is not a valid scene.
 Scene load_scene(const std::string& path, int frame = 1,
                  const std::vector<std::string>& overrides = {});
 
-/// The text of a commented scene file for this volume (`vdbeam init`), to be saved in `folder`
-/// (the current one where empty). Throws InputError and FrameError for a VDB that cannot be read.
+/// The text of a commented scene file for this volume (`vdbeam init`), with paths relative to
+/// `folder` (empty: the current one). Throws InputError and FrameError for an unreadable VDB.
 std::string scene_template(const std::string& vdb_path, const std::string& folder = "");
 
-/// Checks ranges and consistency of a scene filled by hand. Throws InputError.
+/// Checks ranges and consistency of a scene that a program has filled. Throws InputError.
 void validate_scene(const Scene& scene);
 
 /// 64-bit hash of everything that changes the picture, as 16 hex digits: all keys but
@@ -25,7 +25,7 @@ void validate_scene(const Scene& scene);
 /// cannot be read.
 std::string scene_hash(const Scene& scene);
 
-/// The same without the stop rule (passes, time, target_error): equal where passes may be joined.
+/// The same without the stop rule (passes, time, target_error): passes with equal hashes can merge.
 std::string pass_hash(const Scene& scene);
 
 } // namespace vdbeam

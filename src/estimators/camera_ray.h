@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// A camera ray, begun near the medium so that single precision serves a camera at any distance.
+/// A camera ray that starts near the medium, so that single precision suffices for far cameras.
 struct CameraRay {
   Segment segment;  ///< the part inside the medium's bounds; empty where the ray misses them
   double shift = 0; ///< distance from the camera to segment.ray.origin
@@ -28,7 +28,7 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, double px,
   return result;
 }
 
-/// False only where no ray of the camera can meet the medium or what glows.
+/// False only where no ray of the camera can meet the medium or an emitting volume.
 inline bool may_see_medium(const World& world, const Camera& camera) {
   const Boxf& box = world.medium.bounds;
   return world.medium.visible() && camera.may_see({Vec3d(box.lower), Vec3d(box.upper)});

@@ -6,12 +6,11 @@
 
 namespace vdbeam {
 
-/// Single scattering of the lights of a ray that are estimated by shadow rays: distances drawn from
-/// the depth profile by inverse CDF, stratified over `samples`; at each, next-event estimation,
-/// with multiple importance sampling against the phase function for lights that a ray can meet.
-/// Lights near the ray also get distances drawn by their 1 / r^2 (EquiAngular), combined by the
-/// balance heuristic. `sampled[i]` says whether light i takes part. Adds to `shadow_rays` what
-/// it traced.
+/// Single scattering along a camera ray by shadow rays: distances are drawn from the depth profile
+/// by inverse CDF, stratified over `samples`; at each, next-event estimation, with multiple
+/// importance sampling against the phase function for lights that a ray can meet. Lights near the
+/// ray also get distances drawn by their 1 / r^2 (EquiAngular), combined by the balance heuristic.
+/// `sampled[i]` is true for the lights to include. Adds the number of traced rays to `shadow_rays`.
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
                  std::uint64_t& shadow_rays);

@@ -16,7 +16,8 @@ namespace vdbeam {
 namespace {
 
 constexpr int most_tiles = 100;
-/// Of MRSE, in place of 0.01, over the mean brightness: a darker light must not change the kernels.
+/// Added to the brightness in the weights, as 0.01 is in MRSE, but relative to the mean: dimming a
+/// light must not change the kernels.
 constexpr double offset = 0.03;
 /// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
 /// against all that they blur, less where they are as wide (measured, docs/decisions.md).
@@ -24,7 +25,7 @@ constexpr double bias_power = 0.5;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
 /// matters little (docs/decisions.md).
 constexpr int balanced_passes = 64;
-/// Radii are those of so many photons or more (docs/performance.md).
+/// Adaptive radii are accurate from 32 neighbours on (docs/performance.md); fewer are never chosen.
 constexpr double fewest_neighbours = 32;
 
 struct Tile {
@@ -103,7 +104,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
     if (!ray.inside || ray.profile.empty())
       continue;
     shade_profile(world, ray.camera, ray.profile, i, beside, emission_rays);
-    // One sample will do: it only weighs the pixel.
+    // One sample is enough, since it only enters the pixel's weight.
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
                                                      plan.sampled_lights, 1, rng, shadow_rays);

@@ -6,19 +6,19 @@
 
 namespace vdbeam {
 
-/// How much of a photon's kernel lies where photons can be stored at all: in cells whose majorant
-/// is not 0. A kernel at the edge of the medium reaches into space that no photon ever marks, and
-/// the estimate darkens by that share. Dividing a photon's power by the share inside takes this
-/// boundary bias away to first order; the factor tends to 1 as radii shrink, so the estimate stays
-/// consistent.
+/// The fraction of a photon's kernel that lies where photons can be stored: in cells whose majorant
+/// is not 0. A kernel at the edge of the medium extends into space that never holds a photon, and
+/// the estimate is too dark by that fraction. Dividing a photon's power by the fraction inside
+/// removes this boundary bias to first order; the factor tends to 1 as radii shrink, so the
+/// estimate stays consistent.
 class KernelSupport {
 public:
   /// Both arguments in render space; the medium must outlive this.
   KernelSupport(const Medium& medium, const Vec3d& camera) : medium_(&medium), camera_(camera) {}
 
-  /// Share of the disc of radius r about a photon, perpendicular to the ray from the camera.
+  /// Fraction of the disc of radius r around a photon, perpendicular to the ray from the camera.
   float disc_share(const Vec3f& photon, float radius) const;
-  /// Share of the ball of radius r.
+  /// Fraction of the ball of radius r.
   float ball_share(const Vec3f& photon, float radius) const;
 
   /// No photon is raised by more than 1 / least_share.

@@ -15,26 +15,26 @@ struct DrawnDirection {
   float pdf = 0; ///< of the phase function
 };
 
-/// A camera path after its first scattering, under way: it stands at a tentative collision of its
-/// flight or, while there is one, of its shadow ray.
+/// The state of a camera path after its first scattering event: it is at a tentative collision of
+/// its flight or, while there is one, of its shadow ray.
 struct PathWalk : Flight {
   using Flight::Flight;
 
-  std::size_t target = 0;               ///< pixel of the image that its light goes to
+  std::size_t target = 0;               ///< pixel of the image to which its light is added
   const PhaseFunction* phase = nullptr; ///< at the last real collision
   DrawnDirection drawn, drawn_before;   ///< of this flight and of the one before it
-  float gathered = 0;   ///< distance of the flight up to which light that it meets was taken in
-  Rgb direct, indirect; ///< found so far: light that was scattered once, and more often
+  float gathered = 0;   ///< distance of the flight up to which light that it meets was added
+  Rgb direct, indirect; ///< light so far that was scattered once, and more often
   std::optional<RatioTracking> shadow;
-  std::size_t light = 0; ///< to which the shadow ray goes
-  Rgb shadow_value;      ///< what comes along it, were nothing in the way
+  std::size_t light = 0; ///< that the shadow ray is sent to
+  Rgb shadow_value;      ///< its contribution, without the transmittance
 };
 
 /// Walks of the path tracer, a collision at a time: flights by delta tracking (spectral tracking
 /// where the extinction is chromatic, Kutz et al. 2017), next-event estimation by ratio tracking at
 /// every collision, multiple importance sampling for lights that a scattered ray can meet (balance
-/// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own light is gathered along
-/// every flight as far as it goes (track-length estimator).
+/// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own emission is added along
+/// every flight up to its end (track-length estimator).
 ///
 /// Where phase functions have a sharp peak and a light is narrow, next-event estimation alone has
 /// rare, very bright values: a walk that happens to fly at the sun scatters all of its peak. Light
@@ -42,7 +42,7 @@ struct PathWalk : Flight {
 /// first, and the two ways share it by the balance heuristic (docs/physics.md, "The reference").
 class WalkTracer {
 public:
-  /// `shadow_rays`: per light, whether next-event estimation finds it.
+  /// `shadow_rays`: per light, whether next-event estimation samples it.
   WalkTracer(const World& world, std::vector<bool> shadow_rays)
       : world_(world), shadow_rays_(std::move(shadow_rays)),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {
@@ -54,8 +54,8 @@ public:
   PathWalk start(std::size_t target, const Rng& rng, const Ray& ray, const Rgb& throughput,
                  const PhaseFunction& phase) const;
 
-  /// Does what the walk's collision asks for and goes to the next one. False where it has ended.
-  /// Between two steps memory has time to deliver: callers with several walks let them take turns.
+  /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
+  /// step ends with a prefetch: callers interleave several walks to hide the memory latency.
   bool step(PathWalk& walk) const;
 
   // What happens at the collisions of a flight (step_flight).

@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// What a depth profile alone gives a pixel: opacity, depth, the lights seen through the medium,
-/// and the medium's own light. Adds to `emission_rays` where that was looked for.
+/// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
+/// through the medium, and emission. Counts a ray in `emission_rays` where emission was integrated.
 void shade_profile(const World& world, const CameraRay& camera, const DepthProfile& profile,
                    std::size_t pixel, PassImage& image, std::uint64_t& emission_rays);
 

@@ -10,7 +10,7 @@ namespace vdbeam {
 
 /// The camera rays of one 16 x 16 tile of a pass, with their depth profiles. Ray 16 s + r is ray r
 /// of the 4 x 4 sub-tile s (both row-major), as BeamTile orders them. Rays beyond the image's edge
-/// repeat their neighbour's direction and see nothing.
+/// repeat their neighbour's direction and have empty profiles.
 class TileRays {
 public:
   static constexpr int count = BeamTile::ray_count;

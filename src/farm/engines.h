@@ -14,7 +14,7 @@ struct FarmEngine {
   /// The job file's text, a pure function of the job. Throws InputError for what the engine cannot
   /// do.
   std::string (*write)(const FarmJob& job);
-  /// What the user types next; one line.
+  /// The command that submits the job; one line.
   std::string (*how_to_submit)(const FarmJob& job);
 };
 

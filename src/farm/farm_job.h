@@ -20,9 +20,9 @@ struct FarmJob {
   std::string output;               ///< with a frame number's place where there are several frames
   std::string logs;                 ///< folder of the tasks' logs
   int chunk = 1;                    ///< frames of one task
-  int splits = 1;                   ///< parts that a frame's passes are cut in
+  int splits = 1;                   ///< parts into which a frame's passes are divided
   int passes = 0;                   ///< of a frame; needed where it is split
-  int running = 0;                  ///< limit of tasks that run at once; 0: none
+  int running = 0;                  ///< most tasks that run at once; 0: no limit
   int threads = 8;                  ///< of one task
   std::uint64_t memory_mib = 1024;  ///< of one task
   std::uint64_t merge_memory_mib = 1024;

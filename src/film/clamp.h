@@ -9,17 +9,17 @@ namespace vdbeam {
 /// What clamping took from passes; sums over pixels and the three channels.
 struct ClampTally {
   double removed = 0;       ///< radiance that was taken away
-  double total = 0;         ///< radiance of the pictures as they were before
-  std::uint64_t pixels = 0; ///< pixels of passes that were too bright
+  double total = 0;         ///< radiance before clamping
+  std::uint64_t pixels = 0; ///< pixels that were dimmed, counted in each pass
 
-  /// Share of the picture's light that is missing, which is the bias of its mean.
+  /// Fraction of the picture's light that clamping removed, which is the bias of its mean.
   double fraction() const { return total > 0 ? removed / total : 0; }
   ClampTally& operator+=(const ClampTally& other);
 };
 
 /// Dims what the medium scatters (direct and indirect light together) in every pixel whose largest
-/// channel is above `limit` [radiance] to the limit, in all channels by the same factor, and says
-/// what that took. What is seen through the medium stays.
+/// channel is above `limit` [radiance] to the limit, in all channels by the same factor, and
+/// returns what that removed. What is seen through the medium stays.
 ClampTally clamp_pass(PassImage& pass, double limit);
 
 } // namespace vdbeam

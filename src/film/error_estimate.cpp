@@ -141,14 +141,15 @@ double inverse_degrees(const PassHistory& history, const Deviations& deviations,
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double a = history.passes(i) / passes, b = history.passes(j) / passes;
-      // Deviations from the common mean are correlated by -sqrt(a b) without saying anything.
+      // Deviations from the common mean have the correlation -sqrt(a b), which carries no
+      // information.
       const double product = products[i * count + j] + std::sqrt(a * b) * trace;
       sum += product * product;
       expected += (1 - a) * (1 - b) + a * b;
     }
   const double all_pairs = sum / expected;
-  // Followed pixels stand for their neighbours as far as pixels share noise, not for what each has
-  // of its own.
+  // Followed pixels represent their neighbours for the noise that pixels share, but not for the
+  // independent noise of each pixel.
   const double own = deviations.diagonal / (1 + 2 / static_cast<double>(count - 1));
   const double squares = std::max(all_pairs - (1 - history.share()) * own, history.share() * own);
   return squares / (trace * trace);
@@ -197,7 +198,7 @@ ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
 
 } // namespace
 
-NoiseShape noise_shape(const PassHistory& history) {
+NoiseStatistics noise_statistics(const PassHistory& history) {
   const std::size_t count = history.batches();
   if (count < fewest_batches)
     return {};
@@ -211,24 +212,24 @@ NoiseShape noise_shape(const PassHistory& history) {
   double squares = 0;
   for (std::size_t i = 0; i < count; ++i)
     squares += products[i * count + i];
-  NoiseShape shape;
-  shape.batches = static_cast<int>(count);
-  shape.spread = least_spread;
+  NoiseStatistics statistics;
+  statistics.batches = static_cast<int>(count);
+  statistics.spread = least_spread;
   if (!(squares > 0) || !(deviations.plain > 0))
-    return shape;
-  shape.correction = squares / deviations.plain;
+    return statistics;
+  statistics.correction = squares / deviations.plain;
   const double trace = squares / static_cast<double>(count - 1);
-  // How much the batches' own squares differ tells how far the sum over them may be off.
+  // The differences between the batches' squares give the standard error of their sum.
   double uneven = 0;
   for (std::size_t i = 0; i < count; ++i)
     uneven += std::pow(products[i * count + i] * static_cast<double>(count) / squares - 1, 2);
   uneven /= static_cast<double>(count) * static_cast<double>(count - 1);
-  shape.spread = std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) +
-                           uneven + least_spread * least_spread);
-  return shape;
+  statistics.spread = std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) +
+                                uneven + least_spread * least_spread);
+  return statistics;
 }
 
-BiasShape bias_shape(const PassHistory& history) {
+BiasStatistics bias_statistics(const PassHistory& history) {
   const std::size_t count = history.batches();
   if (count < fewest_batches)
     return {unknown, unknown, unknown, unknown};
@@ -277,11 +278,11 @@ BiasShape bias_shape(const PassHistory& history) {
   return {mrse, mrse_error, bias, bias_error};
 }
 
-ErrorEstimate combine_errors(double noise, const NoiseShape& shape, const BiasShape& bias,
-                             bool unbiased) {
+ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
+                             const BiasStatistics& bias, bool unbiased) {
   ErrorEstimate estimate{};
-  estimate.noise = noise * shape.correction;
-  const double batches = shape.batches;
+  estimate.noise = noise * statistics.correction;
+  const double batches = statistics.batches;
   double part = 0, margin = 0;
   estimate.bias_mrse = estimate.bias = estimate.bias_margin = unbiased ? 0 : unknown;
   if (!unbiased && std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error)) {
@@ -299,9 +300,9 @@ ErrorEstimate combine_errors(double noise, const NoiseShape& shape, const BiasSh
   }
   estimate.mrse = estimate.noise + part;
   estimate.low = estimate.high = unknown;
-  if (shape.batches < static_cast<int>(batches_of_interval))
+  if (statistics.batches < static_cast<int>(batches_of_interval))
     return estimate;
-  const double factor = std::exp(student(2 * (batches - 1)) * shape.spread);
+  const double factor = std::exp(student(2 * (batches - 1)) * statistics.spread);
   const double below = std::hypot(estimate.noise * (1 - 1 / factor), std::min(part, margin));
   const double above = std::hypot(estimate.noise * (factor - 1), margin);
   estimate.low = std::max(0.0, estimate.mrse - below);

@@ -4,37 +4,39 @@
 
 namespace vdbeam {
 
-/// What the passes tell about the error of their mean (docs/physics.md, "Errors").
+/// Estimate of the error of the mean of the passes (docs/physics.md, "Errors").
 struct ErrorEstimate {
-  double mrse; ///< expected of the picture: noise plus, where it is known, the part of the bias
-  double low, high;   ///< the picture's MRSE lies between them with a confidence of 95 %
-  double noise;       ///< MRSE, the part of the noise
-  double bias_mrse;   ///< MRSE, the part of the bias; an unbiased estimate, so it may be negative
-  double bias;        ///< of the mean brightness, as a share of it
-  double bias_margin; ///< half the width of its 95 % interval
+  double mrse;        ///< expected MRSE: noise plus, where it is known, squared bias
+  double low, high;   ///< 95 % interval of the picture's MRSE
+  double noise;       ///< the noise, as MRSE
+  double bias_mrse;   ///< the squared bias, as MRSE; unbiased, so it may be negative
+  double bias;        ///< of the mean brightness, relative to it
+  double bias_margin; ///< half the width of the 95 % interval of `bias`
 };
 
-/// What history says about noise, to be scaled by what all pixels and passes say.
-struct NoiseShape {
-  double correction = 1; ///< of weights that follow the noise they weigh
+/// Statistics of the noise from the history of a few pixels, to be scaled by the variance of all
+/// pixels and passes.
+struct NoiseStatistics {
+  double correction = 1; ///< removes the bias of weighting each pixel by its own noisy mean
   double spread = 0;     ///< standard deviation of ln(true MRSE / estimated MRSE)
-  int batches = 0;       ///< that it rests on
+  int batches = 0;       ///< complete batches that were used
 };
 
-/// The correction and the spread of the noise. `batches` 0 where there are fewer than 3.
-NoiseShape noise_shape(const PassHistory& history);
+/// Correction and spread of the noise. `batches` 0 where there are fewer than 3.
+NoiseStatistics noise_statistics(const PassHistory& history);
 
-struct BiasShape {
-  double mrse, mrse_error; ///< estimate and standard error
-  double bias, bias_error; ///< of the mean brightness, as a share of it
+/// Statistics of the bias.
+struct BiasStatistics {
+  double mrse, mrse_error; ///< squared bias as MRSE, and its standard error
+  double bias, bias_error; ///< of the mean brightness, relative to it
 };
 
-/// Picture against probes. NaN where there are too few.
-BiasShape bias_shape(const PassHistory& history);
+/// Bias of the picture, from its differences to the probes. NaN where there are too few probes.
+BiasStatistics bias_statistics(const PassHistory& history);
 
-/// Puts the parts together. `noise` is the spread of all pixels over all passes; a picture that is
-/// `unbiased` has no part of bias.
-ErrorEstimate combine_errors(double noise, const NoiseShape& shape, const BiasShape& bias,
-                             bool unbiased);
+/// Combines noise and bias. `noise` is the MRSE from the variance of all pixels over all passes; an
+/// `unbiased` picture has no bias part.
+ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
+                             const BiasStatistics& bias, bool unbiased);
 
 } // namespace vdbeam

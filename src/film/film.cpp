@@ -139,7 +139,7 @@ void Film::merge(const Film& other) {
       squares_[i] += other.squares_[i];
   });
   history_.merge(other.history_);
-  shapes_.reset();
+  statistics_.reset();
   passes_ += other.passes_;
   invalid_values_ += other.invalid_values_;
 }
@@ -176,7 +176,7 @@ std::vector<FilmPlane> Film::planes() {
 void Film::set_counts(int passes, std::uint64_t invalid_values) {
   passes_ = passes;
   invalid_values_ = invalid_values;
-  shapes_.reset();
+  statistics_.reset();
 }
 
 double Film::sum(std::size_t i, bool background) const {
@@ -253,9 +253,9 @@ double Film::mrse_estimate() const {
 
 ErrorEstimate Film::error_estimate(bool unbiased) const {
   // Batches that are complete stay as they are until there are more or, joined, fewer of them.
-  if (!shapes_ || shapes_->batches != history_.batches())
-    shapes_ = {history_.batches(), noise_shape(history_), bias_shape(history_)};
-  return combine_errors(mrse_estimate(), shapes_->noise, shapes_->bias, unbiased);
+  if (!statistics_ || statistics_->batches != history_.batches())
+    statistics_ = {history_.batches(), noise_statistics(history_), bias_statistics(history_)};
+  return combine_errors(mrse_estimate(), statistics_->noise, statistics_->bias, unbiased);
 }
 
 } // namespace vdbeam

@@ -83,13 +83,14 @@ public:
   /// pass.
   Image develop() const;
 
-  /// The MRSE to expect of develop()'s R, G, B, apart from bias, from the spread of the passes: the
+  /// The expected MRSE of develop()'s R, G, B, without bias, from the variance of the passes: the
   /// mean over pixels and channels of s^2 / (n (mean + 0.01)^2), s^2 the unbiased sample variance
   /// of n passes. Infinite for fewer than 2 passes.
   double mrse_estimate() const;
-  /// The same corrected for weights that follow the noise they weigh, with the bias that probes
-  /// show (`unbiased`: there is none) and an interval from what pixels share of the noise
-  /// (docs/physics.md). The corrections change only when a batch of passes is complete.
+  /// The same, corrected for the bias of weighting each pixel by its own noisy mean, with the bias
+  /// that probes show (`unbiased`: there is none) and an interval that takes the noise shared by
+  /// pixels into account (docs/physics.md). The corrections change only when a batch of passes is
+  /// complete.
   ErrorEstimate error_estimate(bool unbiased) const;
 
 private:
@@ -109,12 +110,12 @@ private:
   CompensatedSums opacity_, depth_;
   std::vector<double> squares_; ///< 3 per pixel: sums of what passes show, squared
   PassHistory history_;
-  struct Shapes {
+  struct HistoryStatistics {
     std::size_t batches;
-    NoiseShape noise;
-    BiasShape bias;
+    NoiseStatistics noise;
+    BiasStatistics bias;
   };
-  mutable std::optional<Shapes> shapes_; ///< of the history, from when a batch was last full
+  mutable std::optional<HistoryStatistics> statistics_; ///< when a batch was last complete
 };
 
 } // namespace vdbeam

@@ -7,14 +7,14 @@
 
 namespace vdbeam {
 
-/// Radiance of one pixel by an unbiased estimator, to hold a biased one against.
+/// Radiance of one pixel by an unbiased estimator, with which a biased one is compared.
 struct ProbeValue {
   std::size_t pixel; ///< of the film
   Rgb radiance;
 };
 
-/// How the passes went at some of the pixels: sums over up to 16 batches of successive passes, from
-/// which follow what noise the pixels share and how a biased picture differs from unbiased probes.
+/// History of the passes at some of the pixels: sums over up to 16 batches of successive passes.
+/// They show which noise the pixels share and how a biased picture differs from unbiased probes.
 /// Batches double in length whenever 16 are full, so memory stays below 2 MB.
 class PassHistory {
 public:
@@ -27,22 +27,22 @@ public:
   const std::vector<std::size_t>& pixels() const { return pixels_; }
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  /// Pixels that are followed, of all.
+  /// Fraction of the pixels that is followed.
   double share() const { return share_; }
 
-  /// `probes` are of pixels that are followed.
+  /// Every probe must be of a followed pixel.
   void add(const PassImage& pass, const std::vector<ProbeValue>& probes);
-  /// Takes over the batches of another history of the same size.
+  /// Adds the batches of another history of the same size.
   void merge(const PassHistory& other);
 
-  /// Batches that no further pass joins, unless there are hardly any others. What is said about
-  /// errors rests on them, so that it changes only when one is full.
+  /// Number of complete batches (up to 8, the one that is being filled counts too). Error estimates
+  /// use only these, so they change only when a batch is complete.
   std::size_t batches() const;
   double passes(std::size_t batch) const { return counts_[batch]; }
   /// Sums over the batch's passes, R, G, B of each followed pixel.
   const float* sums(std::size_t batch) const { return &values_[batch * stride()]; }
   const float* probe_sums(std::size_t batch) const { return sums(batch) + 3 * pixels_.size(); }
-  /// How many probes each followed pixel got.
+  /// Number of probes of each followed pixel.
   const float* probes(std::size_t batch) const { return sums(batch) + 6 * pixels_.size(); }
 
   /// Everything above, for storing: both as long as a multiple of the film's pixels.

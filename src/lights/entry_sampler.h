@@ -4,11 +4,11 @@
 
 namespace vdbeam {
 
-/// Draws lines that pierce the union of boxes, for photons that come from outside.
+/// Samples lines that pass through the union of boxes, for photons that come from outside.
 ///
-/// A box is chosen in proportion to what it shows, and a line through it. A line that pierces k
-/// boxes can be drawn in k ways, so its weight is divided by k and it starts at the first of the k
-/// entries: overlapping boxes then count once, and no draw is lost.
+/// A box is chosen in proportion to its silhouette, then a line through it. A line that passes
+/// through k boxes can be drawn in k ways, so its weight is divided by k and it starts where it
+/// enters the first of them: overlapping boxes then count once, and no sample is rejected.
 class EntrySampler {
 public:
   /// Flat boxes hold no medium and are left out.

@@ -9,12 +9,12 @@
 
 namespace vdbeam {
 
-/// What a light must know of the scene to be made.
+/// What is needed of the scene to make a light.
 struct LightContext {
   Vec3d up{0, 1, 0}; ///< the camera's, about which environment images turn
   const RenderSpace& space;
   const OccupiedRegion& region;              ///< lights copy what they need of it
-  std::vector<std::string>* notes = nullptr; ///< takes what the user should know, one line each
+  std::vector<std::string>* notes = nullptr; ///< for the user, one line each; are appended to
 };
 
 } // namespace vdbeam

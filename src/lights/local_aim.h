@@ -9,9 +9,9 @@ namespace vdbeam {
 /// where `position` lies among the boxes. Render space.
 Cone cone_towards(const Vec3d& position, const OccupiedRegion& region);
 
-/// Where a photon that leaves `position` outside the region's sphere enters the sphere; `position`
-/// itself where it is inside. Far lights would lose all precision within a single-precision ray.
-/// False where the way misses the sphere.
+/// The point where a photon that starts at `position` outside the region's sphere enters the
+/// sphere; `position` itself where it is inside. A single-precision ray from a far light would lose
+/// all precision. False where the photon misses the sphere.
 bool advance_to_region(const Vec3d& position, const Vec3d& direction, const OccupiedRegion& region,
                        Vec3d& origin);
 

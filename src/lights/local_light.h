@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// What point and spot lights share: a place, an intensity, and a factor that depends on direction.
-/// Positions stay in double precision, for a light may be far away.
+/// Base of point and spot lights: a position, an intensity, and a factor that depends on direction.
+/// Positions are kept in double precision, since a light may be far away.
 class LocalLight : public Light {
 public:
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
@@ -18,11 +18,11 @@ public:
   const Vec3d* position() const override { return &position_; }
 
 protected:
-  /// Photons leave within `emission_cone`, which must hold every direction in which the light both
-  /// shines and meets the region.
+  /// Photons leave within `emission_cone`, which must contain every direction in which the light
+  /// emits and reaches the region.
   LocalLight(const LightSettings& settings, const LightContext& context, const Cone& emission_cone);
 
-  /// Share of the full intensity that goes along `direction`, in [0, 1].
+  /// Fraction of the full intensity that is emitted along `direction`, in [0, 1].
   virtual double share(const Vec3d& direction) const = 0;
 
   static Vec3d render_position(const LightSettings& settings, const LightContext& context) {

@@ -13,9 +13,9 @@ struct Parallelepiped {
   std::array<Vec3f, 3> edges;
 };
 
-/// Where medium is, as photons are aimed at it: boxes in render space, which may overlap. `boxes`
-/// are few and coarse (one per volume, tight around its density); `cells` are fine (one per
-/// non-empty 8^3 cell or small group of them) and serve the lights of fixed direction.
+/// The region of the medium, at which photons are aimed: boxes in render space, which may overlap.
+/// `boxes` are few and coarse (one per volume, tight around its density); `cells` are fine (one per
+/// non-empty 8^3 cell or small group of them) and are used by lights of fixed direction.
 struct OccupiedRegion {
   std::vector<Parallelepiped> boxes;
   std::vector<Parallelepiped> cells;

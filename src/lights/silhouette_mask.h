@@ -6,9 +6,9 @@
 
 namespace vdbeam {
 
-/// What a light of (nearly) fixed direction sees of the occupied region: a raster on the plane
-/// through the region's centre, perpendicular to the light, that covers the shadow of every cell.
-/// Lines through its pixels reach all the medium and little else.
+/// The occupied region as seen from a light of (nearly) fixed direction: a raster on the plane
+/// through the region's centre, perpendicular to the light, that covers the projection of every
+/// cell. Lines through its pixels cover all of the medium and little else.
 class SilhouetteMask {
 public:
   /// `axis` (unit): the way the light travels. `tan_spread`: lines may deviate from the axis by

@@ -4,7 +4,7 @@
 
 namespace vdbeam {
 
-/// The CPU that this runs on, as it names itself; "unknown" where the system does not tell.
+/// The model name of this machine's CPU; "unknown" where the system does not report it.
 std::string cpu_model();
 
 } // namespace vdbeam

@@ -4,8 +4,8 @@
 
 namespace vdbeam {
 
-/// What a farm engine granted this process by its environment; 0 where nothing is said. Values that
-/// are no numbers count as not said.
+/// What a farm engine grants this process in environment variables; 0 where they are not set or not
+/// numbers.
 
 /// Threads: the least of SLURM_CPUS_PER_TASK and CUE_THREADS.
 int farm_threads();

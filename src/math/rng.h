@@ -14,7 +14,7 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
 /// What a random stream is for; two stages never share numbers.
 enum class RngStage : std::uint64_t { camera = 1, photon, path, direct, march, light, test, walk };
 
-/// Everything that names a stream but the index within its stage.
+/// Everything that identifies a stream, except the index within its stage.
 struct RngKey {
   std::uint64_t seed = 1;
   std::uint64_t frame = 0;
@@ -23,9 +23,9 @@ struct RngKey {
   bool operator==(const RngKey&) const = default;
 };
 
-/// A counter-based generator: the n-th number of a stream is a pure function of the stream's name
-/// (seed, frame, pass, stage, index) and n, never of a thread. Numbers: Squares (Widynski 2020,
-/// arXiv:2004.06278), four rounds, 32 bits.
+/// A counter-based generator: the n-th number of a stream is a pure function of the stream's
+/// identity (seed, frame, pass, stage, index) and n, not of a thread. Numbers: Squares (Widynski
+/// 2020, arXiv:2004.06278), four rounds, 32 bits.
 class Rng {
 public:
   Rng(const RngKey& key, RngStage stage, std::uint64_t index) {

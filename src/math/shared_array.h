@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// Values that never change after they are made and that copies share, so that what holds large
-/// arrays can be copied at no cost.
+/// An immutable array that copies share, so that objects with large arrays can be copied at no
+/// cost.
 template <class T>
 class SharedArray {
 public:

@@ -14,12 +14,12 @@ namespace vdbeam {
 struct DraineLobe {
   float g = 0;
   float alpha = 0;
-  float weight = 1; ///< share of this lobe; the shares add up to 1
+  float weight = 1; ///< weight of this lobe; the weights add up to 1
 };
 
-/// A lobe made ready to evaluate, one at a time or many in SIMD. 1 + g^2 - 2 g cos is computed as
-/// (1 - |g|)^2 + 2 |g| (1 -+ cos), a sum of positive terms, since the plain form loses all digits
-/// where |g| is near 1.
+/// A lobe with its constants precomputed, for scalar and SIMD evaluation. 1 + g^2 - 2 g cos is
+/// computed as (1 - |g|)^2 + 2 |g| (1 -+ cos), a sum of positive terms, since the plain form loses
+/// all digits where |g| is near 1.
 struct PhaseTerm {
   float scale = 0.0795774715f; ///< weight / (4 pi) * (1 - g^2) / (1 + alpha (1 + 2 g^2) / 3)
   float base = 1;              ///< (1 - |g|)^2
@@ -38,9 +38,9 @@ struct PhaseTerm {
 
 /// A phase function as a blend of at most two Draine lobes: every model that the scene file offers
 /// has this form, so that the beam query needs one formula.
-/// cos_theta is between the directions of travel before and after; 1 is straight on.
-/// Besides, a phase function may be given as a polynomial of the cosine (truncate_peak), to be
-/// evaluated under an integral.
+/// cos_theta is between the directions of travel before and after; 1 is straight ahead.
+/// A phase function may also be a polynomial of the cosine (truncate_peak), for evaluation in
+/// integrals only.
 class PhaseFunction {
 public:
   PhaseFunction() = default;

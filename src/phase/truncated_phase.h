@@ -10,12 +10,12 @@ namespace vdbeam {
 /// P_l(cos theta) over its directions; chi_0 = 1, chi_1 is the mean cosine. In closed form.
 std::vector<double> legendre_moments(const PhaseFunction& phase, int count);
 
-/// A phase function as the sum of a forward peak, taken for no scattering at all, and a smooth
+/// A phase function as the sum of a forward peak, treated as no scattering at all, and a smooth
 /// rest: the delta-M method (Wiscombe, *The Delta-M Method*, 1977),
 ///   p = forward * delta(1 - cos) / (2 pi) + (1 - forward) * p',
 ///   forward = chi_M,  moments of p' = (chi_l - chi_M) / (1 - chi_M) for l < M, 0 from M on.
 struct TruncatedPhase {
-  float forward = 0; ///< share of the peak; 0: the phase function has none, the rest is as it was
+  float forward = 0; ///< fraction of scattering in the peak; 0: the phase function is unchanged
   PhaseFunction gathered; ///< p' as a polynomial; may be negative, for use under an integral only
   PhaseFunction traced;   ///< Henyey-Greenstein of the mean cosine of p': to draw directions from
 };

@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// The film's passes and what they tell about its error; the rest of the record is left alone.
-/// `unbiased`: the estimator has no bias.
+/// Fills in the film's number of passes and its error estimate; the other fields are left
+/// unchanged. `unbiased`: the estimator has no bias.
 PassRecord error_record(const Film& film, bool unbiased);
 
 } // namespace vdbeam

@@ -6,12 +6,12 @@
 
 namespace vdbeam {
 
-/// Adds what a picture's file should tell about it: software, scene hash, settings, report values,
-/// and the camera's worldToCamera and worldToNDC matrices as OpenEXR defines them.
+/// Adds the attributes that describe a picture in its file: software, scene hash, settings, report
+/// values, and the camera's worldToCamera and worldToNDC matrices as OpenEXR defines them.
 void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result, int frame,
                         const std::string& hash);
 
-/// What is known of the picture's error, as attributes; what is unknown is left out.
+/// The picture's error estimate as attributes; what is unknown is left out.
 void add_error_metadata(Image& image, const PassRecord& record);
 
 } // namespace vdbeam

@@ -27,9 +27,9 @@ public:
       enter_cell();
   }
 
-  /// Goes to the next tentative collision; false where the segment ends first. The density there is
-  /// only asked for: memory needs longer to deliver it than all the rest takes, and a caller with
-  /// several walks can go on with another one meanwhile.
+  /// Advances to the next tentative collision; false where the segment ends first. The density
+  /// there is only prefetched: loading it takes longer than everything else, and a caller with
+  /// several walks can continue with another one meanwhile.
   bool advance(Rng& rng) {
     float tau = -std::log(rng.uniform_positive());
     while (!walk_.done()) {
@@ -48,7 +48,7 @@ public:
     return false;
   }
 
-  /// The tentative collision to which advance() went.
+  /// The tentative collision that advance() found.
   Collision collision() const {
     const float density =
         cube_ ? sample_cube(cube_, offset_.x, offset_.y, offset_.z) : uniform_density_;

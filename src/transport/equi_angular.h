@@ -23,7 +23,7 @@ public:
     angle_end_ = std::atan((end_ - nearest_) / height_);
   }
 
-  /// Worth its samples: the light is so near that 1 / r^2 has a peak on the piece.
+  /// True where the light is so near that 1 / r^2 has a peak on the piece: samples pay there.
   bool useful() const {
     constexpr double near = 0.5; // of the piece's length
     return std::hypot(height_, nearest_ - std::clamp(nearest_, begin_, end_)) <

@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// A random walk through the medium under way: what a photon's path and a camera's path share. It
-/// stands at a tentative collision of its flight along `segment`.
+/// The state of a random walk through the medium, common to light paths and camera paths. It is at
+/// a tentative collision of its flight along `segment`.
 struct Flight {
   Flight(const Rng& numbers, const Rgb& weight) : rng(numbers), throughput(weight) {}
 
@@ -18,20 +18,20 @@ struct Flight {
   LengthRoulette length;
   std::optional<MediumTracker> tracker;
 
-  /// Begins a flight along `along`; it stands at no collision yet.
+  /// Begins a flight along `along`, before its first collision.
   void start(const Medium& medium, const Segment& along) {
     segment = along;
     tracker.emplace(medium, along);
   }
-  /// A direction of travel after scattering, by the phase function.
+  /// Draws the direction of travel after scattering from the phase function.
   Vec3f sample_direction(const PhaseFunction& phase) {
     const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
     return phase.sample(segment.ray.direction, u_lobe, u, v);
   }
 };
 
-/// Takes the walk to the next tentative collision of its flight. False where the flight leaves its
-/// segment first: then `walker.leave(walk)` has been called.
+/// Advances the walk to the next tentative collision of its flight. False where the flight leaves
+/// its segment first: then `walker.leave(walk)` has been called.
 template <class Walk, class Walker>
 bool advance_flight(Walk& walk, Walker& walker) {
   if (walk.tracker->advance(walk.rng))
@@ -41,12 +41,12 @@ bool advance_flight(Walk& walk, Walker& walker) {
 }
 
 /// The loop over a flight's collisions, one of them per call, by delta tracking (spectral tracking
-/// where the extinction is chromatic). False where the walk has ended. Between two calls memory has
-/// time to deliver the density: callers with several walks let them take turns.
+/// where the extinction is chromatic). False where the walk has ended. A call ends with a prefetch
+/// of the density: callers interleave several walks to hide the memory latency.
 ///
-/// The walker, which knows what the walk is for, is told of
+/// The walker, which decides what the walk does, is called at
 /// - `meet(walk, collision)`: a tentative collision, not yet known to be null or real;
-/// - `pass(walk)`: it was null; returns false where the walk ends all the same;
+/// - `pass(walk)`: it was null; returns false where the walk ends nevertheless;
 /// - `collide(walk, collision)`: it was real; returns whether the walk goes on (if it does, at
 ///   the first tentative collision of its next flight);
 /// - `leave(walk)`: the flight has reached the end of its segment.

@@ -4,9 +4,9 @@
 
 namespace vdbeam {
 
-/// Walks a ray through a box of cubic cells (3D-DDA, Amanatides and Woo 1987). The ray is
-/// origin + t * direction in cell coordinates (a cell is a unit cube); `direction` need not have
-/// unit length, so t keeps the meaning it has outside.
+/// Traverses the cells of a box of cubic cells along a ray (3D-DDA, Amanatides and Woo 1987). The
+/// ray is origin + t * direction in cell coordinates (a cell is a unit cube); `direction` need not
+/// have unit length, so t keeps the meaning it has outside.
 class GridTraversal {
 public:
   /// The part of [t_begin, t_end] inside the box [0, counts]; check done() before use.
@@ -29,7 +29,7 @@ public:
   float t_exit() const { return t_exit_; } ///< where it leaves it
   const Vec3<int>& cell() const { return cell_; }
 
-  /// Goes on to the next cell.
+  /// Advances to the next cell.
   void advance() {
     t_ = t_exit_;
     if (t_next_.x <= t_next_.y && t_next_.x <= t_next_.z)
@@ -65,7 +65,7 @@ private:
                      : (static_cast<float>(cell_[a] + (step_[a] > 0)) - origin_[a]) * inverse_[a];
   }
 
-  /// The boundary is computed afresh from the cell number, so that no rounding adds up.
+  /// The boundary is computed from the cell number, so that rounding errors do not accumulate.
   void step(int& cell, float& t_next, float origin, float inverse, int direction, int count) {
     cell += direction;
     if (cell < 0 || cell >= count)

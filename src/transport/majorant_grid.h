@@ -7,9 +7,9 @@ namespace vdbeam {
 /// Local majorants of a density field: for each 8^3 cell an upper bound of the density inside, 0
 /// exactly where the field is empty.
 ///
-/// A fluence photon weighs 1 / majorant, so the majorant of a cell may not lie more than a factor
-/// `drop_limit` under that of a neighbour: otherwise a photon from a nearly empty cell, under the
-/// kernel of a ray through the dense one, would be a firefly.
+/// The weight of a fluence photon is 1 / majorant, so the majorant of a cell may be at most a
+/// factor `drop_limit` below that of a neighbour: otherwise a photon from a nearly empty cell would
+/// cause a firefly on a ray through a dense one.
 class MajorantGrid {
 public:
   static constexpr float drop_limit = 32;

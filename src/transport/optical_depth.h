@@ -4,12 +4,12 @@
 
 namespace vdbeam {
 
-/// Optical depth beyond which a ray counts as opaque: exp(-25) = 1.4e-11 of the light is left out.
+/// Optical depth beyond which a ray counts as opaque: exp(-25) = 1.4e-11 of the light is ignored.
 inline constexpr float opaque_optical_depth = 25;
 
-/// Walks a ray through the lattice cubes of one brick and integrates the density exactly: along a
+/// Traverses the lattice cubes of one brick along a ray and integrates the density exactly: along a
 /// line a trilinear function is a cubic, which two-point Gauss-Legendre integrates without error.
-/// The stepping is free of branches, since which plane comes next is as good as random.
+/// The stepping has no branches, because which plane comes next is practically random.
 class BrickWalk {
 public:
   /// o + t d runs in brick coordinates, from t_begin to t_end inside the brick.
@@ -136,9 +136,9 @@ class RatioTracking {
 public:
   RatioTracking(const Medium& medium, const Segment& segment) : tracker_(medium, segment) {}
 
-  /// Goes to the next tentative collision; false where there is none and the estimate is complete.
+  /// Advances to the next tentative collision; false where there is none: the estimate is complete.
   bool advance(Rng& rng) { return tracker_.advance(rng); }
-  /// Passes that collision; false where nothing is left.
+  /// Multiplies by the transmittance factor of that collision; false where nothing is left.
   bool attenuate(Rng& rng);
   const Rgb& transmittance() const { return weight_; }
 

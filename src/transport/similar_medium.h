@@ -7,10 +7,10 @@
 namespace vdbeam {
 
 /// The medium whose forward peak of scattering is taken out (similarity; Wiscombe 1977, eq. 14-16):
-/// light that a droplet sends almost straight on is light that it did not scatter,
+/// light that a droplet scatters almost straight ahead is treated as not scattered,
 ///   sigma_t' = sigma_t (1 - albedo f),  albedo' = albedo (1 - f) / (1 - albedo f),  p -> p',
 /// with f and p' of truncate_peak. Absorption and the transport cross-section stay as they are.
-/// `medium.peak` of the result tells what was taken out. Null where no phase function has a peak.
+/// `medium.peak` of the result says what was taken out. Null where no phase function has a peak.
 std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
 
 /// The worlds in which the photons of each pass live: with the peak taken out by a truncation that

@@ -29,7 +29,7 @@ PassImage noisy_pass(int block, double sigma, std::mt19937& random) {
   return pass;
 }
 
-TEST(NoiseShape, CountsWhatPixelsShare) {
+TEST(NoiseStatistics, CountsWhatPixelsShare) {
   // Of n passes whose m squares are independent and Gaussian, the logarithm of true over estimated
   // MRSE has the variance 2 / m + 2 / (m (n - 1)). It is known as well as 120 pairs of passes tell,
   // to some 13 % of the variance; 4 times that is allowed.
@@ -39,15 +39,15 @@ TEST(NoiseShape, CountsWhatPixelsShare) {
     PassHistory history(width, height);
     for (int i = 0; i < 16; ++i)
       history.add(noisy_pass(block, 0.05, random), {});
-    const NoiseShape shape = noise_shape(history);
+    const NoiseStatistics statistics = noise_statistics(history);
     const double squares = width * height / (block * block);
     const double expected = 2 / squares * (1 + 1.0 / 15) + 0.03 * 0.03;
-    EXPECT_NEAR(shape.spread * shape.spread / expected, 1, 0.5) << block;
-    EXPECT_NEAR(shape.correction, 1, 0.02) << block;
+    EXPECT_NEAR(statistics.spread * statistics.spread / expected, 1, 0.5) << block;
+    EXPECT_NEAR(statistics.correction, 1, 0.02) << block;
   }
 }
 
-TEST(NoiseShape, RareBrightPassesDoNotHideTheirNoise) {
+TEST(NoiseStatistics, RareBrightPassesDoNotHideTheirNoise) {
   // Each value is 5 with a chance of 1 / 5, else 0: weights by the mean of all passes see bright
   // pixels as less noisy and dark ones as free of noise.
   std::mt19937 random(3);
@@ -96,7 +96,7 @@ TEST(PassHistory, FollowsPixelsOfLargePictures) {
   }
 }
 
-TEST(BiasShape, IsTheDifferenceToTheProbes) {
+TEST(BiasStatistics, IsTheDifferenceToTheProbes) {
   // A picture of 1.1 and probes of 1, both noisy; half of the pixels are probed in each pass.
   std::mt19937 random(11);
   std::normal_distribution<float> noise(0, 0.3f);
@@ -126,7 +126,7 @@ TEST(BiasShape, IsTheDifferenceToTheProbes) {
 }
 
 /// Kernels blur: what they take from one pixel they give to the next.
-TEST(BiasShape, SeesABiasThatChangesSignFromPixelToPixel) {
+TEST(BiasStatistics, SeesABiasThatChangesSignFromPixelToPixel) {
   std::mt19937 random(12);
   std::normal_distribution<float> noise(0, 0.3f);
   Film film(width, height);
