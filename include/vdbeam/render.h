@@ -100,29 +100,25 @@ struct RenderHooks {
   std::function<void(const PassRecord&, const RenderStatistics&)> on_pass;
   /// A line for the user, as soon as it is known.
   std::function<void(const std::string&)> on_note;
-  /// Ends the render soon when it becomes true; the pass in progress is lost. Where it is the first
-  /// one, the image is a quick look.
+  /// Ends the render soon when it becomes true; the pass in progress is lost, the first for a quick
+  /// look.
   const std::atomic<bool>* stop = nullptr;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
-  int frame = 1; ///< keys the random numbers
-  /// Renders exactly these passes instead of those of the scene's stop rule.
-  std::optional<PassRange> pass_range;
-  /// Renders only this part; its pixels are those of the whole image.
-  std::optional<PixelRegion> region;
-  /// Where the passes go as a partial image, to be joined with others by merge_partials.
-  std::string partial;
+  int frame = 1;                       ///< keys the random numbers
+  std::optional<PassRange> pass_range; ///< exactly these instead of those of the scene's stop rule
+  std::optional<PixelRegion> region;   ///< only this part; its pixels are those of the whole image
+  std::string partial; ///< where the passes go as a partial image, for merge_partials
   /// Written at intervals and when stopped, removed by nobody but the caller.
   CheckpointSettings checkpoint;
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
   std::function<void(RenderResult&)> on_snapshot;
-  /// Where given, gets a quick look before the first pass; it takes a quarter of a second.
+  /// Gets a quick look before the first pass, which takes a quarter of a second.
   std::function<void(RenderResult&)> on_quick_look;
 };
 
-/// A scene's volumes and lights, read and made ready for rendering.
-class PreparedScene;
+class PreparedScene; ///< a scene's volumes and lights, read and made ready for rendering
 using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
 
 /// Reads what `render` needs, and takes over from `previous` (or null) what is the same. May run

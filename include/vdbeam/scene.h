@@ -17,7 +17,8 @@ namespace vdbeam {
 struct ImageSettings {
   int width = 640;  ///< pixels
   int height = 360; ///< pixels
-  std::optional<double> fps = std::nullopt; ///< frames per second of the shot, for the image's attributes alone
+  std::optional<double> fps =
+      std::nullopt; ///< frames per second of the shot, for the image's attributes alone
 };
 
 struct CameraSettings {

@@ -80,7 +80,8 @@ std::vector<std::string> samples_of(const std::string& pattern) {
     throw InputError(missing_file_text(pattern));
   const std::set<int> shown{frames.front(), frames[frames.size() / 2], frames.back()};
   print_output(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
-             shown.size() == 1 ? "is" : "are", format_frame_range({shown.begin(), shown.end()})));
+                           shown.size() == 1 ? "is" : "are",
+                           format_frame_range({shown.begin(), shown.end()})));
   std::vector<std::string> files;
   for (const int frame : shown)
     files.push_back(substitute_frame(pattern, frame));

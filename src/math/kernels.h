@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// Normalised disc kernels of radius r as functions of s = d^2 / r^2 in [0, 1); multiply by 1 / r^2.
-/// Each integrates to 1 over the disc: integral_0^1 k(s) pi ds = 1.
+/// Normalised disc kernels of radius r as functions of s = d^2 / r^2 in [0, 1); multiply by 1 /
+/// r^2. Each integrates to 1 over the disc: integral_0^1 k(s) pi ds = 1.
 inline float disc_kernel(KernelShape shape, float s) {
   switch (shape) {
   case KernelShape::constant:

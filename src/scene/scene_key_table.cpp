@@ -163,8 +163,9 @@ void add_volume(Table& table) {
 void add_emission(Table& table) {
   using E = EmissionSettings;
   table.section(SceneSection::emission);
-  table.add("intensity", &E::intensity,
-            R"(name of a grid with the strength of the emission ("flame", "heat"); "": 1 everywhere)");
+  table.add(
+      "intensity", &E::intensity,
+      R"(name of a grid with the strength of the emission ("flame", "heat"); "": 1 everywhere)");
   table.add("temperature", &E::temperature,
             R"(name of a grid of temperatures, for black-body emission; "": the color alone)");
   table.add("kelvin", &E::kelvin, "kelvin per unit of the temperature grid").above(0);
@@ -280,7 +281,9 @@ void add_render(Table& table) {
       "forward_peak", &R::forward_peak,
       "auto: multiple scattering without the forward peak of the phase function, less of which is "
       "taken out as passes are added (beam, march); kept: with all of it");
-  table.add_auto("keep", &R::keep, "share of a light path's collisions that become photons, the same everywhere")
+  table
+      .add_auto("keep", &R::keep,
+                "share of a light path's collisions that become photons, the same everywhere")
       .above_up_to(0, 1);
   table.add("max_bounces", &R::max_bounces, "scattering events per path")
       .at_least(1)

@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// The grid that is meant by `wanted`: the one of this name, or the only one that differs from it in
-/// capitals alone; empty where there is none.
+/// The grid that is meant by `wanted`: the one of this name, or the only one that differs from it
+/// in capitals alone; empty where there is none.
 std::string same_grid_name(const std::string& wanted, const std::vector<std::string>& names);
 
 /// The line for a grid that a file does not have: lists those there are and suggests the nearest.

@@ -21,9 +21,9 @@ T& make_immortal(Arguments&&... arguments) {
 /// Registers OpenVDB's grid types; must be called before the fork.
 void prepare_openvdb();
 
-/// The grid's name as the file writes it: where no grid has the name, the only one that differs from
-/// it in capitals alone. Throws InputError where a file has no such grid, or one of another type or
-/// map than can be rendered.
+/// The grid's name as the file writes it: where no grid has the name, the only one that differs
+/// from it in capitals alone. Throws InputError where a file has no such grid, or one of another
+/// type or map than can be rendered.
 std::string require_density_grid(const std::string& path, const std::string& grid_name);
 
 /// Reads one grid and writes it to `descriptor`, laid out as RawGridHeader says. Throws InputError

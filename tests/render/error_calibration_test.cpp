@@ -131,8 +131,8 @@ void expect_calibrated(int inside) {
   EXPECT_LE(inside, 99);
 }
 
-/// Noise and bias together against an image by path tracing; with more rays followed than by default,
-/// since so few pixels would tell no bias otherwise.
+/// Noise and bias together against an image by path tracing; with more rays followed than by
+/// default, since so few pixels would tell no bias otherwise.
 TEST_P(ErrorCalibrationSlow, TrueErrorLiesInItsIntervalAndTargetsAreMet) {
   Case scene = GetParam()();
   RenderSettings& settings = scene.memory.scene.render;
