@@ -156,7 +156,7 @@ TEST(DistanceSampler, DrawsOfZeroAndOneLieInTheMedium) {
     const Medium medium = one(between_air, 30, scale);
     const Ray ray{{-1, 0.03f, 0.01f}, {1, 0, 0}};
     DepthProfile profile;
-    profile.build(medium, ray, 0, 3, 1e-7f);
+    profile.build(medium, {ray, 0, 3}, 1e-7f);
     const std::size_t last = profile.knots() - 1;
     ASSERT_GT(last, 2U);
     ASSERT_EQ(profile.total(last), profile.total(last - 1)) << "the profile must end in air";
