@@ -293,9 +293,9 @@ ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
     // Small estimates are noise more likely than bias: halfway between the positive part, which
     // comes out too large where there is no bias, and that of James and Stein, which comes out too
     // small where there is some.
-    const double half_error = 0.5 * bias.mrse_error;
-    if (bias.mrse > half_error)
-      part = bias.mrse - half_error * half_error / bias.mrse;
+    const double squared_error = bias.mrse_error * bias.mrse_error;
+    if (bias.mrse * bias.mrse > 2 * squared_error)
+      part = bias.mrse - 2 * squared_error / bias.mrse;
     margin = t * bias.mrse_error;
   }
   estimate.mrse = estimate.noise + part;

@@ -49,7 +49,7 @@ std::optional<std::string> nearest_word(const std::string& word,
 }
 
 std::string one_line(const std::string& text) {
-  constexpr std::size_t longest = 160;
+  constexpr std::size_t longest = 200;
   std::string result = text.size() > longest ? text.substr(0, longest) + "..." : text;
   for (char& c : result)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)

@@ -58,7 +58,8 @@ public:
     int low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = cell(part.min()[axis], axis);
-      high[axis] = cell(part.max()[axis], axis);
+      // Up to where the next voxel begins: one voxel covers several cells of a small grid.
+      high[axis] = std::max(low[axis], cell(part.max()[axis] + 1, axis) - 1);
     }
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {

@@ -134,13 +134,17 @@ class Agreement : public testing::TestWithParam<Case> {};
 TEST_P(Agreement, BeamAndMarchWithPath) {
   MemoryScene scene = GetParam().make();
   const PassMeans truth = truth_of(scene);
-  {
-    SCOPED_TRACE("beam");
-    expect_agreement(scene, truth, EstimatorType::beam, 24, 0.005, GetParam().power);
-  }
-  {
-    SCOPED_TRACE("march");
-    expect_agreement(scene, truth, EstimatorType::march, 24, 0.005, GetParam().power);
+  for (const ForwardPeak peak : {ForwardPeak::automatic, ForwardPeak::kept}) {
+    scene.scene.render.forward_peak = peak;
+    const bool layers = peak == ForwardPeak::kept;
+    {
+      SCOPED_TRACE("beam");
+      expect_agreement(scene, truth, EstimatorType::beam, 24, 0.005, GetParam().power, layers);
+    }
+    {
+      SCOPED_TRACE("march");
+      expect_agreement(scene, truth, EstimatorType::march, 24, 0.005, GetParam().power, layers);
+    }
   }
   {
     SCOPED_TRACE("beam, all from photons");
