@@ -242,8 +242,7 @@ TEST(AgreementOfDirectLight, PhotonsAndShadowRays) {
   const PassMeans photons = test::render_passes(scene, EstimatorType::beam, 32);
   for (std::size_t c = 0; c < 3; ++c) {
     test::expect_same_mean(sampled.total[c], photons.total[c], 0.005 * sampled.total[c].mean());
-    test::expect_same_mean(sampled.direct[c], photons.direct[c],
-                           0.005 * sampled.direct[c].mean());
+    test::expect_same_mean(sampled.direct[c], photons.direct[c], 0.005 * sampled.direct[c].mean());
     EXPECT_EQ(photons.indirect[c].mean(), 0);
     EXPECT_EQ(sampled.indirect[c].mean(), 0);
   }

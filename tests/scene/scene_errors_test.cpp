@@ -116,9 +116,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[render]\nestimator = 'beams'\n",
                  "s.toml:2: render.estimator must be beam, march or path, got \"beams\"; did you "
                  "mean beam?"},
-        BadScene{"[[light]]\ntype = 'sun'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
-                 "did you mean distant?"},
+        BadScene{
+            "[[light]]\ntype = 'sun'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
+            "did you mean distant?"},
         BadScene{"[[light]]\ntype = 'dome'\n",
                  "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
                  "\"dome\"; did you mean environment?"},
