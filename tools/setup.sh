@@ -12,7 +12,7 @@ packages=(
   libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libhwy-dev
   # tests and benchmarks
-  libgtest-dev libbenchmark-dev openimageio-tools
+  libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools
   # tools
   python3 python3-numpy python3-matplotlib
 )

@@ -21,7 +21,7 @@ bool KernelSupport::inside(const Vec3f& point) const {
 }
 
 float KernelSupport::disc_share(const Vec3f& photon, float radius) const {
-  const Vec3f view(normalize(Vec3d(photon) - camera_));
+  const Vec3f view(camera_.direction_towards(Vec3d(photon)));
   Vec3f u, v;
   orthonormal_frame(view, u, v);
   int hits = 0;
@@ -59,7 +59,7 @@ KernelShare boundary_share(const World& world, const Camera& camera, KernelDomai
   if (world.settings.store == PhotonStore::scatter ||
       world.settings.kernel_shape == KernelShape::fourth_order)
     return nullptr;
-  const KernelSupport support(world.medium, camera.origin());
+  const KernelSupport support(world.medium, camera);
   if (domain == KernelDomain::ball)
     return
         [support](const Vec3f& photon, float radius) { return support.ball_share(photon, radius); };

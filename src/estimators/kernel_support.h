@@ -13,10 +13,11 @@ namespace vdbeam {
 /// estimate stays consistent.
 class KernelSupport {
 public:
-  /// Both arguments in render space; the medium must outlive this.
-  KernelSupport(const Medium& medium, const Vec3d& camera) : medium_(&medium), camera_(camera) {}
+  /// The medium, in render space, must outlive this.
+  KernelSupport(const Medium& medium, const Camera& camera) : medium_(&medium), camera_(camera) {}
 
-  /// Fraction of the disc of radius r around a photon, perpendicular to the ray from the camera.
+  /// Fraction of the disc of radius r around a photon, perpendicular to the ray of the picture that
+  /// comes nearest. (Beside the camera a photon is seen by rays that do not lead to it at all.)
   float disc_share(const Vec3f& photon, float radius) const;
   /// Fraction of the ball of radius r.
   float ball_share(const Vec3f& photon, float radius) const;
@@ -28,7 +29,7 @@ private:
   bool inside(const Vec3f& point) const;
 
   const Medium* medium_;
-  Vec3d camera_;
+  Camera camera_;
 };
 
 /// What a kernel is normalised over: the disc across the camera ray, or the ball.

@@ -4,6 +4,7 @@
 #include "vdbeam/scene.h"
 #include "volume/render_space.h"
 
+#include <algorithm>
 #include <numbers>
 
 namespace vdbeam {
@@ -25,6 +26,17 @@ public:
     const double sx = (2 * px - width_) / height_ * tan_half_;
     const double sy = (1 - 2 * py / height_) * tan_half_;
     return normalize(forward_ + right_ * sx + up_ * sy);
+  }
+  /// Unit direction of the ray of the picture that comes nearest to a point.
+  Vec3d direction_towards(const Vec3d& point) const {
+    const Vec3d p = point - origin_;
+    const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
+    const double tan_x = tan_half_ * width_ / height_;
+    if (z > 0 && std::abs(x) <= tan_x * z && std::abs(y) <= tan_half_ * z)
+      return normalize(p);
+    const double depth = std::max(z, 1e-12 * length(p));
+    return normalize(forward_ + right_ * std::clamp(x / depth, -tan_x, tan_x) +
+                     up_ * std::clamp(y / depth, -tan_half_, tan_half_));
   }
   /// False only where no ray of the picture can meet the box: it lies beyond one of the planes
   /// around the view.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <boost/math/special_functions/legendre.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,7 +13,8 @@
 /// An independent solution of the plane-parallel slab, for the laws that renders are held to: the
 /// adding-doubling method (van de Hulst 1980, ch. 4; Prahl et al. 1993) in double precision, on a
 /// half-range Gauss-Legendre quadrature, index-matched boundaries, started by the diamond scheme
-/// (Wiscombe 1976). It shares no code with the renderer.
+/// (Wiscombe 1976). It shares no code with the renderer; Legendre polynomials and their zeros
+/// come from Boost.Math.
 namespace vdbeam::slab {
 
 /// Legendre moments chi_l of a phase function p = sum_l (2 l + 1) chi_l P_l(cos) / (4 pi); chi_0
@@ -92,12 +96,9 @@ private:
 
 /// P_0 ... P_(count - 1) at x.
 inline std::vector<double> legendre(double x, std::size_t count) {
-  std::vector<double> p(std::max<std::size_t>(count, 2), 1);
-  p[1] = x;
-  for (std::size_t l = 2; l < count; ++l)
-    p[l] = ((2.0 * static_cast<double>(l) - 1) * x * p[l - 1] -
-            (static_cast<double>(l) - 1) * p[l - 2]) /
-           static_cast<double>(l);
+  std::vector<double> p{1, x};
+  for (unsigned l = 1; l + 1 < count; ++l)
+    p.push_back(boost::math::legendre_next(l, x, p[l], p[l - 1]));
   p.resize(count);
   return p;
 }
@@ -109,20 +110,16 @@ struct Quadrature {
 
 inline Quadrature gauss_legendre(std::size_t count) {
   Quadrature q;
-  const double n = static_cast<double>(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (n + 0.5)),
-           derivative = 1;
-    for (int iteration = 0; iteration < 100; ++iteration) {
-      const std::vector<double> p = legendre(x, count + 1);
-      derivative = n * (x * p[count] - p[count - 1]) / (x * x - 1);
-      const double step = p[count] / derivative;
-      x -= step;
-      if (std::abs(step) < 1e-15)
-        break;
-    }
+  const int order = static_cast<int>(count);
+  const auto add = [&](double x) {
+    const double derivative = boost::math::legendre_p_prime(order, x);
     q.nodes.push_back((1 + x) / 2);
     q.weights.push_back(1 / ((1 - x * x) * derivative * derivative));
+  };
+  for (const double x : boost::math::legendre_p_zeros<double>(order)) { // those from 0 on
+    add(x);
+    if (x > 0)
+      add(-x);
   }
   return q;
 }
@@ -255,20 +252,18 @@ private:
 
 /// Chandrasekhar's H-function for isotropic scattering by its integral (Stibbs and Weir 1959):
 /// ln H(mu) = -mu / pi  integral_0^(pi/2) ln(1 - albedo t cot t) / (cos^2 t + mu^2 sin^2 t) dt.
-inline double h_function(double albedo, double mu, std::size_t points = 200) {
-  const Quadrature q = gauss_legendre(points);
-  double sum = 0;
-  for (std::size_t i = 0; i < points; ++i) {
-    // t = pi/2 s^4 tames the logarithm at 0 where albedo = 1.
-    const double s = q.nodes[i], t = std::numbers::pi / 2 * s * s * s * s;
+inline double h_function(double albedo, double mu) {
+  const auto integrand = [=](double t) {
     const double cosine = std::cos(t), sine = std::sin(t);
     const double one_minus_t_cot_t =
         t < 1e-2 ? t * t / 3 * (1 + t * t / 15 * (1 + t * t * 2 / 21)) : 1 - t * cosine / sine;
-    sum += q.weights[i] * 2 * std::numbers::pi * s * s * s *
-           std::log(1 - albedo + albedo * one_minus_t_cot_t) /
+    return std::log(1 - albedo + albedo * one_minus_t_cot_t) /
            (cosine * cosine + mu * mu * sine * sine);
-  }
-  return std::exp(-mu / std::numbers::pi * sum);
+  };
+  // The logarithm is infinite at 0 where albedo = 1; what is left out is less than 1e-13.
+  const double integral = boost::math::quadrature::tanh_sinh<double>().integrate(
+      integrand, 1e-15, std::numbers::pi / 2);
+  return std::exp(-mu / std::numbers::pi * integral);
 }
 
 } // namespace vdbeam::slab

@@ -1,4 +1,5 @@
 // Extreme coefficients with answers known in closed form.
+#include "laws/adding_doubling.h"
 #include "stability/stability_scene.h"
 
 namespace vdbeam {
@@ -9,31 +10,10 @@ using namespace test;
 constexpr EstimatorType all_estimators[] = {EstimatorType::beam, EstimatorType::march,
                                             EstimatorType::path};
 
-/// Chandrasekhar's H function for isotropic scattering at mu = 1 (Radiative Transfer, 1950, ch. V):
-///   H(mu) = 1 + albedo / 2 mu H(mu) integral_0^1 H(m) / (mu + m) dm, by iteration.
-double h_function_at_one(double albedo) {
-  constexpr int n = 400;
-  std::vector<double> h(n, 1.0);
-  double at_one = 1;
-  const auto next = [&](double mu) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i)
-      sum += h[static_cast<std::size_t>(i)] / (mu + (i + 0.5) / n) / n;
-    return 1 / (1 - albedo / 2 * mu * sum);
-  };
-  for (int round = 0; round < 200; ++round) {
-    std::vector<double> better(n);
-    for (int i = 0; i < n; ++i)
-      better[static_cast<std::size_t>(i)] = next((i + 0.5) / n);
-    h = better;
-    at_one = next(1);
-  }
-  return at_one;
-}
-
-/// A thick box under a sun in the camera's back: radiance = irradiance albedo / (8 pi) H(1)^2.
+/// A thick box under a sun in the camera's back: radiance = irradiance albedo / (8 pi) H(1)^2
+/// (Chandrasekhar, Radiative Transfer, 1950, ch. V).
 double thick_slab_radiance(double albedo) {
-  const double h = h_function_at_one(albedo);
+  const double h = slab::h_function(albedo, 1);
   return albedo / (8 * std::numbers::pi) * h * h;
 }
 
@@ -48,9 +28,12 @@ TEST(Media, ThickUnderASun) {
     SCOPED_TRACE(depth);
     const PassMeans path = render_sound(scene, EstimatorType::path, 24, "path");
     expect_mean(path.total[0], exact, 0.02 * exact);
+    expect_power(path.total[0], 0.01 * exact);
     scene.scene.render.photons = 20000;
     const PassMeans beam = render_sound(scene, EstimatorType::beam, 4, "beam");
+    // What is left is single scattering at least, which needs no photons.
     EXPECT_LT(beam.total[0].mean(), 1.1 * exact);
+    EXPECT_GT(beam.total[0].mean(), 0.98 * 0.8 / (8 * std::numbers::pi));
   }
 }
 
@@ -63,6 +46,7 @@ TEST(Media, ThickerThanPrecision) {
   add_sun(scene, {0, 0, -1});
   const PassMeans path = render_sound(scene, EstimatorType::path, 24, "path");
   expect_mean(path.total[0], thick_slab_radiance(0.8), 0.1 * thick_slab_radiance(0.8));
+  expect_power(path.total[0], 0.01 * thick_slab_radiance(0.8));
 }
 
 TEST(Media, SingleScatteringOfAThickMedium) {
@@ -74,7 +58,9 @@ TEST(Media, SingleScatteringOfAThickMedium) {
     scene.scene.render.max_bounces = 1;
     for (const EstimatorType type : {EstimatorType::beam, EstimatorType::path}) {
       SCOPED_TRACE(name_of(type) + " " + std::to_string(depth));
-      expect_mean(render_sound(scene, type, 8, "single").total[0], exact, 0.005 * exact);
+      const PassMeans means = render_sound(scene, type, 16, "single");
+      expect_mean(means.total[0], exact, 0.005 * exact);
+      expect_power(means.total[0], 0.01 * exact);
     }
   }
 }
@@ -101,12 +87,14 @@ TEST(Media, AlbedoOfEachKind) {
   scene.look({0, 0, 3}, {0, 0, 0}, 1e-4, 8, 8);
   scene.scene.volumes[0].albedo = {1, 0.5f, 0};
   add_sky(scene);
-  const PassMeans path = render_sound(scene, EstimatorType::path, 16, "path");
+  const PassMeans path = render_sound(scene, EstimatorType::path, 64, "path");
   for (const EstimatorType type : all_estimators) {
     SCOPED_TRACE(name_of(type));
     const PassMeans means = render_sound(scene, type, 16, "albedos");
     expect_mean(means.total[0], 1, type == EstimatorType::path ? 1e-4 : 0.03);
     expect_same_mean(means.total[1], path.total[1], 0.03 * path.total[1].mean());
+    for (const std::size_t c : {0, 1})
+      expect_power(means.total[c], 0.018 * path.total[c].mean());
     EXPECT_NEAR(means.total[2].mean(), std::exp(-3), 1e-6);
   }
 }
@@ -121,10 +109,12 @@ TEST(Media, ExtinctionZeroInOneChannel) {
     add_sky(scene);
     for (const EstimatorType type : all_estimators) {
       SCOPED_TRACE(name_of(type) + " " + std::to_string(extinction));
-      const PassMeans means = render_sound(scene, type, 8, "two channels");
+      const PassMeans means = render_sound(scene, type, 24, "two channels");
       const double bias = type == EstimatorType::path ? 1e-4 : 0.04;
       expect_mean(means.total[0], 1, bias);
       expect_mean(means.total[1], 1, bias);
+      for (const std::size_t c : {0, 1})
+        expect_power(means.total[c], 0.035);
       EXPECT_NEAR(means.total[2].mean(), 1, 1e-6);
       EXPECT_EQ(means.indirect[2].mean(), 0);
     }
@@ -136,11 +126,17 @@ TEST(Media, ExtinctionsFarApart) {
   MemoryScene scene = box_scene(1e3);
   scene.scene.volumes[0].extinction_scale = {1, 1e-3f, 1e-6f};
   add_sky(scene);
-  const PassMeans means = render_sound(scene, EstimatorType::path, 16, "path");
-  for (std::size_t c = 0; c < 3; ++c)
+  const PassMeans means = render_sound(scene, EstimatorType::path, 64, "path");
+  for (std::size_t c = 0; c < 3; ++c) {
     expect_mean(means.total[c], 1, 1e-3);
+    expect_power(means.total[c], 0.015);
+  }
   scene.scene.render.photons = 5000;
-  render_sound(scene, EstimatorType::beam, 2, "beam");
+  const PassMeans beam = render_sound(scene, EstimatorType::beam, 24, "beam");
+  for (std::size_t c = 1; c < 3; ++c) {
+    expect_mean(beam.total[c], 1, 0.04);
+    expect_power(beam.total[c], 0.04);
+  }
 }
 
 TEST(Media, ExtinctionZero) {

@@ -105,8 +105,10 @@ TEST(Photons, MoreNeighboursThanPhotons) {
   add_sky(scene);
   scene.scene.render.photons = 50;
   scene.scene.render.neighbours = 100000;
-  const PassMeans means = render_sound(scene, EstimatorType::beam, 4, "k > photons");
-  EXPECT_GT(means.indirect[0].mean(), 0.1);
+  const PassMeans means = render_sound(scene, EstimatorType::beam, 100, "k > photons");
+  // A furnace; kernels are as wide as the medium at most, and blur its border.
+  expect_mean(means.total[0], 1, 0.1);
+  expect_power(means.total[0], 0.03);
 }
 
 TEST(Photons, OnePhoton) {
@@ -141,8 +143,10 @@ TEST(Photons, KernelLargerThanTheVolume) {
     scene.scene.render.radius = radius;
     const PassMeans means =
         render_sound(scene, EstimatorType::beam, 2, "radius " + std::to_string(radius));
-    EXPECT_LT(means.total[0].mean(), 1.3) << radius;
-    EXPECT_GT(means.total[0].mean(), 0) << radius;
+    // Kernels of the unit box's own size count a photon by the part of them that lies in the box,
+    // which is right on average but not at the middle.
+    EXPECT_LT(means.total[0].mean(), radius < 0.1 ? 1.05 : 1.3) << radius;
+    EXPECT_GT(means.total[0].mean(), radius < 0.1 ? 0.95 : radius > 2 ? 0 : 0.5) << radius;
   }
 }
 

@@ -1,35 +1,16 @@
 #pragma once
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
 namespace vdbeam::test {
 
-/// P(X >= statistic) for a chi-squared X: the regularised upper incomplete gamma function, by the
-/// series or the continued fraction (Numerical Recipes, 6.2).
+/// P(X >= statistic) for a chi-squared X.
 inline double chi_squared_tail(double statistic, int degrees) {
-  const double a = 0.5 * degrees, x = 0.5 * statistic;
-  if (x <= 0)
-    return 1;
-  const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
-  if (x < a + 1) {
-    double term = 1 / a, sum = term;
-    for (int n = 1; n < 100000 && term > sum * 1e-14; ++n)
-      sum += term *= x / (a + n);
-    return 1 - front * sum;
-  }
-  double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;
-  for (int n = 1; n < 100000; ++n) {
-    const double an = -n * (n - a);
-    b += 2;
-    d = 1 / (an * d + b);
-    c = b + an / c;
-    h *= d * c;
-    if (std::abs(d * c - 1) < 1e-14)
-      break;
-  }
-  return front * h;
+  return cdf(complement(boost::math::chi_squared(degrees), statistic));
 }
 
 /// Pearson's test of counts against expected counts (of the same total); bins that expect fewer
