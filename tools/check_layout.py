@@ -42,6 +42,8 @@ def check_include(path, quote, name):
         return None
     if re.match(r"(openvdb|nanovdb)/", name) and not (parts[1] == "volume" and path.suffix == ".cpp"):
         return f"OpenVDB headers belong in src/volume/*.cpp, got {name}"
+    if parts[1] != "image" and re.match(r"(OpenEXR/|Imath/)?(Imf|OpenEXR|Imath|half\.h)", name):
+        return f"OpenEXR and Imath headers belong in src/image, got {name}"
     if quote == "<" or name.startswith("vdbeam/"):
         return None
     layer, target = parts[1], name.split("/")[0]

@@ -2,6 +2,9 @@
 
 #include "vdbeam/image.h"
 #include "vdbeam/pass_record.h"
+#include "vdbeam/pixel_region.h"
+#include "vdbeam/render_plan.h"
+#include "vdbeam/render_statistics.h"
 #include "vdbeam/scene.h"
 
 #include <atomic>
@@ -12,57 +15,6 @@
 #include <vector>
 
 namespace vdbeam {
-
-/// Seconds and counts of a render, by stage.
-struct RenderStatistics {
-  double read = 0;    ///< volumes: file to bricks; 0 where the last frame's were kept
-  double prepare = 0; ///< majorants, lights
-  double pilot = 0;   ///< what the estimator finds out before its first pass
-  double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0, path = 0,
-         bias = 0, write = 0;
-  std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, camera_rays = 0;
-  std::uint64_t lookups = 0;         ///< rays or points gathered from the photon map
-  std::uint64_t depth_profiles = 0;  ///< camera rays whose optical depth was integrated
-  std::uint64_t shadow_rays = 0;     ///< of camera rays' single scattering
-  std::uint64_t emission_rays = 0;   ///< camera rays along which the medium's own light was summed
-  std::uint64_t camera_walks = 0;    ///< random walks from camera rays (path)
-  std::uint64_t neighbourhoods = 0;  ///< photons whose radius follows their neighbours'
-  std::uint64_t bias_rays = 0;       ///< camera rays followed by path tracing to tell the bias
-  std::uint64_t directions = 0;      ///< photons stored with their direction
-  std::uint64_t maps_reused = 0;     ///< passes whose photons were those of an earlier frame
-  std::uint64_t pilot_paths = 0;     ///< light paths traced before the first pass, to plan photons
-  std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
-  std::uint64_t peak_memory = 0;     ///< bytes, whole process
-  std::size_t bytes_per_photon = 0;
-  double neighbours = 0; ///< photons in an adaptive kernel, as given or chosen
-  /// What render.clamp took: sums of radiance over passes, pixels and channels, and pixels of
-  /// passes.
-  double clamp_removed = 0, clamp_total = 0;
-  std::uint64_t clamped_pixels = 0;
-
-  /// Share of the picture's light that render.clamp took.
-  double clamped_fraction() const { return clamp_total > 0 ? clamp_removed / clamp_total : 0; }
-};
-
-/// What a stage of the render plan is and why it runs or is left out.
-struct PlanStage {
-  std::string name; ///< "read", "photons", "map", "neighbours", "direct", ...
-  bool needed = false;
-  std::string reason; ///< one clause
-};
-
-/// The stages that a scene needs, as a value (docs/architecture.md).
-struct RenderPlan {
-  std::vector<PlanStage> stages;
-  std::uint64_t volume_bytes = 0, photon_bytes = 0, film_bytes = 0; ///< estimates
-
-  bool needs(const std::string& stage) const {
-    for (const PlanStage& s : stages)
-      if (s.name == stage)
-        return s.needed;
-    return false;
-  }
-};
 
 /// Everything a render gives back.
 struct RenderResult {
@@ -79,11 +31,6 @@ struct RenderResult {
 /// Passes first to last, both included, counted from 0.
 struct PassRange {
   int first = 0, last = 0;
-};
-
-/// Pixels x0 <= x < x1, y0 <= y < y1.
-struct PixelRegion {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
 /// A file from which a render that was ended goes on, bit for bit (docs/sequences.md).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/emission_settings.h"
+#include "vdbeam/kinds.h"
 #include "vdbeam/vec.h"
 
 #include <array>
@@ -51,14 +52,12 @@ struct VolumeSettings {
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
   bool glows() const { return present && emission.glows(); }
+  /// Its extinction is not 0 where there is density.
+  bool absorbs_or_scatters() const { return extinction * max_component(extinction_scale) > 0; }
   /// Something absorbs or scatters, or nothing else is there to look at.
-  bool needs_density() const {
-    return present && (extinction * max_component(Vec3d(extinction_scale)) > 0 || !glows());
-  }
+  bool needs_density() const { return present && (absorbs_or_scatters() || !glows()); }
 };
 
-/// volume: one that glows, which stands among the volumes of a scene and not among its lights.
-enum class LightType { distant, point, spot, environment, sky, volume };
 enum class DirectLight { automatic, sampled, photons };
 
 struct LightSettings {
@@ -80,7 +79,6 @@ struct LightSettings {
   std::optional<DirectLight> direct; ///< overrides render.direct for this light
 };
 
-enum class EstimatorType { beam, march, path };
 enum class PhotonStore { fluence, scatter };
 /// Which of a light path's collisions become photons: those that the camera sees, or all alike;
 /// automatic is the first, but for a scene file in which only the camera moves.

@@ -3,8 +3,8 @@
 #include "cli/output_paths.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
+#include "film/film_file.h"
 #include "image/output_formats.h"
-#include "render/film_file.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
 #include "scene/scene_enums.h"
@@ -40,15 +40,15 @@ Image read_reference(const std::string& path, const ImageSettings& size) {
 }
 
 std::string start_text(const Scene& scene) {
-  return fmt::format("{}, {}, {}x{}", scene.path, enum_name(scene.render.estimator),
-                     scene.image.width, scene.image.height);
+  return fmt::format("{}, {}, {}x{}", scene.path, scene.render.estimator.name, scene.image.width,
+                     scene.image.height);
 }
 
 std::string passes_text(int passes) {
   return count_text(static_cast<std::uint64_t>(passes), "pass");
 }
 
-std::string end_text(const Scene& scene, const RenderResult& result, const std::string& output) {
+std::string end_text(const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
   std::string text =
       fmt::format("{}: {} in {}", output, passes_text(last.pass), format_duration(last.seconds));
@@ -56,7 +56,7 @@ std::string end_text(const Scene& scene, const RenderResult& result, const std::
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
   if (std::isfinite(last.error_low))
     text += fmt::format(" ({:.2g} to {:.2g})", last.error_low, last.error_high);
-  if (std::isfinite(last.bias_margin) && scene.render.estimator != EstimatorType::path)
+  if (std::isfinite(last.bias_margin) && !result.plan.unbiased)
     text += fmt::format(", estimated bias {:+.1f} +- {:.1f} %", 100 * last.bias_estimate,
                         100 * last.bias_margin);
   if (last.has_reference)
@@ -295,7 +295,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
                                  "was finished; the image is a quick look; give it more time or "
                                  "fewer pixels",
                                  output(loaded.frame), format_duration(*scene.render.time)));
-  progress.finish(end_text(scene, result, output(loaded.frame)));
+  progress.finish(end_text(result, output(loaded.frame)));
   return true;
 }
 

@@ -54,7 +54,7 @@ CommandRun add_merge(CLI::App& app) {
   app.add_option("partials", options->partials, "Partial images (vdbeam render --pass-range)")
       ->required()
       ->option_text("PARTIAL...");
-  app.add_option("-o,--output", options->output, "Image to write: .exr or .png")
+  app.add_option("-o,--output", options->output, "Image to write: " + output_extensions())
       ->required()
       ->option_text("FILE");
   app.add_option("--passes", options->settings.passes,

@@ -28,7 +28,7 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan) {
     text += fmt::format("\n{}\n", needed ? "stages" : "left out");
     for (const PlanStage& stage : plan.stages)
       if (stage.needed == needed)
-        text += fmt::format("  {:<18} {}\n", stage.name, stage.reason);
+        text += fmt::format("  {:<18} {}\n", stage_name(stage.stage), stage.reason);
   }
   const auto bytes = [](std::uint64_t n) { return format_bytes(static_cast<double>(n)); };
   return text + fmt::format("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",

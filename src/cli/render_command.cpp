@@ -62,7 +62,7 @@ std::vector<int> choose_frames(const RenderOptions& options, const SceneDocument
 
 void check_options(const RenderOptions& options) {
   const FrameOptions& frame = options.batch.frame;
-  const bool exr = output_format(frame.files.output).extension == ".exr";
+  const bool exr = output_format(frame.files.output).complete;
   if (!exr && frame.pass_range)
     throw InputError(one_line("-o " + frame.files.output + ": a partial image must be an .exr"));
   if (!exr && options.batch.skip_existing)
@@ -220,7 +220,8 @@ CommandRun add_render(CLI::App& app) {
   const auto options = std::make_shared<RenderOptions>();
   options->scene.declare(app);
   app.add_option("-o,--output", options->batch.frame.files.output,
-                 "Image to write: .exr or .png; default: the scene's name, .exr, here")
+                 "Image to write: " + output_extensions() +
+                     "; default: the scene's name, .exr, here")
       ->option_text("FILE");
   app.add_option("-f,--frames", options->frames, "Frames: 7, 1-24, 1-100x2, 1,5,9-12")
       ->option_text("RANGE");

@@ -1,5 +1,6 @@
 #include "cli/scene_options.h"
 
+#include "scene/key_access.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -44,7 +45,8 @@ void SceneOptions::declare(CLI::App& app) {
                     "Rendering time: seconds, or like 90s, 5m, 1h30m");
   declare_shorthand(app, "--target-error", "render.target_error", "E",
                     "Estimated error (MRSE) to reach");
-  declare_shorthand(app, "--estimator", "render.estimator", "NAME", "beam, march or path");
+  declare_shorthand(app, "--estimator", "render.estimator", "NAME",
+                    join_words(choice_names<EstimatorType>(), "or"));
   app.add_option("--resolution", resolution_, "Size of the picture in pixels")
       ->option_text("WxH")
       ->group("Scene");

@@ -1,6 +1,7 @@
 #include "estimators/beam.h"
 
 #include "estimators/beam_weights.h"
+#include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
 
 namespace vdbeam {
@@ -13,6 +14,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   WeightSettings weights;
   weights.store = world.settings.store;
   weights.albedo_in_power = photons_.plan().albedo_in_power;
+  weights.colored = channels > 1;
   weights.reach = 4 * photons_.map().mean_radius();
   shade_tiles(input_, photons_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
@@ -34,5 +36,26 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
       }
   });
 }
+
+namespace {
+
+constexpr std::string_view beam_keys[] = {
+    "photons",    "store",      "direct", "kernel",   "kernel_shape", "radius",    "neighbours",
+    "min_radius", "max_radius", "alpha",  "thinning", "keep",         "bias_rays", "forward_peak"};
+
+} // namespace
+
+const EstimatorKind beam_estimator{
+    .name = "beam",
+    .help = "the beam radiance estimate: photons, gathered along whole camera rays",
+    .unbiased = false,
+    .stages = {Stage::photons, Stage::photon_importance, Stage::kernel_pilot, Stage::map,
+               Stage::neighbours, Stage::photon_directions, Stage::photon_color,
+               Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
+               Stage::beam_query, Stage::bias},
+    .keys = beam_keys,
+    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+      return std::make_unique<BeamEstimator>(input);
+    }};
 
 } // namespace vdbeam

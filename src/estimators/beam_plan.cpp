@@ -34,10 +34,6 @@ double in_kernel_steps(double neighbours) {
   return std::exp2(std::round(std::log2(neighbours)));
 }
 
-bool thins_by_view(const RenderSettings& settings) {
-  return settings.thinning != PhotonThinning::even && !(settings.keep > 0);
-}
-
 /// About the radius that kernels would have without regard to the view.
 float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const PhotonList& pilot) {
   constexpr std::size_t enough = 8192;
@@ -68,13 +64,6 @@ void thin_by_view(const EstimatorInput& input, const TracedPhotons& pilot, Photo
   plan.stored_per_path = thinning.stored_per_path;
 }
 
-/// Where photons may serve frames with other views, kernels must not depend on the view either.
-bool may_try_kernels(const RenderSettings& settings, const PhotonPlan& plan) {
-  return thins_by_view(settings) && settings.neighbours == 0 &&
-         settings.kernel == KernelRadius::adaptive && settings.store == PhotonStore::fluence &&
-         plan.stored_per_path * static_cast<double>(plan.paths) >= fewest_for_trial;
-}
-
 /// The neighbours at which pictures of narrow and wide kernels tell that the error is least.
 double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const World& world = input.world;
@@ -96,8 +85,8 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     for (KernelTrial* trial : {&narrow, &wide}) {
       RadiusSettings radii = radius_settings(world, plan, 0);
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
-      trial->maps.push_back(
-          PhotonMap::build(traced.photons, world.grey ? 1 : 3, radii, world.settings.kernel_shape));
+      trial->maps.push_back(PhotonMap::build(traced.photons, input.photon_channels(), radii,
+                                             world.settings.kernel_shape));
       if (share)
         trial->maps.back().divide_power(share);
     }
@@ -111,15 +100,15 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
 } // namespace
 
 PhotonPlan plan_beam_photons(const EstimatorInput& input) {
-  const RenderSettings& settings = input.world.settings;
-  PhotonPlan plan = plan_lights(input);
-  if (!plan.needs_map)
+  PhotonPlan plan = default_photon_plan(input);
+  if (!input.plan.needs(Stage::photons))
     return plan;
   const TracedPhotons pilot = trace_pilot(input, plan);
-  if (thins_by_view(settings) && pilot.photons.size() > 0)
+  if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
     thin_by_view(input, pilot, plan);
   plan.paths = choose_paths(input, plan.stored_per_path);
-  if (may_try_kernels(settings, plan))
+  const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
+  if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
     plan.neighbours = try_kernels(input, plan);
   return plan;
 }

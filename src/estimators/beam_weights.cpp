@@ -185,7 +185,7 @@ void fill_beam_tile(const World& world, const Camera& camera, const TileRays& ra
                     const WeightSettings& settings, BeamTile& tile) {
   fill_frame(world, camera, rays, tile);
   tile.phases = &world.medium.gathered_phases();
-  const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && !world.grey);
+  const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && settings.colored);
   tile.weight_channels = coloured ? 3 : 1;
   tile.weights.clear();
   WeightWriter writer(world, settings, tile);

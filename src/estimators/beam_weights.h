@@ -8,6 +8,7 @@ namespace vdbeam {
 struct WeightSettings {
   PhotonStore store = PhotonStore::fluence;
   bool albedo_in_power = true; ///< the photons carry the albedo that all volumes share
+  bool colored = false;        ///< photons have a colour
   float reach = 0;             ///< scatter storage: how far beyond the medium photons are gathered
 };
 

@@ -25,10 +25,10 @@ struct SinglePhase {
 
   float evaluate(float cosine) const { return phase.evaluate(cosine); }
   /// What a scattering weighs, of which the medium at hand counts the share 1 - forward.
-  Rgb weight(const Light& light, float p, float cosine) const {
+  Rgb weight(bool surrounds, float p, float cosine) const {
     if (!gathered)
       return Rgb(p);
-    if (!light.surrounds())
+    if (!surrounds)
       return Rgb(p / (1 - forward));
     const float smooth = gathered->evaluate(cosine);
     return Rgb(smooth) + through * (p / (1 - forward) - smooth);
@@ -36,9 +36,11 @@ struct SinglePhase {
 };
 
 /// Radiance that one light scatters at a point into the ray, per unit of weight.
-Rgb scattered_light(const World& world, const Light& light, const SinglePhase& single,
+Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& single,
                     const Vec3f& point, const Vec3f& direction, Rng& rng,
                     std::uint64_t& shadow_rays) {
+  const Light& light = world.lights[index];
+  const bool surrounds = world.lights.traits(index).surrounds;
   const PhaseFunction& phase = single.phase;
   Rgb sum;
   const float u = rng.uniform(), v = rng.uniform();
@@ -48,7 +50,7 @@ Rgb scattered_light(const World& world, const Light& light, const SinglePhase& s
     const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
     if (p * mis > 0) {
       ++shadow_rays;
-      sum += sample.value * (single.weight(light, p, cosine) * mis) *
+      sum += sample.value * (single.weight(surrounds, p, cosine) * mis) *
              exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance});
     }
   }
@@ -59,7 +61,7 @@ Rgb scattered_light(const World& world, const Light& light, const SinglePhase& s
   const LightHit hit = light.emitted_radiance({{point, wi}});
   if (max_component(hit.radiance) > 0) {
     const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
-    const Rgb mis = single.weight(light, p, cosine) / (p + light.incident_pdf(point, wi));
+    const Rgb mis = single.weight(surrounds, p, cosine) / (p + light.incident_pdf(point, wi));
     ++shadow_rays;
     sum += hit.radiance * mis * exact_transmittance(world.medium, {{point, wi}, 0, hit.distance});
   }
@@ -82,7 +84,7 @@ public:
         near.emplace(ray, *light.position(), profile.front(), profile.back());
       if (near && !near->useful())
         near.reset();
-      lights_.push_back({&light, near});
+      lights_.push_back({l, near});
     }
   }
 
@@ -98,7 +100,7 @@ public:
       return sum;
     for (const SampledLight& light : lights_) {
       const float other = light.near ? light.near->pdf(point.t) : 0;
-      sum += scattered(point, *light.light) * (point.pdf / (point.pdf + other));
+      sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
     }
     return sum;
   }
@@ -112,19 +114,19 @@ public:
       const ScatterPoint point = distances_.at(light.near->sample(u));
       const float other = light.near->pdf(point.t);
       if (point.pdf > 0)
-        sum += scattered(point, *light.light) * (point.pdf / (point.pdf + other));
+        sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
     }
     return sum;
   }
 
 private:
   struct SampledLight {
-    const Light* light;
+    std::size_t index;
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
   };
 
   /// Balance heuristic (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
-  Rgb scattered(const ScatterPoint& point, const Light& light) {
+  Rgb scattered(const ScatterPoint& point, std::size_t light) {
     const Medium& medium = world_.medium;
     Rgb sum;
     for (std::size_t v = 0; v < medium.volumes.size(); ++v) {

@@ -1,22 +1,19 @@
-#include "estimators/estimator.h"
-
-#include "estimators/beam.h"
-#include "estimators/march.h"
-#include "estimators/path.h"
+#include "estimators/estimator_table.h"
 #include "vdbeam/error.h"
+
+#include <fmt/format.h>
 
 namespace vdbeam {
 
-std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInput& input) {
-  switch (type) {
-  case EstimatorType::path:
-    return std::make_unique<PathEstimator>(input);
-  case EstimatorType::beam:
-    return std::make_unique<BeamEstimator>(input);
-  case EstimatorType::march:
-    return std::make_unique<MarchEstimator>(input);
-  }
-  throw InputError("unknown estimator");
+const EstimatorKind& estimator_kind(const EstimatorType& type) {
+  for (const EstimatorKind* kind : estimator_table())
+    if (kind->name == type.name)
+      return *kind;
+  throw InputError(fmt::format("render.estimator: there is no estimator \"{}\"", type.name));
+}
+
+std::unique_ptr<Estimator> make_estimator(const EstimatorType& type, const EstimatorInput& input) {
+  return estimator_kind(type).make(input);
 }
 
 } // namespace vdbeam

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "image/pass_image.h"
-#include "image/pixel_window.h"
 #include "math/stop_token.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 
 #include <memory>
+#include <vector>
 
 namespace vdbeam {
 
@@ -28,21 +28,35 @@ public:
 struct EstimatorInput {
   const World& world;
   const Camera& camera;
+  const RenderPlan& plan; ///< which stages run; no estimator decides that again
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
-  PixelWindow window = {};
+  PixelRegion window = {};
   const StopToken* stop = nullptr; ///< tells when the pass is to be abandoned
   PhotonCache* photons = nullptr;  ///< of frames with the same world; null: photons are not kept
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera, frame, window, stop, photons};
+    return {other, camera, plan, frame, window, stop, photons};
+  }
+  /// The same with the plan of another estimator, which must outlive the result too.
+  EstimatorInput with(const RenderPlan& other) const {
+    return {world, camera, other, frame, window, stop, photons};
   }
 
+  /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a
+  /// volume that glows; such lights come after those of the scene.
+  std::vector<bool> shadow_ray_lights() const {
+    std::vector<bool> lights = plan.shadow_ray_lights;
+    lights.resize(world.lights.size(), false);
+    return lights;
+  }
+  /// Channels of the photons' power.
+  int photon_channels() const { return plan.needs(Stage::photon_color) ? 3 : 1; }
   bool stopped() const { return stop && stop->stopped(); }
 };
 
-/// The table of estimators: what `render.estimator` names.
-std::unique_ptr<Estimator> make_estimator(EstimatorType type, const EstimatorInput& input);
+/// The estimator that `render.estimator` names. Throws InputError for one that there is not.
+std::unique_ptr<Estimator> make_estimator(const EstimatorType& type, const EstimatorInput& input);
 
 } // namespace vdbeam

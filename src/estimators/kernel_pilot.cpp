@@ -92,6 +92,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
   WeightSettings weights;
   weights.store = world.settings.store;
   weights.albedo_in_power = plan.albedo_in_power;
+  weights.colored = input.photon_channels() > 1;
   BeamTile tile;
   fill_beam_tile(world, input.camera, rays, weights, tile);
   TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, 0};

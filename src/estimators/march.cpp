@@ -1,5 +1,6 @@
 #include "estimators/march.h"
 
+#include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
 
 namespace vdbeam {
@@ -105,5 +106,26 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
                 }
               });
 }
+
+namespace {
+
+constexpr std::string_view march_keys[] = {
+    "photons",    "store",      "direct", "kernel", "kernel_shape", "radius",       "neighbours",
+    "min_radius", "max_radius", "alpha",  "keep",   "bias_rays",    "forward_peak", "step"};
+
+} // namespace
+
+const EstimatorKind march_estimator{
+    .name = "march",
+    .help =
+        "conventional photon mapping: the same photons, gathered step by step along camera rays",
+    .unbiased = false,
+    .stages = {Stage::photons, Stage::map, Stage::neighbours, Stage::photon_directions,
+               Stage::photon_color, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
+               Stage::spectral_tracking, Stage::march, Stage::bias},
+    .keys = march_keys,
+    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+      return std::make_unique<MarchEstimator>(input);
+    }};
 
 } // namespace vdbeam

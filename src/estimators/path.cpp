@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/direct_light.h"
+#include "estimators/estimator_table.h"
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
 #include "transport/distance_sampling.h"
@@ -35,20 +36,13 @@ int choose_walks_per_ray(const EstimatorInput& input) {
   return std::clamp(static_cast<int>(std::lround(48 / (1 + collisions))), 4, 32);
 }
 
-std::vector<bool> lights_with_shadow_rays(const LightSet& lights) {
-  std::vector<bool> result;
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    result.push_back(lights[i].wants_shadow_rays());
-  return result;
-}
-
 } // namespace
 
 PathEstimator::PathEstimator(const EstimatorInput& input)
-    : input_(input), shadow_rays_(lights_with_shadow_rays(input.world.lights)),
-      tracer_(input.world, shadow_rays_) {
-  for (const Volume& volume : input_.world.medium.volumes)
-    scatters_ = scatters_ || (max_component(volume.albedo) > 0 && input_.world.lights.size() > 0);
+    : input_(input), shadow_rays_(input.shadow_ray_lights()), tracer_(input.world, shadow_rays_),
+      scatters_(input.plan.needs(Stage::paths)) {
+  if (!scatters_)
+    return;
   walks_per_ray_ = choose_walks_per_ray(input);
   uncounted_pilot_paths_ = pilot_paths;
   const int samples = input_.world.settings.direct_samples;
@@ -94,8 +88,7 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   profile.build(world.medium, camera.segment, static_cast<float>(world.settings.cutoff));
   shade_profile(world, camera, profile, target, image, scratch.counts.emission_rays);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
-  if (profile.empty() || !scatters_ ||
-      (world.settings.max_bounces && *world.settings.max_bounces < 1))
+  if (profile.empty() || !scatters_)
     return;
   image.direct[target] = direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_,
                                       rng, scratch.counts.shadow_rays);
@@ -194,15 +187,22 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
     take_turns(scratch.walks, 0, image);
   });
   statistics.pilot_paths += std::exchange(uncounted_pilot_paths_, 0);
-  for (const Scratch& scratch : scratches) {
-    statistics.depth_profiles += scratch.counts.depth_profiles;
-    statistics.shadow_rays += scratch.counts.shadow_rays;
-    statistics.emission_rays += scratch.counts.emission_rays;
-    statistics.camera_walks += scratch.counts.camera_walks;
-  }
+  for (const Scratch& scratch : scratches)
+    statistics += scratch.counts;
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
   statistics.path +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+const EstimatorKind path_estimator{
+    .name = "path",
+    .help = "volumetric path tracing, without bias: the reference",
+    .unbiased = true,
+    .stages = {Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
+               Stage::paths},
+    .keys = {},
+    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+      return std::make_unique<PathEstimator>(input);
+    }};
 
 } // namespace vdbeam

@@ -38,7 +38,7 @@ private:
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   WalkTracer tracer_;
-  bool scatters_ = false;                   ///< some light may be scattered at all
+  bool scatters_ = false;                   ///< light is scattered towards the camera
   int direct_samples_ = 1;                  ///< shadow-ray samples per camera ray
   int walks_per_ray_ = 1;                   ///< walks per camera ray
   std::uint64_t uncounted_pilot_paths_ = 0; ///< go to the first pass's statistics

@@ -19,8 +19,8 @@ double seconds_since(Clock::time_point start) {
 
 PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
                        KernelDomain domain)
-    : input_(input), worlds_(input.world, plan_lights(input).similar), world_(&worlds_.of(0)),
-      plan_(make_plan(input.in(*world_))),
+    : input_(input), worlds_(input.world, default_photon_plan(input).similar),
+      world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
       boundary_share_(boundary_share(input.world, input.camera, domain)) {}
 
 /// The pilot belongs to no pass; its counts go with the first.
@@ -35,7 +35,7 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   world_ = &worlds_.of(pass);
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(world, plan_, pass);
-  if (!plan_.needs_map) {
+  if (!input_.plan.needs(Stage::photons)) {
     map_ = PhotonMap::build({}, 1, radii, world.settings.kernel_shape);
     return;
   }
@@ -48,7 +48,7 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
     map_.divide_power(boundary_share_);
   statistics.radii += seconds_since(start);
   statistics.photons_stored += map_.size();
-  const bool adaptive = world.settings.kernel == KernelRadius::adaptive;
+  const bool adaptive = input_.plan.needs(Stage::neighbours);
   statistics.neighbourhoods += adaptive ? map_.size() : 0;
   statistics.neighbours = adaptive ? plan_.neighbours : 0;
   statistics.directions += map_.has_directions() ? map_.size() : 0;
@@ -72,7 +72,7 @@ void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettin
   if (stopped)
     traced = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
-  map_ = PhotonMap::build(std::move(traced.photons), world.grey ? 1 : 3, radii,
+  map_ = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
                           world.settings.kernel_shape);
   statistics.order += map_.times().order;
   statistics.radii += map_.times().radii;

@@ -66,33 +66,18 @@ bool may_take_peak_out(const World& world, const std::vector<bool>& sampled_ligh
                   settings.store == PhotonStore::fluence && !settings.max_bounces &&
                   world.medium.emitters.empty();
   for (std::size_t i = 0; i < world.lights.size(); ++i)
-    possible = possible && (sampled_lights[i] || world.lights[i].surrounds());
+    possible = possible && (sampled_lights[i] || world.lights.traits(i).surrounds);
   return possible;
 }
 
 } // namespace
 
-PhotonPlan plan_lights(const EstimatorInput& input) {
+PhotonPlan default_photon_plan(const EstimatorInput& input) {
   const World& world = input.world;
-  PhotonPlan plan;
-  bool photons_for_first_flight = false;
-  for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    DirectLight direct = world.lights.direct(i);
-    if (direct == DirectLight::automatic)
-      direct = world.settings.direct;
-    if (direct == DirectLight::automatic)
-      direct = world.lights[i].wants_shadow_rays() ? DirectLight::sampled : DirectLight::photons;
-    plan.sampled_lights.push_back(direct == DirectLight::sampled);
-    photons_for_first_flight = photons_for_first_flight || direct == DirectLight::photons;
-  }
-  bool scatters = false;
-  for (const Volume& volume : world.medium.volumes)
-    scatters = scatters || max_component(volume.albedo) > 0;
   const RenderSettings& settings = world.settings;
-  const bool single_bounce = settings.max_bounces && *settings.max_bounces <= 1;
-  plan.needs_map = scatters && world.lights.size() > 0 && may_see_medium(world, input.camera) &&
-                   (!single_bounce || photons_for_first_flight);
-  plan.similar = plan.needs_map && may_take_peak_out(world, plan.sampled_lights);
+  PhotonPlan plan;
+  plan.sampled_lights = input.shadow_ray_lights();
+  plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(world, plan.sampled_lights);
   plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
@@ -126,8 +111,8 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) 
 }
 
 PhotonPlan plan_photons(const EstimatorInput& input) {
-  PhotonPlan plan = plan_lights(input);
-  if (plan.needs_map) {
+  PhotonPlan plan = default_photon_plan(input);
+  if (input.plan.needs(Stage::photons)) {
     trace_pilot(input, plan);
     plan.paths = choose_paths(input, plan.stored_per_path);
   }
@@ -145,7 +130,8 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.skip_first_flight = plan.sampled_lights;
   settings.max_bounces = world.settings.max_bounces;
   settings.truncation_order = world.medium.peak ? world.medium.peak->order : 0;
-  settings.directions = !world.medium.isotropic();
+  // Without its peak a medium may be isotropic where the scene's is not.
+  settings.directions = input.plan.needs(Stage::photon_directions) && !world.medium.isotropic();
   if (plan.albedo_in_power && settings.store == PhotonStore::fluence)
     settings.albedo = world.medium.volumes[0].albedo;
   settings.key = {world.settings.seed, input.frame, pass};

@@ -13,8 +13,6 @@ namespace vdbeam {
 /// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
 /// function of the estimator's input (by counts, never by a clock).
 struct PhotonPlan {
-  /// False where no photon could add anything to the picture.
-  bool needs_map = false;
   /// Per light: single scattering by shadow rays instead of photons.
   std::vector<bool> sampled_lights;
   /// Photons live in the medium without its forward peak (similar_medium).
@@ -41,11 +39,11 @@ PhotonPlan plan_photons(const EstimatorInput& input);
 
 /// The parts that plan_photons is made of, for plans that go further.
 ///
-/// Chooses the lights that are left to shadow rays, and whether there is anything to map.
-PhotonPlan plan_lights(const EstimatorInput& input);
+/// What needs no photons to be known: the settings and the render plan's decisions.
+PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// Traces a few light paths and chooses from the mean number of their collisions how many shadow
-/// rays to send and how many photons to store, everywhere with the same probability. Requires a
-/// plan that needs a map. The photons hold all storable collisions.
+/// rays to send and how many photons to store, everywhere with the same probability. Only for a
+/// render that needs photons. The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);

@@ -18,7 +18,7 @@ inline constexpr int tile_width = PassImage::tile_width;
 template <class Visit>
 void for_each_tile(const EstimatorInput& input, PassImage& image, const Visit& visit) {
   const int width = input.camera.width(), height = input.camera.height();
-  PixelWindow window{0, 0, width, height};
+  PixelRegion window{0, 0, width, height};
   if (!input.window.empty())
     window = input.window;
   const int first_column = window.x0 / tile_width, first_row = window.y0 / tile_width;

@@ -24,7 +24,7 @@ Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfi
                    const Rgb& tr) {
   Rgb beyond, sum;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    if (!world.lights.visible(i))
+    if (!world.lights.traits(i).visible)
       continue;
     const LightHit hit = world.lights[i].emitted_radiance(camera.whole());
     if (hit.distance == infinity)

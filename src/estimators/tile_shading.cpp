@@ -77,18 +77,14 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     scratch.statistics.direct += seconds_between(profiled, shaded);
     scratch.statistics.query += seconds_between(shaded, Clock::now());
   });
+  RenderStatistics tiles;
+  for (const TileScratch& scratch : scratches)
+    tiles += scratch.statistics;
   // Stage seconds are processor seconds of the tiles, shared out over the threads that worked.
   const double threads = static_cast<double>(std::max<std::size_t>(1, scratches.size()));
-  for (const TileScratch& scratch : scratches) {
-    statistics.profile += scratch.statistics.profile / threads;
-    statistics.direct += scratch.statistics.direct / threads;
-    statistics.query += scratch.statistics.query / threads;
-    statistics.contributions += scratch.statistics.contributions;
-    statistics.lookups += scratch.statistics.lookups;
-    statistics.depth_profiles += scratch.statistics.depth_profiles;
-    statistics.shadow_rays += scratch.statistics.shadow_rays;
-    statistics.emission_rays += scratch.statistics.emission_rays;
-  }
+  for (double* seconds : {&tiles.profile, &tiles.direct, &tiles.query})
+    *seconds /= threads;
+  statistics += tiles;
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
 }
 

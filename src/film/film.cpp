@@ -144,8 +144,8 @@ void Film::merge(const Film& other) {
   invalid_values_ += other.invalid_values_;
 }
 
-std::vector<FilmPlane> Film::planes() {
-  std::vector<FilmPlane> planes;
+std::vector<ImagePlane> Film::planes() {
+  std::vector<ImagePlane> planes;
   const auto add = [&](const std::string& name, CompensatedSums& sums, std::size_t stride,
                        std::size_t channel) {
     planes.push_back({name + ".sum", sums.high_data() + channel, stride});

@@ -3,12 +3,12 @@
 #include "film/error_estimate.h"
 #include "film/pass_history.h"
 #include "image/pass_image.h"
+#include "image/plane_file.h"
 #include "vdbeam/image.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace vdbeam {
@@ -18,6 +18,8 @@ namespace vdbeam {
 /// grouping, unless values differ by more than 2^36; beyond that the error is 2^-77 of the sum.
 class CompensatedSums {
 public:
+  static constexpr std::size_t bytes_per_value = sizeof(double) + sizeof(float);
+
   explicit CompensatedSums(std::size_t count) : high_(count), low_(count) {}
 
   void add(std::size_t i, double value);
@@ -31,14 +33,6 @@ public:
 private:
   std::vector<double> high_;
   std::vector<float> low_;
-};
-
-/// Numbers of a film, one per pixel: `values` is the first pixel's, `stride` numbers lie between
-/// two pixels.
-struct FilmPlane {
-  std::string name; ///< "direct.R.sum", "depth.rest", ...
-  std::variant<double*, float*, std::uint32_t*> values;
-  std::size_t stride;
 };
 
 /// The depth of a pixel without any medium: far behind everything, the value that Blender writes.
@@ -67,11 +61,18 @@ public:
   bool glows() const { return glows_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
-  static constexpr std::size_t bytes_per_pixel(bool glows = false) { return glows ? 192 : 156; }
+  /// What a film takes for each pixel, beside its history.
+  static constexpr std::size_t bytes_per_pixel(bool glows = false) {
+    return (glows ? 14 : 11) * CompensatedSums::bytes_per_value + 3 * sizeof(double);
+  }
+  /// And what develop() gives back.
+  static constexpr std::size_t developed_bytes_per_pixel(bool glows = false) {
+    return (glows ? 18 : 15) * sizeof(float);
+  }
 
-  /// Everything that a film holds per pixel, always in the same order: with these and the two
-  /// counts stored and put back, it goes on bit for bit.
-  std::vector<FilmPlane> planes();
+  /// Everything that a film holds per pixel ("direct.R.sum", "depth.rest", ...), always in the same
+  /// order: with these and the two counts stored and put back, it goes on bit for bit.
+  std::vector<ImagePlane> planes();
   /// Pixels that probes may hold a biased estimator against.
   const std::vector<std::size_t>& probe_pixels() const { return history_.pixels(); }
   void set_counts(int passes, std::uint64_t invalid_values);

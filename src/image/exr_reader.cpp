@@ -173,19 +173,17 @@ void add_grey(Image& image) {
 } // namespace
 
 Image read_exr(const std::string& path) {
-  try {
+  return with_exr<InputError>(path, "not a readable EXR", [&] {
     check_attribute_sizes(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     Image image = read_part(file, path);
     add_grey(image);
     return image;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    std::string reason = error.what();
-    std::replace(reason.begin(), reason.end(), '\n', ' ');
-    throw InputError(fmt::format("{}: not a readable EXR: {}", path, reason));
-  }
+  });
+}
+
+std::string exr_library_version() {
+  return OPENEXR_VERSION_STRING;
 }
 
 } // namespace vdbeam

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "machine/atomic_file.h"
+#include "text/text.h"
+#include "vdbeam/error.h"
 #include "vdbeam/image.h"
 
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <fmt/format.h>
 
 namespace vdbeam {
 
@@ -32,5 +35,17 @@ void copy_attributes(const Imf::Header& header, Image& image);
 /// Refuses a header whose attributes are longer than the file: OpenEXR would allocate the memory
 /// before it finds the file too short. Throws InputError.
 void check_attribute_sizes(const std::string& path);
+
+/// Runs OpenEXR and turns its errors into a `Failure` of one line.
+template <class Failure, class Body>
+auto with_exr(const std::string& path, const char* problem, const Body& body) {
+  try {
+    return body();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Failure(fmt::format("{}: {}: {}", path, problem, one_line(error.what())));
+  }
+}
 
 } // namespace vdbeam

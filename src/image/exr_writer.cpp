@@ -151,13 +151,7 @@ void write_channels(const Image& image, AtomicFile& file) {
 void write_exr(const Image& image, const std::string& path) {
   check_image(image, path);
   AtomicFile file(path);
-  try {
-    write_channels(image, file);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw FrameError(fmt::format("{}: cannot be written: {}", path, error.what()));
-  }
+  with_exr<FrameError>(path, "cannot be written", [&] { write_channels(image, file); });
   file.commit();
 }
 

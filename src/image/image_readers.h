@@ -20,4 +20,7 @@ Image read_exr(const std::string& path);
 /// and PRIMARIES lines: the former is divided out, the latter ignored. Throws InputError.
 Image read_hdr(const std::string& path);
 
+/// The version of OpenEXR, e.g. "3.1.5".
+std::string exr_library_version();
+
 } // namespace vdbeam

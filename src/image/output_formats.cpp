@@ -1,5 +1,6 @@
 #include "image/output_formats.h"
 
+#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
@@ -13,11 +14,11 @@ namespace vdbeam {
 namespace {
 
 constexpr OutputFormat formats[] = {
-    {".exr", "OpenEXR, every channel, linear",
+    {".exr", "OpenEXR, every channel, linear", true,
      [](const Image& image, const std::string& path, const WriteOptions&) {
        write_exr(image, path);
      }},
-    {".png", "8-bit sRGB preview",
+    {".png", "8-bit sRGB preview", false,
      [](const Image& image, const std::string& path, const WriteOptions& options) {
        write_png(image, path, options.exposure, options.view);
      }},
@@ -29,18 +30,22 @@ std::span<const OutputFormat> output_formats() {
   return formats;
 }
 
+std::string output_extensions() {
+  std::vector<std::string> names;
+  for (const OutputFormat& format : formats)
+    names.emplace_back(format.extension);
+  return join_words(names, "or");
+}
+
 const OutputFormat& output_format(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  std::string known;
-  for (const OutputFormat& format : formats) {
+  for (const OutputFormat& format : formats)
     if (format.extension == extension)
       return format;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", format.extension);
-  }
-  throw InputError(
-      fmt::format("{}: unknown output format \"{}\"; known are {}", path, extension, known));
+  throw InputError(fmt::format("{}: unknown output format \"{}\"; it must be {}", path, extension,
+                               output_extensions()));
 }
 
 void write_image(const Image& image, const std::string& path, const WriteOptions& options) {

@@ -18,11 +18,17 @@ struct WriteOptions {
 struct OutputFormat {
   std::string_view extension;   ///< lower case, with its dot
   std::string_view description; ///< for --help
+  /// Every channel and attribute in full: such a file can hold a partial image, and tells what it
+  /// shows.
+  bool complete = false;
   void (*write)(const Image& image, const std::string& path, const WriteOptions& options);
 };
 
 /// Every format, in the order of --help. A new one is a writer and one line of this table.
 std::span<const OutputFormat> output_formats();
+
+/// ".exr or .png", for help and messages.
+std::string output_extensions();
 
 /// The format of a path, by its extension without regard to case. Throws InputError, naming the
 /// known ones.

@@ -55,6 +55,10 @@ struct PassImage {
       indirect[pixel][c] = std::abs(rest) < 1e-6f * std::abs(whole) ? 0 : rest;
     }
   }
+  /// What a pass takes.
+  static constexpr std::size_t bytes_per_pixel(bool glows) {
+    return (glows ? 4 : 3) * sizeof(Rgb) + 2 * sizeof(float);
+  }
   /// What the pixel shows in all.
   Rgb total(std::size_t pixel) const {
     const Rgb sum = direct[pixel] + indirect[pixel] + background[pixel];

@@ -2,6 +2,7 @@
 #include "lights/entry_sampler.h"
 #include "lights/light_table.h"
 #include "lights/silhouette_mask.h"
+#include "math/color.h"
 
 namespace vdbeam {
 namespace {
@@ -32,7 +33,6 @@ public:
   }
   Rgb power() const override { return irradiance_ * mask_.area(); }
   bool is_delta() const override { return true; }
-  LightType type() const override { return LightType::distant; }
   const Vec3f* narrow_direction() const override { return &towards_; }
 
 private:
@@ -72,7 +72,6 @@ public:
     return irradiance_ * (masked() ? mask_.area() : boxes_.projected_area(axis_));
   }
   bool is_delta() const override { return false; }
-  LightType type() const override { return LightType::distant; }
   const Vec3f* narrow_direction() const override { return masked() ? &towards_ : nullptr; }
 
 private:
@@ -117,8 +116,6 @@ private:
   float pdf_ = 0;
 };
 
-} // namespace
-
 std::unique_ptr<Light> make_distant_light(const LightSettings& settings,
                                           const LightContext& context) {
   const Vec3d direction = unit_direction(settings.direction, "light.direction");
@@ -128,5 +125,17 @@ std::unique_ptr<Light> make_distant_light(const LightSettings& settings,
   const double radius = std::clamp(settings.angular_radius, 1e-5, 90.0);
   return std::make_unique<DiscLight>(direction, settings.irradiance, radius, context.region);
 }
+
+constexpr std::string_view distant_keys[] = {"direction", "irradiance", "angular_radius"};
+
+} // namespace
+
+const LightKind distant_light{
+    .name = "distant",
+    .help = "far away, like the sun",
+    .keys = distant_keys,
+    .colored = [](const LightSettings& light) { return !is_grey(light.irradiance); },
+    .complaint = direction_complaint,
+    .make = make_distant_light};
 
 } // namespace vdbeam

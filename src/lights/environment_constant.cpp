@@ -1,6 +1,7 @@
 #include "lights/entry_sampler.h"
 #include "lights/environment_image.h"
 #include "lights/light_table.h"
+#include "math/color.h"
 #include "math/sampling.h"
 #include "vdbeam/image_file.h"
 
@@ -28,9 +29,6 @@ public:
   }
   Rgb power() const override { return radiance_ * (pi * boxes_.surface_area()); }
   bool is_delta() const override { return false; }
-  bool surrounds() const override { return true; }
-  bool wants_shadow_rays() const override { return false; }
-  LightType type() const override { return LightType::environment; }
 
 private:
   static constexpr float density = 1 / (4 * pi);
@@ -39,13 +37,25 @@ private:
   EntrySampler boxes_;
 };
 
-} // namespace
-
 std::unique_ptr<Light> make_environment_light(const LightSettings& settings,
                                               const LightContext& context) {
   if (settings.image.empty())
     return std::make_unique<ConstantEnvironment>(settings.radiance, context.region);
   return make_environment_image(read_image(settings.image), settings.image, settings, context);
 }
+
+constexpr std::string_view environment_keys[] = {"radiance", "image", "rotation"};
+
+} // namespace
+
+const LightKind environment_light{
+    .name = "environment",
+    .help = "a sky all around, constant or an image",
+    .keys = environment_keys,
+    .colored =
+        [](const LightSettings& light) { return !light.image.empty() || !is_grey(light.radiance); },
+    .surrounds = true,
+    .wants_shadow_rays = [](const LightSettings& light) { return !light.image.empty(); },
+    .make = make_environment_light};
 
 } // namespace vdbeam

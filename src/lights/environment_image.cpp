@@ -173,8 +173,6 @@ public:
   }
   Rgb power() const override { return power_; }
   bool is_delta() const override { return false; }
-  bool surrounds() const override { return true; }
-  LightType type() const override { return LightType::environment; }
 
 private:
   struct Place {

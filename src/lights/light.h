@@ -52,16 +52,10 @@ public:
   virtual Rgb power() const = 0;
   /// True where only sample_incident can find the light.
   virtual bool is_delta() const = 0;
-  virtual LightType type() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.
   virtual const Vec3d* position() const { return nullptr; }
   /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.
   virtual const Vec3f* narrow_direction() const { return nullptr; }
-  /// True where the light comes from all around, as a sky's does.
-  virtual bool surrounds() const { return false; }
-  /// False where scattered rays that escape find the light as well as shadow rays would (a constant
-  /// sky), so that the path tracer need not spend any. Never false for a delta light.
-  virtual bool wants_shadow_rays() const { return true; }
 };
 
 } // namespace vdbeam

@@ -10,6 +10,12 @@
 
 namespace vdbeam {
 
+/// What is known of a light without asking it.
+struct LightTraits {
+  bool visible = true;    ///< the camera sees it where its rays meet it
+  bool surrounds = false; ///< its light comes from all around, as a sky's does (LightKind)
+};
+
 /// All lights of a scene.
 class LightSet {
 public:
@@ -19,23 +25,17 @@ public:
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
            const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
-  /// `direct`: how its single scattering is to be estimated.
-  void add(std::unique_ptr<Light> light, DirectLight direct = DirectLight::automatic,
-           bool visible = true);
+  void add(std::unique_ptr<Light> light, LightTraits traits = {});
 
   std::size_t size() const { return lights_.size(); }
   const Light& operator[](std::size_t i) const { return *lights_[i]; }
-  /// How the scene asks for the single scattering of light i.
-  DirectLight direct(std::size_t i) const { return direct_[i]; }
-  /// Whether the camera sees light i where its rays meet it.
-  bool visible(std::size_t i) const { return visible_[i]; }
+  const LightTraits& traits(std::size_t i) const { return traits_[i]; }
   /// Some light may be met at a finite distance.
   bool any_extent() const { return any_extent_; }
 
 private:
   std::vector<std::shared_ptr<const Light>> lights_; ///< shared by copies
-  std::vector<DirectLight> direct_;                  ///< per light
-  std::vector<bool> visible_;                        ///< per light
+  std::vector<LightTraits> traits_;                  ///< per light
   bool any_extent_ = false;
 };
 

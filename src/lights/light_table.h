@@ -4,25 +4,48 @@
 #include "lights/light_context.h"
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace vdbeam {
 
-/// One kind of light: a line here and a file with its factory are all that a new light needs.
+/// What is wrong with one key of a light.
+struct LightComplaint {
+  std::string key, text; ///< "cone_falloff", "must be at most ..."
+};
+
+/// One kind of light: everything that validation, plan, help and docs ask about it. It stands in
+/// the light's own file; the table below lists it.
 struct LightKind {
-  LightType type;
-  const char* name; ///< as scene files call it
+  std::string_view name; ///< as scene files call it
+  std::string_view help; ///< one clause
+  /// Keys of [[light]] that only this kind, and others that list them, have.
+  std::span<const std::string_view> keys;
+  bool (*colored)(const LightSettings&); ///< its light is no grey
+  bool surrounds = false;                ///< the light comes from all around, as a sky's does
+  /// False where scattered rays that escape find the light as well as shadow rays would (a constant
+  /// sky), so that none need be spent. Never false for a delta light.
+  bool (*wants_shadow_rays)(const LightSettings&) = [](const LightSettings&) { return true; };
+  /// What the ranges of single keys cannot say.
+  std::optional<LightComplaint> (*complaint)(const LightSettings&) = [](const LightSettings&) {
+    return std::optional<LightComplaint>();
+  };
+  /// Throws InputError for settings that no light can have.
   std::unique_ptr<Light> (*make)(const LightSettings& settings, const LightContext& context);
 };
 
-std::span<const LightKind> light_table();
+/// Every kind of light, in the order of --help. A new one is its file and a line here.
+std::span<const LightKind* const> light_table();
 
-// Factories; each throws InputError for settings that no light can have.
-std::unique_ptr<Light> make_distant_light(const LightSettings&, const LightContext&);
-std::unique_ptr<Light> make_point_light(const LightSettings&, const LightContext&);
-std::unique_ptr<Light> make_spot_light(const LightSettings&, const LightContext&);
-std::unique_ptr<Light> make_environment_light(const LightSettings&, const LightContext&);
-std::unique_ptr<Light> make_sky_light(const LightSettings&, const LightContext&);
+/// The kind of a light. Throws InputError for one that is not in the table.
+const LightKind& light_kind(const LightType& type);
+
+extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light;
+
+/// A complaint where the light's direction is 0.
+std::optional<LightComplaint> direction_complaint(const LightSettings& settings);
 
 /// Mean flux of photons from a fixed stream, for lights whose power has no short formula.
 Rgb estimate_power(const Light& light);

@@ -1,5 +1,6 @@
 #include "lights/entry_sampler.h"
 #include "lights/light_table.h"
+#include "math/color.h"
 #include "math/sampling.h"
 
 #include <array>
@@ -44,9 +45,6 @@ public:
   }
   Rgb power() const override { return power_; }
   bool is_delta() const override { return false; }
-  bool surrounds() const override { return true; }
-  bool wants_shadow_rays() const override { return false; }
-  LightType type() const override { return LightType::sky; }
 
 private:
   static constexpr int bin_count = 256;
@@ -128,10 +126,23 @@ private:
   bool dark_ = true;
 };
 
+constexpr std::string_view sky_keys[] = {"radiance", "zenith", "horizon", "ground"};
+
 } // namespace
 
-std::unique_ptr<Light> make_sky_light(const LightSettings& settings, const LightContext& context) {
-  return std::make_unique<SkyLight>(settings, context);
-}
+const LightKind sky_light{.name = "sky",
+                          .help = "a clear sky above the horizon, and what lies below it",
+                          .keys = sky_keys,
+                          .colored =
+                              [](const LightSettings& light) {
+                                return !is_grey(light.radiance) || !is_grey(light.zenith) ||
+                                       !is_grey(light.horizon) || !is_grey(light.ground);
+                              },
+                          .surrounds = true,
+                          .wants_shadow_rays = [](const LightSettings&) { return false; },
+                          .make = [](const LightSettings& settings,
+                                     const LightContext& context) -> std::unique_ptr<Light> {
+                            return std::make_unique<SkyLight>(settings, context);
+                          }};
 
 } // namespace vdbeam

@@ -1,5 +1,8 @@
 #include "lights/light_table.h"
 #include "lights/local_light.h"
+#include "math/color.h"
+
+#include <fmt/format.h>
 
 namespace vdbeam {
 namespace {
@@ -23,7 +26,6 @@ public:
   }
 
   Rgb power() const override { return power_; }
-  LightType type() const override { return LightType::spot; }
 
 private:
   static Cone outer_cone(const LightSettings& settings) {
@@ -47,10 +49,28 @@ private:
   Rgb power_;
 };
 
-} // namespace
-
 std::unique_ptr<Light> make_spot_light(const LightSettings& settings, const LightContext& context) {
   return std::make_unique<SpotLight>(settings, context);
 }
+
+std::optional<LightComplaint> spot_complaint(const LightSettings& settings) {
+  if (settings.cone_falloff > settings.cone_angle)
+    return LightComplaint{"cone_falloff", fmt::format("must be at most cone_angle ({}), got {}",
+                                                      settings.cone_angle, settings.cone_falloff)};
+  return direction_complaint(settings);
+}
+
+constexpr std::string_view spot_keys[] = {"direction", "position", "intensity", "cone_angle",
+                                          "cone_falloff"};
+
+} // namespace
+
+const LightKind spot_light{
+    .name = "spot",
+    .help = "a point that shines into a cone",
+    .keys = spot_keys,
+    .colored = [](const LightSettings& light) { return !is_grey(light.intensity); },
+    .complaint = spot_complaint,
+    .make = make_spot_light};
 
 } // namespace vdbeam

@@ -23,8 +23,6 @@ public:
   EmittedPhoton emit(double place, Rng& rng) const override;
   Rgb power() const override { return power_; }
   bool is_delta() const override { return false; }
-  bool wants_shadow_rays() const override { return false; }
-  LightType type() const override { return LightType::volume; }
 
 private:
   /// A cell that glows, and where its share of the light ends in the sum over cells.

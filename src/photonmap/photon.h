@@ -8,8 +8,8 @@
 namespace vdbeam {
 
 /// Photons as tracing leaves them, structure of arrays.
-/// With fluence storage `power` is flux / majorant at the collision [W m^2-ish: power times
-/// length], so that sum_i K * power is the fluence; the ray supplies sigma_s.
+/// With fluence storage `power` is flux / majorant at the collision [W m], so that sum_i K * power
+/// is the fluence along the ray, which supplies sigma_s; with scatter storage it is flux [W].
 struct PhotonList {
   std::vector<Vec3f> position; ///< render space
   std::vector<Vec3f>
@@ -20,6 +20,9 @@ struct PhotonList {
   std::vector<std::uint8_t> first_flight;
 
   std::size_t size() const { return position.size(); }
+  static constexpr std::size_t bytes_per_photon(bool directions) {
+    return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t);
+  }
   void append(const PhotonList& other) {
     position.insert(position.end(), other.position.begin(), other.position.end());
     direction.insert(direction.end(), other.direction.begin(), other.direction.end());

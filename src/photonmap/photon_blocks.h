@@ -46,6 +46,9 @@ public:
   float& at(std::size_t photon, int field) { return row(photon / width, field)[photon % width]; }
   Vec3f position(std::size_t photon) const { return {at(photon, x), at(photon, y), at(photon, z)}; }
   std::size_t bytes() const { return rows_.size() * sizeof(float); }
+  static constexpr std::size_t bytes_per_photon(int channels, bool directions) {
+    return static_cast<std::size_t>(4 + channels + (directions ? 3 : 0)) * sizeof(float);
+  }
 
 private:
   std::size_t count_ = 0;

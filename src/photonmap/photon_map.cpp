@@ -134,6 +134,12 @@ std::size_t PhotonMap::size() const {
 std::size_t PhotonMap::bytes() const {
   return data_->blocks.bytes() + data_->tree.bytes();
 }
+std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions) {
+  // A group of boxes of the tree's lowest level has 8 blocks; higher levels add a seventh.
+  constexpr std::size_t tree = sizeof(BoxGroup) / (8 * PhotonBlocks::width) + 1;
+  return PhotonList::bytes_per_photon(directions) + 2 * sizeof(OrderedPhoton) +
+         PhotonBlocks::bytes_per_photon(channels, directions) + tree;
+}
 int PhotonMap::channels() const {
   return data_->blocks.channels();
 }

@@ -1,14 +1,17 @@
 #include "render/bias_probe.h"
 
+#include "render/plan.h"
+
 #include <chrono>
 #include <cmath>
 
 namespace vdbeam {
 
-BiasProbe::BiasProbe(const EstimatorInput& input, const PixelWindow& window,
-                     const std::vector<std::size_t>& pixels, double share)
-    : path_(input), window_(window), image_width_(input.camera.width()), pixels_(pixels) {
-  const double wanted = share * window.width() * window.height();
+BiasProbe::BiasProbe(const Scene& scene, const EstimatorInput& input, const PixelRegion& window,
+                     const std::vector<std::size_t>& pixels)
+    : plan_(plan_paths(scene, input.world, input.camera)), path_(input.with(plan_)),
+      window_(window), image_width_(input.camera.width()), pixels_(pixels) {
+  const double wanted = scene.render.bias_rays * window.width() * window.height();
   const double period = static_cast<double>(pixels.size()) / std::max(wanted, 1.0);
   period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
 }

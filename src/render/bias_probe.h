@@ -9,16 +9,18 @@ namespace vdbeam {
 /// held against to tell its bias (Film::error_estimate). They never change the picture.
 class BiasProbe {
 public:
-  /// `pixels` are of the window, `share` of its pixels are probed per pass.
-  BiasProbe(const EstimatorInput& input, const PixelWindow& window,
-            const std::vector<std::size_t>& pixels, double share);
+  /// `input` is that of the estimator that is probed. `pixels` are of the window; of the window's
+  /// pixels the share render.bias_rays is probed per pass.
+  BiasProbe(const Scene& scene, const EstimatorInput& input, const PixelRegion& window,
+            const std::vector<std::size_t>& pixels);
 
   /// The pixels whose turn it is in this pass. A pure function of scene, seed, frame and pass.
   std::vector<ProbeValue> trace(int pass, RenderStatistics& statistics);
 
 private:
+  RenderPlan plan_; ///< of the path estimator
   PathEstimator path_;
-  PixelWindow window_;
+  PixelRegion window_;
   int image_width_;
   std::vector<std::size_t> pixels_;
   std::size_t period_; ///< passes until a pixel's next turn

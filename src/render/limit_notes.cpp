@@ -53,7 +53,7 @@ std::vector<std::string> limit_notes(const Scene& scene, const World& world,
     notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: its lit skin is "
                                 "thinner than single precision resolves",
                                 depth));
-  if (!plan.needs("photons"))
+  if (!plan.needs(Stage::photons))
     return notes;
   if (depth > deepest_for_photons)
     notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: few photons lie "

@@ -44,7 +44,7 @@ std::uint64_t granted_memory() {
 
 void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t granted) {
   const std::uint64_t photons = scene.render.photons.value_or(0);
-  if (plan.needs("photons") && (plan.photon_bytes > granted || photons > most_photons))
+  if (plan.needs(Stage::photons) && (plan.photon_bytes > granted || photons > most_photons))
     refuse(scene, fmt::format("render.photons: a map of {} photons", photons), plan.photon_bytes,
            granted, "ask for fewer photons and more passes, which give the same picture");
   if (plan.film_bytes > granted)

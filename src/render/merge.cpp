@@ -1,5 +1,5 @@
+#include "film/film_file.h"
 #include "render/error_record.h"
-#include "render/film_file.h"
 #include "report/image_metadata.h"
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
@@ -96,13 +96,14 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   image.matrices = header.matrices;
   for (const char* name : {"vdbeam:film", "vdbeam:arithmetic", "vdbeam:invalidValues"})
     image.metadata.erase(name);
+  image.numbers.erase("vdbeam:unbiased");
   image.metadata["vdbeam:passSet"] = format_frame_range(info.passes);
   image.metadata["vdbeam:stoppedBy"] = "passes";
   image.numbers["vdbeam:passes"] = film.passes();
   image.numbers["vdbeam:seconds"] = info.seconds;
   image.numbers["vdbeam:complete"] = 1;
   image.integers.insert({"vdbeam:passes", "vdbeam:complete"});
-  add_error_metadata(image, error_record(film, image.metadata["vdbeam:estimator"] == "path"));
+  add_error_metadata(image, error_record(film, info.unbiased));
   return image;
 }
 

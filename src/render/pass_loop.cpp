@@ -32,7 +32,7 @@ std::uint64_t peak_memory() {
 /// How long a quick look may take.
 constexpr std::chrono::milliseconds quick_look_time{250};
 
-bool is_finished(const PassImage& pass, const PixelWindow& window) {
+bool is_finished(const PassImage& pass, const PixelRegion& window) {
   constexpr int tile = PassImage::tile_width;
   for (int y = window.y0 / tile * tile; y < window.y1; y += tile)
     for (int x = window.x0 / tile * tile; x < window.x1; x += tile)
@@ -42,7 +42,7 @@ bool is_finished(const PassImage& pass, const PixelWindow& window) {
 }
 
 /// The part of a pass that lies in the window.
-PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
+PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
   PassImage part;
   part.resize(window.width(), window.height(), !pass.emission.empty());
   for (int y = 0; y < window.height(); ++y) {
@@ -64,7 +64,7 @@ PassImage cut_out(const PassImage& pass, const PixelWindow& window) {
 
 } // namespace
 
-PassLoop::PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWindow& window,
+PassLoop::PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelRegion& window,
                    RenderResult& result)
     : scene_(scene), hooks_(hooks), window_(window),
       whole_(window.width() == scene.image.width && window.height() == scene.image.height),
@@ -154,7 +154,7 @@ void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
 /// Renders a quick look into the result's image, by way of the film that has no pass yet.
 void PassLoop::take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image) {
   input.stop = &stop;
-  fill_with_quick_look(input, image);
+  fill_with_quick_look(scene_, input, image);
   if (!whole_)
     image = cut_out(image, window_);
   clamp(image);
@@ -279,9 +279,7 @@ void PassLoop::resume() {
 }
 
 PassRecord PassLoop::estimate_errors() const {
-  const bool unbiased = !scene_.render.clamp && (scene_.render.estimator == EstimatorType::path ||
-                                                 !result_.plan.needs("photons"));
-  return error_record(film_, unbiased);
+  return error_record(film_, result_.plan.unbiased);
 }
 
 void PassLoop::record() {
@@ -368,6 +366,7 @@ FilmFileInfo PassLoop::file_info() const {
   std::iota(info.passes.begin(), info.passes.end(), first_pass_);
   info.invalid_values = film_.invalid_values();
   info.seconds = seconds();
+  info.unbiased = result_.plan.unbiased;
   return info;
 }
 

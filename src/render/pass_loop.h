@@ -1,8 +1,8 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "film/film_file.h"
 #include "render/bias_probe.h"
-#include "render/film_file.h"
 
 #include <chrono>
 
@@ -12,7 +12,7 @@ namespace vdbeam {
 /// signals, checkpoints, snapshots.
 class PassLoop {
 public:
-  PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelWindow& window,
+  PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelRegion& window,
            RenderResult& result);
 
   /// What the estimator's input is to have as its `stop`.
@@ -53,7 +53,7 @@ private:
 
   const Scene& scene_;
   const RenderHooks& hooks_;
-  PixelWindow window_;
+  PixelRegion window_;
   bool whole_;
   RenderResult& result_;
   Film film_;

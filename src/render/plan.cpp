@@ -1,98 +1,18 @@
 #include "render/plan.h"
 
+#include "estimators/camera_ray.h"
 #include "film/film.h"
-#include "transport/camera.h"
-#include "volume/vdb_reader.h"
+#include "photonmap/photon_map.h"
+#include "render/plan_needs.h"
+#include "volume/emission_field.h"
 
 #include <limits>
 
 namespace vdbeam {
-
 namespace {
 
-bool is_grey(const Rgb& c) {
-  return c.x == c.y && c.y == c.z;
-}
-
-/// What of the scene decides the stages.
-struct Needs {
-  bool medium = false, visible = false, scatters = false, photons = false, first_flight = false;
-  bool shadow_rays = false, anisotropic = false, chromatic = false, coloured = false;
-  bool environment = false, several_bounces = true;
-  bool glows = false, glow_visible = false;
-};
-
-/// Light that comes smoothly from all around: escaping rays find it as well as shadow rays would.
-bool is_smooth_sky(const LightSettings& light) {
-  return light.type == LightType::sky ||
-         (light.type == LightType::environment && light.image.empty());
-}
-
-/// Whether single scattering of a light is left to photons (the rule that the renderer follows).
-bool left_to_photons(const LightSettings& light, const RenderSettings& render) {
-  DirectLight direct = light.direct.value_or(render.direct);
-  if (direct == DirectLight::automatic)
-    direct = is_smooth_sky(light) ? DirectLight::photons : DirectLight::sampled;
-  return direct == DirectLight::photons;
-}
-
-Needs find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
-  Needs needs;
-  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    const VolumeSettings& volume = scene.volumes[i];
-    if (volumes[i].glowing_voxels > 0) {
-      needs.glows = true;
-      needs.glow_visible = needs.glow_visible || volumes[i].in_view;
-      needs.coloured =
-          needs.coloured || !volume.emission.temperature.empty() || !is_grey(volume.emission.color);
-    }
-    if (volumes[i].empty || !(volume.extinction > 0))
-      continue;
-    needs.medium = true;
-    needs.visible = needs.visible || volumes[i].in_view;
-    needs.scatters = needs.scatters || max_component(volume.albedo) > 0;
-    needs.anisotropic = needs.anisotropic || volume.phase.type == PhaseType::rayleigh ||
-                        volume.phase.type == PhaseType::mie || volume.phase.g != 0 ||
-                        (volume.phase.type == PhaseType::two_lobe && volume.phase.g2 != 0);
-    needs.chromatic = needs.chromatic || !is_grey(volume.extinction_scale);
-    needs.coloured = needs.coloured || !is_grey(volume.albedo);
-  }
-  needs.several_bounces = !scene.render.max_bounces || *scene.render.max_bounces > 1;
-  for (const LightSettings& light : scene.lights) {
-    const bool environment = light.type == LightType::environment || light.type == LightType::sky;
-    needs.environment = needs.environment || environment;
-    const Rgb& colour = light.type == LightType::distant ? light.irradiance
-                        : environment                    ? light.radiance
-                                                         : light.intensity;
-    needs.coloured =
-        needs.coloured || !is_grey(colour) || !light.image.empty() || light.type == LightType::sky;
-    const bool escaping_rays = is_smooth_sky(light);
-    if (scene.render.estimator == EstimatorType::path ? escaping_rays
-                                                      : left_to_photons(light, scene.render))
-      needs.first_flight = true;
-    else
-      needs.shadow_rays = true;
-  }
-  // What glows shines on what scatters; its photons need no shadow rays.
-  if (scene.render.estimator != EstimatorType::path)
-    needs.first_flight = needs.first_flight || needs.glows;
-  needs.coloured = needs.coloured || needs.chromatic;
-  const bool photon_estimator = scene.render.estimator != EstimatorType::path;
-  const bool bounces = !scene.render.max_bounces || *scene.render.max_bounces > 0;
-  const bool lit = !scene.lights.empty() || needs.glows;
-  needs.scatters = needs.scatters && needs.visible && lit && bounces;
-  needs.photons =
-      photon_estimator && needs.scatters && (needs.several_bounces || needs.first_flight);
-  needs.shadow_rays = needs.shadow_rays && needs.scatters;
-  return needs;
-}
-
-/// The largest number stands for whatever does not fit in 64 bits.
-std::uint64_t photon_memory(std::uint64_t photons, bool coloured) {
-  const std::uint64_t bytes = coloured ? 110 : 90;
-  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
-  return photons > most / bytes ? most : photons * bytes;
-}
+/// Photons of a pass where their number is chosen by the estimator.
+constexpr std::uint64_t usual_photons = 400000;
 
 std::string first_reason(std::initializer_list<std::pair<bool, const char*>> reasons) {
   for (const auto& [applies, reason] : reasons)
@@ -101,149 +21,179 @@ std::string first_reason(std::initializer_list<std::pair<bool, const char*>> rea
   return "the scene uses it";
 }
 
+/// The rules, one group of stages after the other. A stage that the estimator cannot run is left
+/// out, whatever the scene.
+class Planner {
+public:
+  Planner(const Scene& scene, const EstimatorKind& estimator, const PlanNeeds& needs)
+      : scene_(scene), estimator_(estimator), needs_(needs),
+        no_scattering_(needs.medium && !needs.visible
+                           ? out_of_view
+                           : "nothing scatters: albedo 0, no light, or no bounces") {}
+
+  std::vector<PlanStage> plan() {
+    add_medium();
+    add_photons();
+    add_map();
+    add_camera_rays();
+    add_gathering();
+    add_bias();
+    add(Stage::environment, needs_.surrounded,
+        needs_.surrounded ? "a light surrounds the scene" : "no light surrounds the scene");
+    return std::move(stages_);
+  }
+
+private:
+  static constexpr const char* out_of_view = "the camera sees no medium";
+  static constexpr const char* no_medium = "no volume has any density";
+  static constexpr const char* no_photons = "no photons";
+  static constexpr const char* other_estimator = "another estimator";
+
+  void add(Stage stage, bool needed, const std::string& reason) {
+    stages_.push_back({stage, needed, reason});
+  }
+  bool runs(Stage stage) const { return estimator_.stages.contains(stage); }
+
+  void add_medium() {
+    add(Stage::read, !scene_.volumes.empty(),
+        scene_.volumes.empty() ? "no volumes"
+        : needs_.glows         ? "density and emission grids only"
+                               : "density grids only");
+    add(Stage::majorants, needs_.medium, needs_.medium ? "the medium is not empty" : no_medium);
+  }
+
+  void add_photons() {
+    const RenderSettings& render = scene_.render;
+    const bool sees = runs(Stage::photon_importance);
+    const bool by_view = render.thinning != PhotonThinning::even && !(render.keep > 0);
+    add(Stage::photons, needs_.photons,
+        first_reason({{!needs_.scatters, no_scattering_},
+                      {!runs(Stage::photons), "the estimator shoots none"},
+                      {!needs_.photons, "single bounce, all by shadow rays"}}));
+    const bool importance = needs_.photons && sees && by_view;
+    add(Stage::photon_importance, importance,
+        first_reason({{!needs_.photons, no_photons},
+                      {!sees, "the estimator stores photons whatever the camera sees"},
+                      {!by_view, "photons are stored evenly, as asked for"}}));
+    // Where photons may serve frames with other views, kernels must not depend on the view either.
+    const bool pilot = importance && runs(Stage::kernel_pilot) &&
+                       render.kernel == KernelRadius::adaptive && render.neighbours == 0 &&
+                       render.store == PhotonStore::fluence;
+    add(Stage::kernel_pilot, pilot,
+        first_reason({{pilot, "kernels are tried on a few photon maps, unless photons are few"},
+                      {!needs_.photons, no_photons},
+                      {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"},
+                      {render.neighbours > 0, "render.neighbours is given"},
+                      {render.store != PhotonStore::fluence, "it needs fluence photons"},
+                      {true, "photons do not depend on the view"}}));
+  }
+
+  void add_map() {
+    add(Stage::map, needs_.photons, needs_.photons ? "photons are gathered" : no_photons);
+    const bool fixed = scene_.render.kernel == KernelRadius::fixed;
+    add(Stage::neighbours, needs_.photons && !fixed,
+        first_reason({{!needs_.photons, no_photons}, {fixed, "the kernel's radius is fixed"}}));
+    add(Stage::photon_directions, needs_.photons && needs_.anisotropic,
+        first_reason({{!needs_.photons, no_photons},
+                      {!needs_.anisotropic, "all phase functions are isotropic"}}));
+    add(Stage::photon_color, needs_.photons && needs_.colored,
+        first_reason({{!needs_.photons, no_photons}, {!needs_.colored, "all colours are grey"}}));
+  }
+
+  void add_camera_rays() {
+    add(Stage::spectral_tracking, needs_.scatters && needs_.chromatic,
+        needs_.chromatic ? "extinction differs between channels" : "extinction is grey");
+    add(Stage::depth_profiles, needs_.visible,
+        first_reason({{!needs_.medium, no_medium}, {!needs_.visible, out_of_view}}));
+    add(Stage::emission, needs_.glow_visible,
+        first_reason({{!needs_.glows, "no volume glows"},
+                      {!needs_.glow_visible, "the camera sees nothing of what glows"},
+                      {true, "a volume glows"}}));
+    add(Stage::shadow_rays, needs_.shadow_rays(),
+        first_reason(
+            {{!needs_.scatters, no_scattering_},
+             {!needs_.shadow_rays(), "every light is left to photons or to escaping rays"}}));
+  }
+
+  void add_gathering() {
+    for (const Stage stage : {Stage::beam_query, Stage::march})
+      add(stage, needs_.photons && runs(stage),
+          first_reason({{!needs_.photons, no_photons}, {!runs(stage), other_estimator}}));
+    const bool paths = runs(Stage::paths);
+    add(Stage::paths, needs_.scatters && paths,
+        first_reason({{!paths, other_estimator}, {!needs_.scatters, no_scattering_}}));
+  }
+
+  void add_bias() {
+    const bool asked = scene_.render.bias_rays > 0;
+    add(Stage::bias, needs_.photons && asked && runs(Stage::bias),
+        first_reason(
+            {{!needs_.photons, no_photons},
+             {!asked, "render.bias_rays is 0"},
+             {true, "kernels blur: some rays are followed by path tracing to tell how much"}}));
+  }
+
+  const Scene& scene_;
+  const EstimatorKind& estimator_;
+  const PlanNeeds& needs_;
+  const char* no_scattering_;
+  std::vector<PlanStage> stages_;
+};
+
+std::uint64_t volume_memory(const std::vector<VolumeFacts>& volumes) {
+  std::uint64_t bytes = 0;
+  for (const VolumeFacts& volume : volumes)
+    bytes += DensityField::bytes_of_voxels(volume.active_voxels) +
+             EmissionField::bytes_of_voxels(volume.glowing_voxels);
+  return bytes;
+}
+
+/// The largest number stands for whatever does not fit in 64 bits.
+std::uint64_t photon_memory(std::uint64_t photons, int channels, bool directions) {
+  const std::uint64_t bytes = PhotonMap::build_bytes_per_photon(channels, directions);
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  return photons > most / bytes ? most : photons * bytes;
+}
+
 } // namespace
 
 RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
-  const Needs needs = find_needs(scene, volumes);
-  const RenderSettings& render = scene.render;
-  const bool path = render.estimator == EstimatorType::path;
+  const EstimatorKind& estimator = estimator_kind(scene.render.estimator);
+  const PlanNeeds needs = find_needs(scene, volumes, estimator);
   RenderPlan plan;
-  const auto add = [&plan](const char* name, bool needed, const std::string& reason) {
-    plan.stages.push_back({name, needed, reason});
-  };
-  const char* const no_medium = "no volume has any density";
-  const char* const out_of_view = "the camera sees no medium";
-  const char* const no_scattering = needs.medium && !needs.visible
-                                        ? out_of_view
-                                        : "nothing scatters: albedo 0, no light, or no bounces";
-  add("read", !scene.volumes.empty(),
-      scene.volumes.empty() ? "no volumes"
-      : needs.glows         ? "density and emission grids only"
-                            : "density grids only");
-  add("majorants", needs.medium, needs.medium ? "the medium is not empty" : no_medium);
-  add("surfaces", false, "no surfaces in the scene");
-  add("photons", needs.photons,
-      first_reason({{!needs.scatters, no_scattering},
-                    {path, "the path estimator shoots none"},
-                    {!needs.photons, "single bounce, all by shadow rays"}}));
-  const bool beam = render.estimator == EstimatorType::beam;
-  const bool by_view = beam && render.thinning != PhotonThinning::even && !(render.keep > 0);
-  add("photon importance", needs.photons && by_view,
-      first_reason({{!needs.photons, "no photons"},
-                    {!beam, "only beam knows where its rays see photons"},
-                    {!by_view, "photons are kept evenly, as asked for"}}));
-  add("map", needs.photons, needs.photons ? "photons are gathered" : "no photons");
-  add("neighbours", needs.photons && render.kernel == KernelRadius::adaptive,
-      first_reason({{!needs.photons, "no photons"},
-                    {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"}}));
-  add("photon directions", needs.photons && needs.anisotropic,
-      first_reason({{!needs.photons, "no photons"},
-                    {!needs.anisotropic, "all phase functions are isotropic"}}));
-  add("photon colour", needs.photons && needs.coloured,
-      first_reason({{!needs.photons, "no photons"}, {!needs.coloured, "all colours are grey"}}));
-  add("spectral tracking", needs.scatters && needs.chromatic,
-      needs.chromatic ? "extinction differs between channels" : "extinction is grey");
-  add("depth profiles", needs.visible,
-      first_reason({{!needs.medium, no_medium}, {!needs.visible, out_of_view}}));
-  add("emission", needs.glow_visible,
-      first_reason({{!needs.glows, "no volume glows"},
-                    {!needs.glow_visible, "the camera sees nothing of what glows"},
-                    {true, "a volume glows"}}));
-  add("shadow rays", needs.shadow_rays,
-      first_reason({{!needs.scatters, no_scattering},
-                    {!needs.shadow_rays, "every light is left to photons or to escaping rays"}}));
-  add("beam query", needs.photons && beam,
-      first_reason({{!needs.photons, "no photons"}, {!beam, "another estimator"}}));
-  add("march", needs.photons && render.estimator == EstimatorType::march,
-      first_reason({{!needs.photons, "no photons"},
-                    {render.estimator != EstimatorType::march, "another estimator"}}));
-  add("paths", path && needs.scatters,
-      first_reason({{!path, "another estimator"}, {!needs.scatters, no_scattering}}));
-  add("bias", needs.photons && render.bias_rays > 0,
-      needs.photons && render.bias_rays > 0
-          ? "kernels blur: some rays are followed by path tracing to tell how much"
-          : first_reason({{!needs.photons, "no photons"}, {true, "render.bias_rays is 0"}}));
-  add("environment", needs.environment,
-      needs.environment ? "a light surrounds the scene" : "no environment light");
-
-  constexpr std::uint64_t bytes_per_voxel = 6; // a brick of 9^3 floats per 8^3 voxels
-  for (const VolumeFacts& volume : volumes)
-    plan.volume_bytes +=
-        volume.active_voxels * bytes_per_voxel + volume.glowing_voxels * 3 * bytes_per_voxel;
+  plan.stages = Planner(scene, estimator, needs).plan();
+  plan.shadow_ray_lights = needs.shadow_ray_lights;
+  plan.unbiased =
+      !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
+  plan.volume_bytes = volume_memory(volumes);
   if (needs.photons)
-    plan.photon_bytes = photon_memory(render.photons.value_or(400000), needs.coloured);
+    plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
+                                      needs.colored ? 3 : 1, needs.anisotropic);
   plan.film_bytes = film_memory(scene.image, scene.image.width, scene.image.height, scene.glows());
   return plan;
+}
+
+std::vector<VolumeFacts> volume_facts(const World& world, const Camera& camera) {
+  std::vector<VolumeFacts> facts;
+  for (std::size_t i = 0; i < world.active_voxels.size(); ++i) {
+    const std::uint64_t voxels = world.active_voxels[i];
+    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera), world.glowing_voxels[i]});
+  }
+  return facts;
+}
+
+RenderPlan plan_paths(Scene scene, const World& world, const Camera& camera) {
+  scene.render.estimator = EstimatorType::path;
+  return plan_stages(scene, volume_facts(world, camera));
 }
 
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows) {
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
-  const std::uint64_t pass = glows ? 56 : 44, developed = glows ? 72 : 60;
-  return pass * pixels(image.width, image.height) +
-         (Film::bytes_per_pixel(glows) + developed) * pixels(width, height);
-}
-
-namespace {
-
-/// World bounds of all that a grid can make visible: a border voxel ramps to 0 over one voxel.
-Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
-  Affine placed;
-  placed.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
-  placed.translation = {m[3], m[7], m[11]};
-  const Affine map = placed.after(grid.index_to_world);
-  const Vec3d lower = Vec3d(grid.index_lower) - Vec3d(1),
-              upper = Vec3d(grid.index_upper) + Vec3d(1);
-  Boxd bounds;
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.extend(map.point({corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
-                             corner & 4 ? upper.z : lower.z}));
-  return bounds;
-}
-
-} // namespace
-
-namespace {
-
-/// Voxels of the grids that a volume's emission is made from, as their headers say; 0 where one of
-/// them is empty.
-std::uint64_t count_glowing_voxels(const VolumeSettings& volume, Boxd& bounds) {
-  std::uint64_t voxels = 0;
-  if (!volume.glows())
-    return voxels;
-  for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
-    if (name.empty())
-      continue;
-    const GridSummary grid = read_grid_header(volume.file, name);
-    if (grid.active_voxels == 0)
-      return 0;
-    voxels += grid.active_voxels;
-    bounds.extend(visible_bounds(grid, volume.transform));
-  }
-  return voxels;
-}
-
-} // namespace
-
-RenderPlan make_plan(const Scene& scene) {
-  std::vector<VolumeFacts> facts;
-  Boxd bounds;
-  for (const VolumeSettings& volume : scene.volumes) {
-    VolumeFacts fact{true, 0};
-    if (volume.needs_density()) {
-      const GridSummary grid = read_grid_header(volume.file, volume.density);
-      fact = {grid.active_voxels == 0, grid.active_voxels};
-      if (!fact.empty)
-        bounds.extend(visible_bounds(grid, volume.transform));
-    }
-    fact.glowing_voxels = count_glowing_voxels(volume, bounds);
-    facts.push_back(fact);
-  }
-  const Camera camera(scene.camera, scene.image, {});
-  for (VolumeFacts& fact : facts)
-    fact.in_view = (!fact.empty || fact.glowing_voxels > 0) && camera.may_see(bounds);
-  return plan_stages(scene, facts);
+  return PassImage::bytes_per_pixel(glows) * pixels(image.width, image.height) +
+         (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows)) *
+             pixels(width, height);
 }
 
 } // namespace vdbeam

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "transport/world.h"
 #include "vdbeam/render.h"
 
 namespace vdbeam {
@@ -11,6 +12,13 @@ struct VolumeFacts {
   bool in_view = true;              ///< false where no camera ray can meet it
   std::uint64_t glowing_voxels = 0; ///< of its emission grids; 0: it does not glow
 };
+
+/// The same of a world that is built already.
+std::vector<VolumeFacts> volume_facts(const World& world, const Camera& camera);
+
+/// What the path estimator would do about the frame: quick looks are made by it, and the bias of
+/// the other estimators is measured against it.
+RenderPlan plan_paths(Scene scene, const World& world, const Camera& camera);
 
 /// The stages that the scene needs, each with the reason why it runs or is left out, and estimates
 /// of the memory that they take. A pure function of its arguments.

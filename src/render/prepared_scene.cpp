@@ -25,9 +25,7 @@ std::string file_identity(const std::string& path) {
 std::string world_settings(const Scene& scene) {
   std::string text;
   for (const SceneKey& key : scene_keys()) {
-    const bool up = key.section == SceneSection::camera && key.name == "up";
-    if (!key.get || key.section == SceneSection::image ||
-        (key.section == SceneSection::camera && !up))
+    if (!key.get || !key.changes_world)
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
       const std::string value = key.format(key.get(scene, i));
@@ -70,7 +68,7 @@ std::string emission_identity(const VolumeSettings& volume) {
   Scene scene;
   scene.volumes.push_back(volume);
   for (const SceneKey& key : scene_keys())
-    if (key.section == SceneSection::emission && key.name != "scale" && key.name != "color")
+    if (key.section == SceneSection::emission && !key.scales_emission)
       text += fmt::format("|{}", key.format(key.get(scene, 0)));
   return text;
 }
@@ -124,8 +122,7 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
     emissions.push_back(take_emission(volume, previous, read));
     read.emission = emissions.back();
     // As build_world leaves volumes out.
-    const bool empty = grids.back().field.empty() ||
-                       !(volume.extinction * max_component(volume.extinction_scale) > 0);
+    const bool empty = grids.back().field.empty() || !volume.absorbs_or_scatters();
     read.index = empty ? -1 : kept++;
     if (empty && !grids.back().field.empty())
       read.identity.clear(); // its field is not kept

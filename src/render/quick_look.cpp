@@ -1,6 +1,7 @@
 #include "render/quick_look.h"
 
 #include "estimators/path.h"
+#include "render/plan.h"
 
 #include <tbb/parallel_for.h>
 
@@ -26,7 +27,7 @@ void copy_pixel(const PassImage& from, std::size_t source, PassImage& to, std::s
 /// Which pixels of the window have a value.
 class KnownPixels {
 public:
-  KnownPixels(const PixelWindow& window, const PassImage& image)
+  KnownPixels(const PixelRegion& window, const PassImage& image)
       : window_(window), known_(static_cast<std::size_t>(window.width()) * window.height()) {
     for (int y = window.y0; y < window.y1; ++y)
       for (int x = window.x0; x < window.x1; ++x)
@@ -42,12 +43,12 @@ private:
            static_cast<std::size_t>(x - window_.x0);
   }
 
-  PixelWindow window_;
+  PixelRegion window_;
   std::vector<std::uint8_t> known_;
 };
 
 /// Pixels of the grid of this spacing that have no value yet.
-std::vector<std::size_t> missing_pixels(const PixelWindow& window, int spacing, int width,
+std::vector<std::size_t> missing_pixels(const PixelRegion& window, int spacing, int width,
                                         const KnownPixels& known) {
   std::vector<std::size_t> pixels;
   for (int y = window.y0; y < window.y1; y += spacing)
@@ -59,7 +60,7 @@ std::vector<std::size_t> missing_pixels(const PixelWindow& window, int spacing, 
 }
 
 /// The nearest pixel of the finest grid on which there is one with a value.
-void fill_from_neighbours(const PixelWindow& window, int finest, const KnownPixels& known,
+void fill_from_neighbours(const PixelRegion& window, int finest, const KnownPixels& known,
                           PassImage& image) {
   const auto anchor = [](int x, int begin, int end, int spacing) {
     const int nearest = begin + (x - begin + spacing / 2) / spacing * spacing;
@@ -86,12 +87,13 @@ void fill_from_neighbours(const PixelWindow& window, int finest, const KnownPixe
 
 } // namespace
 
-void fill_with_quick_look(const EstimatorInput& input, PassImage& image) {
+void fill_with_quick_look(const Scene& scene, const EstimatorInput& input, PassImage& image) {
   const Camera& camera = input.camera;
   if (image.width != camera.width() || image.height != camera.height())
     image.resize(camera.width(), camera.height(), !input.world.medium.emitters.empty());
   KnownPixels known(input.window, image);
-  const PathEstimator path(input);
+  const RenderPlan plan = plan_paths(scene, input.world, camera);
+  const PathEstimator path(input.with(plan));
   int spacing = coarsest_spacing;
   for (; spacing >= 1 && !input.stopped(); spacing /= 2) {
     const std::vector<std::size_t> pixels =

@@ -19,16 +19,13 @@
 namespace vdbeam {
 namespace {
 
-PixelWindow choose_window(const ImageSettings& image, const std::optional<PixelRegion>& region) {
-  PixelWindow window{0, 0, image.width, image.height};
-  if (!region)
-    return window;
-  window = {region->x0, region->y0, region->x1, region->y1};
+PixelRegion choose_window(const ImageSettings& image, const std::optional<PixelRegion>& region) {
+  const PixelRegion window = region.value_or(PixelRegion{0, 0, image.width, image.height});
   if (window.empty() || window.x0 < 0 || window.y0 < 0 || window.x1 > image.width ||
       window.y1 > image.height)
     throw InputError(fmt::format("the region {},{},{},{} must hold a pixel and lie within the "
                                  "picture of {} x {}",
-                                 region->x0, region->y0, region->x1, region->y1, image.width,
+                                 window.x0, window.y0, window.x1, window.y1, image.width,
                                  image.height));
   return window;
 }
@@ -53,7 +50,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
                     const RenderHooks& hooks) {
   validate_scene(scene);
   check_range(hooks.pass_range);
-  const PixelWindow window = choose_window(scene.image, hooks.region);
+  const PixelRegion window = choose_window(scene.image, hooks.region);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
   RenderResult result;
@@ -67,13 +64,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
     note(line);
   result.statistics.read = prepared->seconds_read;
   result.statistics.prepare = prepared->seconds_build;
-  std::vector<VolumeFacts> facts;
   const Camera camera(scene.camera, scene.image, world.space);
-  for (std::size_t i = 0; i < world.active_voxels.size(); ++i) {
-    const std::uint64_t voxels = world.active_voxels[i];
-    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera), world.glowing_voxels[i]});
-  }
-  result.plan = plan_stages(scene, facts);
+  result.plan = plan_stages(scene, volume_facts(world, camera));
   result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
   check_memory(scene, result.plan, granted_memory());
   for (const std::string& line : limit_notes(scene, world, result.plan))
@@ -83,13 +75,13 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
   PassLoop loop(scene, hooks, window, result);
   const EstimatorInput input{
-      world, camera, key, window, &loop.stop_token(), prepared->photons.get()};
+      world, camera, result.plan, key, window, &loop.stop_token(), prepared->photons.get()};
   loop.show_quick_look(input);
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   std::optional<BiasProbe> probe;
-  if (result.plan.needs("bias"))
-    probe.emplace(input, window, loop.probe_pixels(), scene.render.bias_rays);
+  if (result.plan.needs(Stage::bias))
+    probe.emplace(scene, input, window, loop.probe_pixels());
   result.statistics.pilot =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   loop.run(input, *estimator, probe ? &*probe : nullptr);

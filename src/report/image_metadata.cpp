@@ -104,7 +104,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   const std::filesystem::path absolute = std::filesystem::absolute(scene.path, error);
   image.metadata["vdbeam:scene"] = error ? scene.path : absolute.lexically_normal().string();
   image.metadata["vdbeam:sceneHash"] = hash;
-  image.metadata["vdbeam:estimator"] = enum_name(scene.render.estimator);
+  image.metadata["vdbeam:estimator"] = std::string(scene.render.estimator.name);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   image.numbers["vdbeam:frame"] = frame;
   if (result.quick_look) {

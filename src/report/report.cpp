@@ -106,7 +106,8 @@ Json settings_json(const Scene& scene) {
 Json plan_json(const RenderPlan& plan) {
   Json stages = Json::array();
   for (const PlanStage& stage : plan.stages)
-    stages.push_back({{"name", stage.name}, {"needed", stage.needed}, {"reason", stage.reason}});
+    stages.push_back(
+        {{"name", stage_name(stage.stage)}, {"needed", stage.needed}, {"reason", stage.reason}});
   return {{"stages", std::move(stages)},
           {"memory",
            {{"volumes", plan.volume_bytes},

@@ -1,10 +1,10 @@
 #include "report/versions.h"
 
+#include "image/image_readers.h"
 #include "photonmap/photon_map.h"
 #include "vdbeam/version.h"
 #include "volume/vdb_reader.h"
 
-#include <OpenEXR/OpenEXRConfig.h>
 #include <tbb/version.h>
 
 namespace vdbeam {
@@ -15,7 +15,7 @@ std::vector<std::pair<std::string, std::string>> component_versions() {
   return {{"vdbeam", version()},
           {"OpenVDB", vdb},
           {"oneTBB", TBB_runtime_version()},
-          {"OpenEXR", OPENEXR_VERSION_STRING},
+          {"OpenEXR", exr_library_version()},
           {"SIMD", simd_target()}};
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "estimators/estimator_table.h"
+#include "lights/light_table.h"
 #include "scene/scene_enums.h"
 #include "scene/scene_keys.h"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace vdbeam {
@@ -26,9 +29,56 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.render;
 }
 
+/// A choice among the rows of a table.
+template <class T>
+constexpr bool is_kind = std::is_same_v<T, LightType> || std::is_same_v<T, EstimatorType>;
+template <class T>
+constexpr bool is_choice = std::is_enum_v<T> || is_kind<T>;
+
+template <class T>
+auto kind_table() {
+  if constexpr (std::is_same_v<T, LightType>)
+    return light_table();
+  else
+    return estimator_table();
+}
+
+/// The words that a scene file may say.
+template <class T>
+std::vector<std::string> choice_names() {
+  if constexpr (is_kind<T>) {
+    std::vector<std::string> names;
+    for (const auto* kind : kind_table<T>())
+      names.emplace_back(kind->name);
+    return names;
+  } else {
+    return enum_names<T>();
+  }
+}
+
+template <class T>
+std::vector<std::string> kind_docs() {
+  std::vector<std::string> docs;
+  for (const auto* kind : kind_table<T>())
+    docs.emplace_back(kind->help);
+  return docs;
+}
+
+/// Names of the rows that list a key; none for a key that every row takes.
+template <class T>
+std::vector<std::string> kinds_with_key(std::string_view key) {
+  std::vector<std::string> names;
+  for (const auto* kind : kind_table<T>())
+    if (std::find(kind->keys.begin(), kind->keys.end(), key) != kind->keys.end())
+      names.emplace_back(kind->name);
+  return names;
+}
+
 template <class T>
 KeyValue to_key_value(const T& x) {
-  if constexpr (std::is_enum_v<T>)
+  if constexpr (is_kind<T>)
+    return std::string(x.name);
+  else if constexpr (std::is_enum_v<T>)
     return enum_name(x);
   else if constexpr (std::is_integral_v<T>)
     return static_cast<std::int64_t>(x);
@@ -49,7 +99,11 @@ KeyValue to_key_value(const std::optional<T>& x) {
 
 template <class T>
 void assign(T& target, const KeyValue& value) {
-  if constexpr (std::is_enum_v<T>)
+  if constexpr (is_kind<T>) {
+    for (const auto* kind : kind_table<T>())
+      if (kind->name == std::get<std::string>(value))
+        target.name = kind->name;
+  } else if constexpr (std::is_enum_v<T>)
     target = enum_value<T>(std::get<std::string>(value));
   else if constexpr (std::is_integral_v<T>)
     target = static_cast<T>(std::get<std::int64_t>(value));

@@ -30,6 +30,20 @@ std::string values_text(const SceneKey& key, const char* quote) {
   return text;
 }
 
+/// "distant and spot: " for a key that only they take, "" for one that all take.
+std::string owners(const SceneKey& key) {
+  const std::vector<std::string>& names = key.types.empty() ? key.estimators : key.types;
+  return names.empty() ? "" : join_words(names, "and") + ": ";
+}
+
+/// "; `beam`: the beam radiance estimate ..." for choices that have a clause each.
+std::string choices_text(const SceneKey& key) {
+  std::string text;
+  for (std::size_t i = 0; i < key.choice_docs.size(); ++i)
+    text += fmt::format("; `{}`: {}", key.choices[i], key.choice_docs[i]);
+  return text;
+}
+
 } // namespace
 
 std::string key_table_markdown(SceneSection section) {
@@ -37,11 +51,10 @@ std::string key_table_markdown(SceneSection section) {
   for (const SceneKey& key : scene_keys()) {
     if (key.section != section)
       continue;
-    const std::string types = key.types.empty() ? "" : join_words(key.types, "and") + ": ";
     const std::string standard =
         key.required ? "required" : fmt::format("`{}`", key.default_text());
-    text += fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name, values_text(key, "`"),
-                        key.unit, standard, types, key.doc);
+    text += fmt::format("| `{}` | {} | {} | {} | {}{}{} |\n", key.name, values_text(key, "`"),
+                        key.unit, standard, owners(key), key.doc, choices_text(key));
   }
   return text;
 }
@@ -56,10 +69,11 @@ std::string key_table_text() {
     for (const SceneKey& key : scene_keys()) {
       if (key.section != section)
         continue;
-      const std::string types = key.types.empty() ? "" : join_words(key.types, "and") + ": ";
       const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
-      text += fmt::format("  {:<17} {}{}\n{:20}{}{}, default {}\n", key.name, types, key.doc, "",
-                          values_text(key, ""), unit, key.default_text());
+      text += fmt::format("  {:<17} {}{}\n{:20}{}{}, default {}\n", key.name, owners(key), key.doc,
+                          "", values_text(key, ""), unit, key.default_text());
+      for (std::size_t i = 0; i < key.choice_docs.size(); ++i)
+        text += fmt::format("{:20}{}: {}\n", "", key.choices[i], key.choice_docs[i]);
     }
   }
   return text;

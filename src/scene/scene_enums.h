@@ -31,27 +31,11 @@ struct EnumNames<EmissionLaw> {
        {EmissionLaw::none, "none"}}};
 };
 template <>
-struct EnumNames<LightType> {
-  static constexpr std::array<std::pair<LightType, std::string_view>, 5> table{
-      {{LightType::distant, "distant"},
-       {LightType::point, "point"},
-       {LightType::spot, "spot"},
-       {LightType::environment, "environment"},
-       {LightType::sky, "sky"}}};
-};
-template <>
 struct EnumNames<DirectLight> {
   static constexpr std::array<std::pair<DirectLight, std::string_view>, 3> table{
       {{DirectLight::automatic, "auto"},
        {DirectLight::sampled, "sampled"},
        {DirectLight::photons, "photons"}}};
-};
-template <>
-struct EnumNames<EstimatorType> {
-  static constexpr std::array<std::pair<EstimatorType, std::string_view>, 3> table{
-      {{EstimatorType::beam, "beam"},
-       {EstimatorType::march, "march"},
-       {EstimatorType::path, "path"}}};
 };
 template <>
 struct EnumNames<PhotonStore> {

@@ -27,15 +27,10 @@ void add(ContentHash& hash, const KeyValue& value) {
       hash.add_number(std::bit_cast<std::uint64_t>(x + 0.0)); // -0 is 0
 }
 
-bool is_stop_rule(const SceneKey& key) {
-  return key.section == SceneSection::render &&
-         (key.name == "passes" || key.name == "time" || key.name == "target_error");
-}
-
 std::string hash_scene(const Scene& scene, bool with_stop_rule) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {
-    if (!key.get || !key.changes_picture || (!with_stop_rule && is_stop_rule(key)))
+    if (!key.get || !key.changes_picture || (!with_stop_rule && key.stop_rule))
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
       add(hash, key_path(key, i));

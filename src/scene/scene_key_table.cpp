@@ -16,7 +16,7 @@ struct Unwrapped<std::optional<T>> {
 
 template <class T>
 constexpr KeyKind kind_of() {
-  if constexpr (std::is_enum_v<T>)
+  if constexpr (is_choice<T>)
     return KeyKind::choice;
   else if constexpr (std::is_same_v<T, bool>)
     return KeyKind::boolean;
@@ -45,6 +45,10 @@ struct Entry {
   Entry& required() { return set(key.required, true); }
   Entry& one_for_all() { return set(key.one_for_all, true); }
   Entry& keeps_picture() { return set(key.changes_picture, false); }
+  Entry& stop_rule() { return set(key.stop_rule, true); }
+  Entry& always_written() { return set(key.always_written, true); }
+  Entry& keeps_world() { return set(key.changes_world, false); }
+  Entry& scales_emission() { return set(key.scales_emission, true); }
   Entry& at_least(double low) { return set(key.range.lower, low); }
   Entry& above(double low) { return at_least(low).set(key.range.lower_open, true); }
   Entry& within(double low, double high) { return set(key.range, {.lower = low, .upper = high}); }
@@ -89,8 +93,10 @@ public:
     entry.key.name = name;
     entry.key.doc = doc;
     entry.key.kind = kind_of<T>();
-    if constexpr (std::is_enum_v<T>)
-      entry.key.choices = enum_names<T>();
+    if constexpr (is_choice<T>)
+      entry.key.choices = choice_names<T>();
+    if constexpr (is_kind<T>)
+      entry.key.choice_docs = kind_docs<T>();
     entry.key.one_for_all = entry.key.kind == KeyKind::color;
     if constexpr (std::is_integral_v<T>)
       entry.key.range.upper = static_cast<double>(std::numeric_limits<T>::max());
@@ -104,24 +110,40 @@ private:
 
 void add_image_and_camera(Table& table) {
   table.section(SceneSection::image);
-  table.add("width", &ImageSettings::width, "width of the picture").unit("pixels").within(1, 65536);
+  table.add("width", &ImageSettings::width, "width of the picture")
+      .unit("pixels")
+      .within(1, 65536)
+      .always_written()
+      .keeps_world();
   table.add("height", &ImageSettings::height, "height of the picture")
       .unit("pixels")
-      .within(1, 65536);
+      .within(1, 65536)
+      .always_written()
+      .keeps_world();
 
   table
       .add("fps", &ImageSettings::fps,
            "frames per second, for the attributes framesPerSecond and timeCode of the image")
       .within(1, 1000)
       .absent("none")
-      .keeps_picture();
+      .keeps_picture()
+      .keeps_world();
 
   table.section(SceneSection::camera);
-  table.add("position", &CameraSettings::position, "where the camera stands").unit("world");
+  table.add("position", &CameraSettings::position, "where the camera stands")
+      .unit("world")
+      .always_written()
+      .keeps_world();
   table.add("look_at", &CameraSettings::look_at, "the point in the middle of the picture")
-      .unit("world");
-  table.add("up", &CameraSettings::up, "the direction that is up in the picture");
-  table.add("fov", &CameraSettings::fov, "vertical field of view").unit("degrees").inside(0, 180);
+      .unit("world")
+      .always_written()
+      .keeps_world();
+  table.add("up", &CameraSettings::up, "the direction that is up in the picture").always_written();
+  table.add("fov", &CameraSettings::fov, "vertical field of view")
+      .unit("degrees")
+      .inside(0, 180)
+      .always_written()
+      .keeps_world();
 }
 
 void add_volume(Table& table) {
@@ -130,14 +152,16 @@ void add_volume(Table& table) {
   table.add("file", &V::file, "the VDB; ####, %04d or $F4 stands for the frame number")
       .kind(KeyKind::file)
       .required();
-  table.add("density", &V::density, "name of the density grid");
+  table.add("density", &V::density, "name of the density grid").always_written();
   table.add("extinction", &V::extinction, "extinction coefficient where the density is 1")
       .unit("1 / world")
-      .at_least(0);
+      .at_least(0)
+      .always_written();
   table.add("extinction_scale", &V::extinction_scale, "factor of the extinction per channel")
       .at_least(0);
   table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
-      .within(0, 1);
+      .within(0, 1)
+      .always_written();
   table.add("transform", &V::transform,
             "row-major 3x4 matrix applied after the grid's own transform; excludes the next three");
   table.add_unbound<Vec3d>("translate", "moves the volume, after rotating it").unit("world");
@@ -175,62 +199,47 @@ void add_emission(Table& table) {
   table.add("reference", &E::reference, "temperature at which a black body's luminance is 1")
       .unit("kelvin")
       .within(100, 100000);
-  table.add("color", &E::color, "factor per channel").at_least(0);
+  table.add("color", &E::color, "factor per channel").at_least(0).scales_emission();
   table.add("scale", &E::scale, "radiance per world unit where all of the above are 1")
       .unit("radiance / world")
-      .at_least(0);
+      .at_least(0)
+      .scales_emission();
 }
 
 void add_light(Table& table) {
   using L = LightSettings;
   table.section(SceneSection::light);
   table.add("type", &L::type, "kind of light").required();
-  table.add("direction", &L::direction, "the way the light travels").types({"distant", "spot"});
+  table.add("direction", &L::direction, "the way the light travels").always_written();
   table.add("irradiance", &L::irradiance, "irradiance of a plane that faces the light")
       .unit("W / m^2")
       .at_least(0)
-      .types({"distant"});
+      .always_written();
   table.add("angular_radius", &L::angular_radius, "half angle of the light's disc (the sun: 0.27)")
       .unit("degrees")
-      .within(0, 90)
-      .types({"distant"});
-  table.add("position", &L::position, "where the light is").unit("world").types({"point", "spot"});
-  table.add("intensity", &L::intensity, "radiant intensity")
-      .unit("W / sr")
-      .at_least(0)
-      .types({"point", "spot"});
+      .within(0, 90);
+  table.add("position", &L::position, "where the light is").unit("world").always_written();
+  table.add("intensity", &L::intensity, "radiant intensity").unit("W / sr").at_least(0);
   table.add("cone_angle", &L::cone_angle, "half angle where the light ends")
       .unit("degrees")
-      .above_up_to(0, 90)
-      .types({"spot"});
+      .above_up_to(0, 90);
   table.add("cone_falloff", &L::cone_falloff, "width of the soft edge inside the cone")
       .unit("degrees")
-      .within(0, 90)
-      .types({"spot"});
+      .within(0, 90);
   table
       .add("radiance", &L::radiance,
            "radiance from everywhere; with an image or for a sky: factor of what follows")
       .unit("W / m^2 / sr")
       .at_least(0)
-      .types({"environment", "sky"});
-  table.add("zenith", &L::zenith, "radiance straight up")
-      .unit("W / m^2 / sr")
-      .at_least(0)
-      .types({"sky"});
-  table.add("horizon", &L::horizon, "radiance at the horizon")
-      .unit("W / m^2 / sr")
-      .at_least(0)
-      .types({"sky"});
+      .always_written();
+  table.add("zenith", &L::zenith, "radiance straight up").unit("W / m^2 / sr").at_least(0);
+  table.add("horizon", &L::horizon, "radiance at the horizon").unit("W / m^2 / sr").at_least(0);
   table.add("ground", &L::ground, "radiance of what lies below the horizon")
       .unit("W / m^2 / sr")
-      .at_least(0)
-      .types({"sky"});
+      .at_least(0);
   table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
-      .kind(KeyKind::file)
-      .types({"environment"});
-  table.add("rotation", &L::rotation, "turns the sky about the camera's up axis")
-      .unit("degrees")
-      .types({"environment"});
+      .kind(KeyKind::file);
+  table.add("rotation", &L::rotation, "turns the sky about the camera's up axis").unit("degrees");
   table.add("visible", &L::visible,
             "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
@@ -240,21 +249,25 @@ void add_stop_rule(Table& table) {
   using R = RenderSettings;
   table.add("passes", &R::passes, "passes to render; 64 where no limit at all is given")
       .at_least(1)
-      .absent("none");
+      .absent("none")
+      .always_written()
+      .stop_rule();
   table.add("time", &R::time, R"(rendering time, as a number or like "90s", "5m", "1h30m")")
       .kind(KeyKind::duration)
       .unit("seconds")
       .above(0)
-      .absent("none");
+      .absent("none")
+      .stop_rule();
   table.add("target_error", &R::target_error, "estimated error (MRSE) to reach")
       .above(0)
-      .absent("none");
+      .absent("none")
+      .stop_rule();
 }
 
 void add_render(Table& table) {
   using R = RenderSettings;
   table.section(SceneSection::render);
-  table.add("estimator", &R::estimator, "how light is found");
+  table.add("estimator", &R::estimator, "how light is found").always_written();
   add_stop_rule(table);
   table.add("photons", &R::photons, "photons stored per pass").at_least(1).absent("auto");
   table.add("store", &R::store, "what a photon stores: fluence, or scattered flux (classic)");
@@ -276,11 +289,11 @@ void add_render(Table& table) {
       .above(0);
   table.add("alpha", &R::alpha, "radius shrinking over the passes; 1: none").above_up_to(0, 1);
   table.add("thinning", &R::thinning,
-            "photons are kept where the camera sees them (beam), or everywhere alike");
+            "photons are kept where the camera sees them, or everywhere alike");
   table.add(
       "forward_peak", &R::forward_peak,
       "auto: multiple scattering without the forward peak of the phase function, less of which is "
-      "taken out as passes are added (beam, march); kept: with all of it");
+      "taken out as passes are added; kept: with all of it");
   table
       .add_auto("keep", &R::keep,
                 "share of a light path's collisions that become photons, the same everywhere")
@@ -300,8 +313,10 @@ void add_render(Table& table) {
       .unit("radiance")
       .above(0)
       .absent("none");
-  table.add("step", &R::step, "step of the march estimator").unit("voxels").above(0);
-  table.add("seed", &R::seed, "random numbers; the same seed gives the same picture").at_least(0);
+  table.add("step", &R::step, "length of a step along a camera ray").unit("voxels").above(0);
+  table.add("seed", &R::seed, "random numbers; the same seed gives the same picture")
+      .at_least(0)
+      .always_written();
   table.add("seeds", &R::seeds, "random numbers: others in each frame, or the same in all frames");
   table
       .add("threads", &R::threads,
@@ -322,6 +337,12 @@ std::vector<SceneKey> make_table() {
   keys.reserve(entries.size());
   for (Entry& entry : entries)
     keys.push_back(std::move(entry.key));
+  for (SceneKey& key : keys) {
+    if (key.section == SceneSection::light)
+      key.types = kinds_with_key<LightType>(key.name);
+    if (key.section == SceneSection::render)
+      key.estimators = kinds_with_key<EstimatorType>(key.name);
+  }
   return keys;
 }
 

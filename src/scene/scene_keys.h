@@ -55,12 +55,18 @@ struct SceneKey {
   std::string unit;
   NumberRange range;
   std::vector<std::string> choices;
+  std::vector<std::string> choice_docs; ///< one clause for each choice, or empty
   std::string absent_word; ///< how "no value" is written ("auto", "none"); empty where it cannot be
   std::string doc;         ///< one clause
   std::vector<std::string> types; ///< light and phase types that take this key; empty: all
   bool required = false;
+  std::vector<std::string> estimators; ///< that read this key; empty: all
   bool changes_picture = true;
-  bool one_for_all = false; ///< a list of three may be written as one number
+  bool stop_rule = false;       ///< ends a frame: no pass depends on it
+  bool always_written = false;  ///< vdbeam init writes it also where it is as by default
+  bool changes_world = true;    ///< a world must be built anew for another value
+  bool scales_emission = false; ///< a factor of emission: its field need not be read anew
+  bool one_for_all = false;     ///< a list of three may be written as one number
   /// The value in a scene; `index` counts volumes or lights. Empty for keys that are only another
   /// way to write `volume.transform`.
   std::function<KeyValue(const Scene&, std::size_t index)> get;

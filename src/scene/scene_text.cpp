@@ -63,15 +63,6 @@ private:
            key.types.end();
   }
 
-  /// Keys that most people will want to change stand there even where they are as by default.
-  static bool always_written(const SceneKey& key) {
-    static const std::vector<std::string> names{
-        "width",      "height",   "position",   "look_at", "up",
-        "fov",        "density",  "extinction", "albedo",  "direction",
-        "irradiance", "radiance", "estimator",  "seed",    "passes"};
-    return key.required || std::find(names.begin(), names.end(), key.name) != names.end();
-  }
-
   std::string line(const SceneKey& key, std::size_t index) const {
     KeyValue value = key.get ? key.get(scene_, index) : KeyValue{};
     if (key.section == SceneSection::render && key.name == "passes" &&
@@ -86,7 +77,7 @@ private:
       text = quote(std::get<std::string>(value));
     else if (absent && key.absent_word.empty() && key.get) // inherited: show how it would be set
       text = quote(key.choices.front());
-    const bool written = !absent && (!as_default || always_written(key));
+    const bool written = !absent && (!as_default || key.required || key.always_written);
     const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
     return fmt::format("{:<40}# {}{}\n",
                        fmt::format("{}{} = {}", written ? "" : "# ", key.name, text) + " ", key.doc,

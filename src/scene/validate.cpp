@@ -1,5 +1,6 @@
 #include "scene/validate.h"
 
+#include "lights/light_table.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
@@ -47,13 +48,8 @@ public:
 
   void check_light(std::size_t index) const {
     const LightSettings& light = scene_.lights[index];
-    const bool aimed = light.type == LightType::distant || light.type == LightType::spot;
-    if (aimed && length(light.direction) == 0)
-      fail(fmt::format("light.{}.direction", index), "must not be [0, 0, 0]");
-    if (light.type == LightType::spot && light.cone_falloff > light.cone_angle)
-      fail(fmt::format("light.{}.cone_falloff", index),
-           fmt::format("must be at most cone_angle ({}), got {}", light.cone_angle,
-                       light.cone_falloff));
+    if (const auto complaint = light_kind(light.type).complaint(light))
+      fail(fmt::format("light.{}.{}", index, complaint->key), complaint->text);
   }
 
   void check_render() const {

@@ -1,6 +1,7 @@
 #include "transport/world.h"
 
 #include "lights/volume_light.h"
+#include "math/color.h"
 
 #include <fmt/format.h>
 
@@ -13,10 +14,6 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-bool is_grey(const Rgb& c) {
-  return c.x == c.y && c.y == c.z;
 }
 
 Affine to_affine(const std::array<double, 12>& m) {
@@ -162,7 +159,7 @@ void add_volume_lights(World& world) {
     scatters = scatters || max_component(volume.albedo) > 0;
   for (const Emitter& emitter : world.medium.emitters)
     if (scatters)
-      world.lights.add(std::make_unique<VolumeLight>(emitter), DirectLight::photons);
+      world.lights.add(std::make_unique<VolumeLight>(emitter));
 }
 
 void bound_region(World& world, const Boxd& bounds) {
@@ -174,19 +171,6 @@ void bound_region(World& world, const Boxd& bounds) {
   world.medium.bounds.upper += margin;
   world.region.center = world.medium.bounds.center();
   world.region.radius = 0.5f * length(world.medium.bounds.size());
-}
-
-bool grey_scene(const Scene& scene, const World& world) {
-  bool grey = !world.medium.chromatic;
-  for (const Volume& volume : world.medium.volumes)
-    grey = grey && is_grey(volume.albedo);
-  for (const LightSettings& light : scene.lights)
-    grey = grey && is_grey(light.irradiance) && is_grey(light.intensity) &&
-           is_grey(light.radiance) && light.image.empty() && light.type != LightType::sky;
-  for (const VolumeSettings& volume : scene.volumes)
-    grey = grey && (!volume.glows() ||
-                    (volume.emission.temperature.empty() && is_grey(volume.emission.color)));
-  return grey;
 }
 
 } // namespace
@@ -215,8 +199,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   std::vector<PhaseSettings> known;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VolumeSettings& settings = scene.volumes[i];
-    const double strongest = settings.extinction * max_component(settings.extinction_scale);
-    if (grids[i].field.empty() || !(strongest > 0))
+    if (grids[i].field.empty() || !settings.absorbs_or_scatters())
       continue;
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
@@ -229,7 +212,6 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
     bound_region(world, bounds);
   world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &world.notes);
   add_volume_lights(world);
-  world.grey = grey_scene(scene, world);
   world.seconds_build = seconds_since(start);
   return world;
 }

@@ -17,8 +17,6 @@ struct World {
   LightSet lights;
   OccupiedRegion region;
   RenderSettings settings;
-  /// Every colour in the scene is a grey: one channel of photon power suffices.
-  bool grey = false;
   std::vector<std::string> notes;           ///< for the user
   std::vector<std::uint64_t> active_voxels; ///< per volume of the scene; 0: left out as empty
   std::vector<std::uint64_t>

@@ -23,10 +23,9 @@ MemoryScene box_scene(double extinction) {
 
 std::vector<float> depths(MemoryScene scene, EstimatorType type, int passes = 1) {
   scene.scene.render.estimator = type;
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, 1});
-  Film film(camera.width(), camera.height());
+  const test::TestFrame frame(scene);
+  const std::unique_ptr<Estimator> estimator = frame.estimator();
+  Film film(frame.camera.width(), frame.camera.height());
   PassImage image;
   RenderStatistics statistics;
   for (int pass = 0; pass < passes; ++pass) {

@@ -1,5 +1,6 @@
 #include "support/memory_scene.h"
 #include "support/render_passes.h"
+#include "support/test_frame.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -43,11 +44,10 @@ MemoryScene rich_scene() {
 
 PassImage one_pass(MemoryScene scene, EstimatorType type, int pass = 0) {
   scene.scene.render.estimator = type;
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+  const test::TestFrame frame(scene);
   PassImage image;
   RenderStatistics statistics;
-  make_estimator(type, {world, camera, 1})->render_pass(pass, image, statistics);
+  frame.estimator()->render_pass(pass, image, statistics);
   EXPECT_EQ(statistics.camera_rays, image.direct.size());
   return image;
 }
@@ -106,9 +106,8 @@ TEST_P(EveryEstimator, SameBitsForOneTwoAndFiveThreads) {
 TEST_P(EveryEstimator, PassesDoNotDependOnThoseBefore) {
   MemoryScene scene = rich_scene();
   scene.scene.render.estimator = GetParam();
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const auto estimator = make_estimator(GetParam(), {world, camera, 1});
+  const test::TestFrame frame(scene);
+  const auto estimator = frame.estimator();
   PassImage image;
   RenderStatistics statistics;
   for (const int pass : {0, 5, 3})

@@ -14,7 +14,7 @@ using namespace test;
 /// Radiance 1 from the inner side of a sphere around the origin of render space.
 class HollowSphere final : public Light {
 public:
-  HollowSphere(float radius, bool shadow_rays) : radius_(radius), shadow_rays_(shadow_rays) {}
+  explicit HollowSphere(float radius) : radius_(radius) {}
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override {
     const Vec3f wi = sample_sphere(u, v);
@@ -43,14 +43,11 @@ public:
   }
   Rgb power() const override { return Rgb(4 * pi * pi * radius_ * radius_); }
   bool is_delta() const override { return false; }
-  bool wants_shadow_rays() const override { return shadow_rays_; }
-  LightType type() const override { return LightType::environment; }
 
 private:
   static constexpr float density = 1 / (4 * pi);
 
   float radius_;
-  bool shadow_rays_;
 };
 
 /// A box of edge 1 about the origin, seen along z. Render space has its units.
@@ -66,13 +63,18 @@ MemoryScene box(const Rgb& albedo) {
   return scene;
 }
 
-std::array<Samples, 3> render_sphere(const MemoryScene& scene, EstimatorType type, float radius,
+std::array<Samples, 3> render_sphere(MemoryScene scene, EstimatorType type, float radius,
                                      bool shadow_rays, int passes) {
   World world = scene.world();
   EXPECT_EQ(world.space.scale, 1);
-  world.lights.add(std::make_unique<HollowSphere>(radius, shadow_rays));
+  world.lights.add(std::make_unique<HollowSphere>(radius));
   const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, 1});
+  // No scene file can hold such a light: for the plan an environment stands in for it.
+  scene.add_light(LightType::environment);
+  scene.scene.render.estimator = type;
+  RenderPlan plan = plan_stages(scene.scene, volume_facts(world, camera));
+  plan.shadow_ray_lights = {shadow_rays};
+  const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, plan, 1});
   std::array<Samples, 3> means;
   RenderStatistics statistics;
   for (int pass = 0; pass < passes; ++pass) {

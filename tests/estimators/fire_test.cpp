@@ -1,5 +1,6 @@
 #include "support/memory_scene.h"
 #include "support/render_passes.h"
+#include "support/test_frame.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -93,10 +94,9 @@ TEST(Fire, DoesNotDependOnThreads) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       MemoryScene scene = fire();
       scene.scene.render.estimator = type;
-      const World world = scene.world();
-      const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+      const test::TestFrame frame(scene);
       RenderStatistics statistics;
-      make_estimator(type, {world, camera, 1})->render_pass(3, images[threads - 1], statistics);
+      frame.estimator()->render_pass(3, images[threads - 1], statistics);
     }
     EXPECT_EQ(images[0].emission, images[1].emission);
     EXPECT_EQ(images[0].direct, images[1].direct);

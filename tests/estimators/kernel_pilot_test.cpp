@@ -3,6 +3,7 @@
 #include "estimators/kernel_pilot.h"
 
 #include "support/render_passes.h"
+#include "support/test_frame.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -77,11 +78,9 @@ MemoryScene box(bool lumpy) {
 }
 
 double chosen(const MemoryScene& scene, RenderStatistics& statistics) {
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+  const test::TestFrame frame(scene);
   PassImage image;
-  make_estimator(scene.scene.render.estimator, {world, camera, 1})
-      ->render_pass(0, image, statistics);
+  frame.estimator()->render_pass(0, image, statistics);
   return statistics.neighbours;
 }
 

@@ -81,9 +81,8 @@ struct SceneCase {
 
 /// The bits of all pixels of two passes.
 std::vector<std::uint32_t> image_bits(const MemoryScene& scene) {
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const auto estimator = make_estimator(scene.scene.render.estimator, {world, camera, 1});
+  const test::TestFrame frame(scene);
+  const auto estimator = frame.estimator();
   PassImage image;
   RenderStatistics statistics;
   std::vector<std::uint32_t> bits;
@@ -147,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      SceneCase{"chromatic", chromatic}, SceneCase{"paper", paper},
                                      SceneCase{"two_volumes", two_volumes})),
     [](const auto& test) {
-      return std::string(enum_name(std::get<0>(test.param))) + "_" + std::get<1>(test.param).name;
+      return std::string(std::get<0>(test.param).name) + "_" + std::get<1>(test.param).name;
     });
 
 } // namespace

@@ -46,9 +46,8 @@ struct Picture {
 };
 
 Picture render(const MemoryScene& scene, int passes) {
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const auto estimator = make_estimator(scene.scene.render.estimator, {world, camera, 1});
+  const test::TestFrame frame(scene);
+  const auto estimator = frame.estimator();
   PassImage image;
   RenderStatistics statistics;
   std::vector<double> sums(side * side), squares(side * side);

@@ -25,15 +25,17 @@ TEST(LightSet, HoldsAllLightsAndTheirPolicies) {
   LightSettings sun;
   sun.angular_radius = 10;
   sun.direction = {0, -1, 0};
-  sun.direct = DirectLight::photons;
   const OccupiedRegion region = region_of({cube({}, 1)});
   const LightSet lights({sky(1), sun, sky(2)}, {0, 1, 0}, RenderSpace{}, region);
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_FLOAT_EQ(sum_of(lights, {0, -1, 0}), 3);
   EXPECT_GT(sum_of(lights, {0, 1, 0}), 10);
-  EXPECT_EQ(lights.direct(0), DirectLight::automatic);
-  EXPECT_EQ(lights.direct(1), DirectLight::photons);
-  EXPECT_EQ(lights[1].type(), LightType::distant);
+}
+
+TEST(LightSet, UnknownKindIsAnInputError) {
+  LightSettings settings;
+  settings.type = {"lantern"};
+  EXPECT_THROW(LightSet({settings}, {0, 1, 0}, RenderSpace{}, OccupiedRegion{}), InputError);
 }
 
 TEST(LightSet, HiddenLightsLightButDoNotShow) {
@@ -41,8 +43,8 @@ TEST(LightSet, HiddenLightsLightButDoNotShow) {
   hidden.visible = false;
   const OccupiedRegion region = region_of({cube({}, 1)});
   const LightSet lights({sky(1), hidden}, {0, 1, 0}, RenderSpace{}, region);
-  EXPECT_TRUE(lights.visible(0));
-  EXPECT_FALSE(lights.visible(1));
+  EXPECT_TRUE(lights.traits(0).visible);
+  EXPECT_FALSE(lights.traits(1).visible);
   EXPECT_FLOAT_EQ(escaped_radiance(lights[1], {0, 1, 0}).x, 2);
   EXPECT_GT(lights[1].power().x, 0);
 }

@@ -49,11 +49,8 @@ struct MadeLight {
   std::unique_ptr<Light> light;
 
   MadeLight(const LightSettings& settings, OccupiedRegion region_, double scale = 1)
-      : region(std::move(region_)), space{{}, scale} {
-    for (const LightKind& kind : light_table())
-      if (kind.type == settings.type)
-        light = kind.make(settings, LightContext{{0, 1, 0}, space, region});
-  }
+      : region(std::move(region_)), space{{}, scale},
+        light(light_kind(settings.type).make(settings, LightContext{{0, 1, 0}, space, region})) {}
 };
 
 /// What a ray in this direction sees of a light beyond the scene.

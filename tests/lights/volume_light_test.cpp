@@ -124,7 +124,6 @@ TEST(VolumeLight, UniformCells) {
 TEST(VolumeLight, IsForPhotonsAlone) {
   const World world = fire().world();
   const Light& light = world.lights[0];
-  EXPECT_FALSE(light.wants_shadow_rays());
   EXPECT_EQ(light.sample_incident({}, 0.5f, 0.5f).value, Rgb());
   EXPECT_EQ(light.emitted_radiance({{{}, {0, 0, 1}}}).radiance, Rgb());
 }

@@ -1,5 +1,6 @@
 #include "estimators/estimator.h"
 #include "film/film.h"
+#include "render/plan.h"
 #include "support/statistics.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"
@@ -43,7 +44,8 @@ Outcome render(const Subject& subject, EstimatorType type, int passes) {
   const Image reference = read_image(data + "reference/" + subject.name + ".exr");
   const World world = build_world(scene);
   const Camera camera(scene.camera, scene.image, world.space);
-  const auto estimator = make_estimator(type, {world, camera, 1});
+  const RenderPlan plan = plan_stages(scene, volume_facts(world, camera));
+  const auto estimator = make_estimator(type, {world, camera, plan, 1});
   Film film(scene.image.width, scene.image.height);
   PassImage pass_image;
   RenderStatistics statistics;

@@ -18,12 +18,14 @@ TEST(Plan, GlowingSmokeLightsItself) {
   MemoryScene scene = ember();
   const Outcome beam = run(scene);
   EXPECT_EQ(beam.needed,
-            (Names{"read", "majorants", "photons", "photon importance", "map", "neighbours",
-                   "photon directions", "depth profiles", "emission", "beam query", "bias"}));
+            (Stages{Stage::read, Stage::majorants, Stage::photons, Stage::photon_importance,
+                    Stage::kernel_pilot, Stage::map, Stage::neighbours, Stage::photon_directions,
+                    Stage::depth_profiles, Stage::emission, Stage::beam_query, Stage::bias}));
   expect_plan_kept(beam);
   scene.scene.render.estimator = EstimatorType::path;
   const Outcome path = run(scene);
-  EXPECT_EQ(path.needed, (Names{"read", "majorants", "depth profiles", "emission", "paths"}));
+  EXPECT_EQ(path.needed, (Stages{Stage::read, Stage::majorants, Stage::depth_profiles,
+                                 Stage::emission, Stage::paths}));
   expect_plan_kept(path);
   // The light of the medium itself is never sought by shadow rays, whatever is asked for.
   scene.scene.render.estimator = EstimatorType::beam;
@@ -38,15 +40,16 @@ TEST(Plan, EmissionOnly) {
     scene.scene.render.estimator = type;
     scene.scene.volumes[0].albedo = Rgb(0);
     const Outcome black = run(scene);
-    EXPECT_EQ(black.needed, (Names{"read", "majorants", "depth profiles", "emission"}));
+    EXPECT_EQ(black.needed,
+              (Stages{Stage::read, Stage::majorants, Stage::depth_profiles, Stage::emission}));
     expect_plan_kept(black);
     scene.scene.volumes[0].extinction = 0;
     const Outcome clear = run(scene);
-    EXPECT_EQ(clear.needed, (Names{"read", "emission"}));
+    EXPECT_EQ(clear.needed, (Stages{Stage::read, Stage::emission}));
     expect_plan_kept(clear);
     scene.look({0, 0, 3}, {0, 0, 6}, 12, 8, 8);
     const Outcome away = run(scene);
-    EXPECT_EQ(away.needed, Names{"read"});
+    EXPECT_EQ(away.needed, Stages{Stage::read});
     expect_plan_kept(away);
   }
 }
@@ -55,7 +58,7 @@ TEST(Plan, GlowingSmokeOfOneBounce) {
   MemoryScene scene = ember();
   scene.scene.render.max_bounces = 1;
   const Outcome r = run(scene);
-  EXPECT_TRUE(r.plan.needs("photons"));
+  EXPECT_TRUE(r.plan.needs(Stage::photons));
   expect_plan_kept(r);
 }
 
@@ -70,10 +73,10 @@ TEST(Plan, NothingGlowsYet) {
 
 TEST(Plan, ColourOfGlowingSmoke) {
   MemoryScene scene = ember();
-  EXPECT_FALSE(run(scene).plan.needs("photon colour"));
+  EXPECT_FALSE(run(scene).plan.needs(Stage::photon_color));
   scene.scene.volumes[0].emission.color = {1, 0.5f, 0.1f};
   const Outcome r = run(scene);
-  EXPECT_TRUE(r.plan.needs("photon colour"));
+  EXPECT_TRUE(r.plan.needs(Stage::photon_color));
   expect_plan_kept(r);
 }
 

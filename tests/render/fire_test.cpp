@@ -56,7 +56,7 @@ TEST(SampleFire, EmissionIsAnOutputOfItsOwn) {
 /// A frame in which the flame's grid is empty.
 TEST(SampleFire, FrameInWhichTheFireIsOut) {
   const RenderResult result = render(small_fire(18));
-  EXPECT_FALSE(result.plan.needs("emission"));
+  EXPECT_FALSE(result.plan.needs(Stage::emission));
   EXPECT_EQ(mean(result.image, "volume_emission.R"), 0);
   EXPECT_GT(mean(result.image, "volume.A"), 0.05);
   const Image only = render(small_fire(18, {"volume.0.extinction=0", "light.0.irradiance=0",

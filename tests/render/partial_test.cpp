@@ -1,5 +1,5 @@
+#include "film/film_file.h"
 #include "photonmap/map_queries.h"
-#include "render/film_file.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"

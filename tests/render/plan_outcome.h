@@ -13,11 +13,11 @@
 
 namespace vdbeam::test {
 
-using Names = std::set<std::string>;
+using Stages = std::set<Stage>;
 
 /// What a scene needs and what one pass of it did.
 struct Outcome {
-  Names needed;
+  Stages needed;
   RenderPlan plan;
   RenderStatistics statistics;
   PassImage image;
@@ -27,18 +27,13 @@ inline Outcome run(const MemoryScene& scene) {
   Outcome result;
   const World world = scene.world();
   const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  std::vector<VolumeFacts> facts;
-  for (std::size_t i = 0; i < world.active_voxels.size(); ++i) {
-    const std::uint64_t voxels = world.active_voxels[i];
-    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera), world.glowing_voxels[i]});
-  }
-  result.plan = plan_stages(scene.scene, facts);
+  result.plan = plan_stages(scene.scene, volume_facts(world, camera));
   for (const PlanStage& stage : result.plan.stages) {
-    EXPECT_FALSE(stage.reason.empty()) << stage.name;
+    EXPECT_FALSE(stage.reason.empty()) << stage_name(stage.stage);
     if (stage.needed)
-      result.needed.insert(stage.name);
+      result.needed.insert(stage.stage);
   }
-  make_estimator(scene.scene.render.estimator, {world, camera, 1})
+  make_estimator(scene.scene.render.estimator, {world, camera, result.plan, 1})
       ->render_pass(0, result.image, result.statistics);
   return result;
 }
@@ -46,24 +41,24 @@ inline Outcome run(const MemoryScene& scene) {
 /// Every stage that the plan leaves out has a counter of 0, and every one that it keeps ran.
 inline void expect_plan_kept(const Outcome& run) {
   const RenderStatistics& s = run.statistics;
-  const auto expect = [&](const char* stage, std::uint64_t count) {
+  const auto expect = [&](Stage stage, std::uint64_t count) {
     if (run.plan.needs(stage))
-      EXPECT_GT(count, 0u) << stage << " was planned";
+      EXPECT_GT(count, 0u) << stage_name(stage) << " was planned";
     else
-      EXPECT_EQ(count, 0u) << stage << " was left out";
+      EXPECT_EQ(count, 0u) << stage_name(stage) << " was left out";
   };
-  expect("photons", s.light_paths);
-  expect("map", s.photons_stored);
-  expect("map", s.bytes_per_photon);
-  expect("map", s.lookups);
-  expect("map", s.contributions);
-  expect("photon importance", s.importance_rays);
-  expect("neighbours", s.neighbourhoods);
-  expect("photon directions", s.directions);
-  expect("depth profiles", s.depth_profiles);
-  expect("emission", s.emission_rays);
-  expect("shadow rays", s.shadow_rays);
-  expect("paths", s.camera_walks);
+  expect(Stage::photons, s.light_paths);
+  expect(Stage::map, s.photons_stored);
+  expect(Stage::map, s.bytes_per_photon);
+  expect(Stage::map, s.lookups);
+  expect(Stage::map, s.contributions);
+  expect(Stage::photon_importance, s.importance_rays);
+  expect(Stage::neighbours, s.neighbourhoods);
+  expect(Stage::photon_directions, s.directions);
+  expect(Stage::depth_profiles, s.depth_profiles);
+  expect(Stage::emission, s.emission_rays);
+  expect(Stage::shadow_rays, s.shadow_rays);
+  expect(Stage::paths, s.camera_walks);
 }
 
 /// A sunlit box.

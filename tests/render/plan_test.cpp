@@ -13,8 +13,9 @@ using namespace test;
 TEST(Plan, SunlitVolume) {
   const Outcome r = run(base());
   EXPECT_EQ(r.needed,
-            (Names{"read", "majorants", "photons", "photon importance", "map", "neighbours",
-                   "photon directions", "depth profiles", "shadow rays", "beam query", "bias"}));
+            (Stages{Stage::read, Stage::majorants, Stage::photons, Stage::photon_importance,
+                    Stage::kernel_pilot, Stage::map, Stage::neighbours, Stage::photon_directions,
+                    Stage::depth_profiles, Stage::shadow_rays, Stage::beam_query, Stage::bias}));
   expect_plan_kept(r);
 }
 
@@ -23,11 +24,13 @@ TEST(Plan, AbsorptionOnly) {
   scene.scene.volumes[0].albedo = Rgb(0);
   scene.add_light(LightType::environment);
   const Outcome r = run(scene);
-  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "environment"}));
+  EXPECT_EQ(r.needed,
+            (Stages{Stage::read, Stage::majorants, Stage::depth_profiles, Stage::environment}));
   expect_plan_kept(r);
   scene.scene.render.estimator = EstimatorType::path;
   const Outcome path = run(scene);
-  EXPECT_EQ(path.needed, (Names{"read", "majorants", "depth profiles", "environment"}));
+  EXPECT_EQ(path.needed,
+            (Stages{Stage::read, Stage::majorants, Stage::depth_profiles, Stage::environment}));
   expect_plan_kept(path);
 }
 
@@ -38,7 +41,7 @@ TEST(Plan, NoLight) {
        {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
     scene.scene.render.estimator = type;
     const Outcome r = run(scene);
-    EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles"}));
+    EXPECT_EQ(r.needed, (Stages{Stage::read, Stage::majorants, Stage::depth_profiles}));
     expect_plan_kept(r);
   }
 }
@@ -47,7 +50,7 @@ TEST(Plan, Isotropic) {
   MemoryScene scene = base();
   scene.scene.volumes[0].phase = {};
   const Outcome r = run(scene);
-  EXPECT_FALSE(r.plan.needs("photon directions"));
+  EXPECT_FALSE(r.plan.needs(Stage::photon_directions));
   expect_plan_kept(r);
   EXPECT_LT(r.statistics.bytes_per_photon, run(base()).statistics.bytes_per_photon);
 }
@@ -56,7 +59,8 @@ TEST(Plan, SingleBounceOfASun) {
   MemoryScene scene = base();
   scene.scene.render.max_bounces = 1;
   const Outcome r = run(scene);
-  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "shadow rays"}));
+  EXPECT_EQ(r.needed,
+            (Stages{Stage::read, Stage::majorants, Stage::depth_profiles, Stage::shadow_rays}));
   expect_plan_kept(r);
 }
 
@@ -66,8 +70,8 @@ TEST(Plan, SingleBounceOfASkyNeedsPhotons) {
   scene.add_light(LightType::environment);
   scene.scene.render.max_bounces = 1;
   const Outcome r = run(scene);
-  EXPECT_TRUE(r.plan.needs("photons"));
-  EXPECT_FALSE(r.plan.needs("shadow rays"));
+  EXPECT_TRUE(r.plan.needs(Stage::photons));
+  EXPECT_FALSE(r.plan.needs(Stage::shadow_rays));
   expect_plan_kept(r);
 }
 
@@ -76,8 +80,8 @@ TEST(Plan, FixedKernel) {
   scene.scene.render.kernel = KernelRadius::fixed;
   scene.scene.render.radius = 0.1;
   const Outcome r = run(scene);
-  EXPECT_TRUE(r.plan.needs("map"));
-  EXPECT_FALSE(r.plan.needs("neighbours"));
+  EXPECT_TRUE(r.plan.needs(Stage::map));
+  EXPECT_FALSE(r.plan.needs(Stage::neighbours));
   expect_plan_kept(r);
 }
 
@@ -85,50 +89,46 @@ TEST(Plan, PhotonsKeptEvenly) {
   MemoryScene scene = base();
   scene.scene.render.thinning = PhotonThinning::even;
   const Outcome even = run(scene);
-  EXPECT_FALSE(even.plan.needs("photon importance"));
+  EXPECT_FALSE(even.plan.needs(Stage::photon_importance));
   expect_plan_kept(even);
   scene = base();
   scene.scene.render.keep = 0.5;
   const Outcome share = run(scene);
-  EXPECT_FALSE(share.plan.needs("photon importance"));
+  EXPECT_FALSE(share.plan.needs(Stage::photon_importance));
   expect_plan_kept(share);
 }
 
 TEST(Plan, NoEnvironment) {
-  EXPECT_FALSE(run(base()).plan.needs("environment"));
+  EXPECT_FALSE(run(base()).plan.needs(Stage::environment));
   MemoryScene scene = base();
   scene.add_light(LightType::environment);
-  EXPECT_TRUE(run(scene).plan.needs("environment"));
-}
-
-TEST(Plan, NoSurfaces) {
-  EXPECT_FALSE(run(base()).plan.needs("surfaces"));
+  EXPECT_TRUE(run(scene).plan.needs(Stage::environment));
 }
 
 TEST(Plan, DirectByPhotons) {
   MemoryScene scene = base();
   scene.scene.render.direct = DirectLight::photons;
   const Outcome r = run(scene);
-  EXPECT_FALSE(r.plan.needs("shadow rays"));
+  EXPECT_FALSE(r.plan.needs(Stage::shadow_rays));
   expect_plan_kept(r);
 }
 
 TEST(Plan, GreyNeedsOneChannel) {
   const Outcome grey = run(base());
-  EXPECT_FALSE(grey.plan.needs("photon colour"));
+  EXPECT_FALSE(grey.plan.needs(Stage::photon_color));
   MemoryScene scene = base();
   scene.scene.lights[0].irradiance = {1, 2, 3};
   const Outcome coloured = run(scene);
-  EXPECT_TRUE(coloured.plan.needs("photon colour"));
+  EXPECT_TRUE(coloured.plan.needs(Stage::photon_color));
   EXPECT_LT(grey.statistics.bytes_per_photon, coloured.statistics.bytes_per_photon);
   EXPECT_LT(grey.plan.photon_bytes, coloured.plan.photon_bytes);
 }
 
 TEST(Plan, ChromaticExtinction) {
-  EXPECT_FALSE(run(base()).plan.needs("spectral tracking"));
+  EXPECT_FALSE(run(base()).plan.needs(Stage::spectral_tracking));
   MemoryScene scene = base();
   scene.scene.volumes[0].extinction_scale = {1, 0.5f, 0.25f};
-  EXPECT_TRUE(run(scene).plan.needs("spectral tracking"));
+  EXPECT_TRUE(run(scene).plan.needs(Stage::spectral_tracking));
 }
 
 TEST(Plan, EmptyFrame) {
@@ -140,7 +140,7 @@ TEST(Plan, EmptyFrame) {
        {EstimatorType::beam, EstimatorType::march, EstimatorType::path}) {
     scene.scene.render.estimator = type;
     const Outcome r = run(scene);
-    EXPECT_EQ(r.needed, (Names{"read", "environment"}));
+    EXPECT_EQ(r.needed, (Stages{Stage::read, Stage::environment}));
     expect_plan_kept(r);
     EXPECT_EQ(r.image.background[0].x, 1);
   }
@@ -150,7 +150,7 @@ TEST(Plan, ZeroExtinction) {
   MemoryScene scene = base();
   scene.scene.volumes[0].extinction = 0;
   const Outcome r = run(scene);
-  EXPECT_EQ(r.needed, (Names{"read"}));
+  EXPECT_EQ(r.needed, (Stages{Stage::read}));
   expect_plan_kept(r);
 }
 
@@ -159,7 +159,7 @@ TEST(Plan, NoVolumes) {
   scene.scene.volumes.clear();
   scene.grids.clear();
   const Outcome r = run(scene);
-  EXPECT_EQ(r.needed, Names{});
+  EXPECT_EQ(r.needed, Stages{});
   expect_plan_kept(r);
 }
 
@@ -180,7 +180,8 @@ TEST(Plan, PathEstimator) {
   MemoryScene scene = base();
   scene.scene.render.estimator = EstimatorType::path;
   const Outcome r = run(scene);
-  EXPECT_EQ(r.needed, (Names{"read", "majorants", "depth profiles", "shadow rays", "paths"}));
+  EXPECT_EQ(r.needed, (Stages{Stage::read, Stage::majorants, Stage::depth_profiles,
+                              Stage::shadow_rays, Stage::paths}));
   expect_plan_kept(r);
 }
 
@@ -188,8 +189,8 @@ TEST(Plan, MarchEstimator) {
   MemoryScene scene = base();
   scene.scene.render.estimator = EstimatorType::march;
   const Outcome r = run(scene);
-  EXPECT_TRUE(r.plan.needs("march"));
-  EXPECT_FALSE(r.plan.needs("beam query"));
+  EXPECT_TRUE(r.plan.needs(Stage::march));
+  EXPECT_FALSE(r.plan.needs(Stage::beam_query));
   expect_plan_kept(r);
 }
 
@@ -202,7 +203,7 @@ TEST(Plan, CameraThatSeesNoMedium) {
       scene.look({0, 0, 3}, away, 12, 8, 8);
       scene.scene.render.estimator = type;
       const Outcome r = run(scene);
-      EXPECT_EQ(r.needed, (Names{"read", "majorants", "environment"}));
+      EXPECT_EQ(r.needed, (Stages{Stage::read, Stage::majorants, Stage::environment}));
       expect_plan_kept(r);
       EXPECT_EQ(r.image.background[0].x, 1);
     }
@@ -234,21 +235,21 @@ TEST(MakePlan, ReadsHeadersOnly) {
   scene.volumes.push_back(volume);
   scene.lights.resize(1);
   const RenderPlan plan = make_plan(scene);
-  EXPECT_TRUE(plan.needs("photons"));
-  EXPECT_TRUE(plan.needs("depth profiles"));
+  EXPECT_TRUE(plan.needs(Stage::photons));
+  EXPECT_TRUE(plan.needs(Stage::depth_profiles));
   EXPECT_GT(plan.volume_bytes, 1000u);
 
   scene.camera.look_at = {5, 0, 5};
   const RenderPlan away = make_plan(scene);
-  EXPECT_FALSE(away.needs("photons"));
-  EXPECT_FALSE(away.needs("depth profiles"));
-  EXPECT_TRUE(away.needs("majorants"));
+  EXPECT_FALSE(away.needs(Stage::photons));
+  EXPECT_FALSE(away.needs(Stage::depth_profiles));
+  EXPECT_TRUE(away.needs(Stage::majorants));
 
   scene.volumes[0].transform[3] = 5; // moves it into view
-  EXPECT_FALSE(make_plan(scene).needs("photons"));
+  EXPECT_FALSE(make_plan(scene).needs(Stage::photons));
   scene.volumes[0].transform[11] = 5;
   scene.camera.look_at = {2, 0, 5};
-  EXPECT_TRUE(make_plan(scene).needs("photons"));
+  EXPECT_TRUE(make_plan(scene).needs(Stage::photons));
 
   scene.volumes[0].density = "flame";
   EXPECT_THROW(make_plan(scene), InputError);
@@ -256,13 +257,13 @@ TEST(MakePlan, ReadsHeadersOnly) {
   scene.volumes[0].extinction = 0;
   scene.volumes[0].emission.intensity = "density";
   const RenderPlan glow = make_plan(scene);
-  EXPECT_TRUE(glow.needs("emission"));
-  EXPECT_FALSE(glow.needs("majorants"));
-  EXPECT_FALSE(glow.needs("photons"));
+  EXPECT_TRUE(glow.needs(Stage::emission));
+  EXPECT_FALSE(glow.needs(Stage::majorants));
+  EXPECT_FALSE(glow.needs(Stage::photons));
   scene.volumes[0].emission.temperature = "temperature";
   EXPECT_THROW(make_plan(scene), InputError);
   scene.volumes[0].present = false;
-  EXPECT_FALSE(make_plan(scene).needs("majorants"));
+  EXPECT_FALSE(make_plan(scene).needs(Stage::majorants));
 }
 
 } // namespace

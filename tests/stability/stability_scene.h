@@ -48,9 +48,9 @@ inline LightSettings& add_sun(MemoryScene& scene, const Vec3d& direction, float 
   return light;
 }
 
-/// The estimators by name, for parametrised tests and messages.
-inline std::string name_of(EstimatorType type) {
-  return type == EstimatorType::beam ? "beam" : type == EstimatorType::march ? "march" : "path";
+/// An estimator's name, for parametrised tests and messages.
+inline std::string name_of(const EstimatorType& type) {
+  return std::string(type.name);
 }
 
 } // namespace vdbeam::test

@@ -132,7 +132,7 @@ private:
       light.cone_angle = uniform(10, 80);
       light.cone_falloff = uniform(0, light.cone_angle);
       light.intensity = random_colour(0, 2) * static_cast<float>(dot(away, away));
-      note("light {}", static_cast<int>(light.type));
+      note("light {}", light.type.name);
     }
   }
 

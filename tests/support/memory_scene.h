@@ -3,6 +3,19 @@
 #include "transport/world.h"
 
 #include <numbers>
+#include <ostream>
+
+namespace vdbeam {
+
+/// How GoogleTest prints an estimator and a kind of light.
+inline void PrintTo(const EstimatorType& type, std::ostream* out) {
+  *out << type.name;
+}
+inline void PrintTo(const LightType& type, std::ostream* out) {
+  *out << type.name;
+}
+
+} // namespace vdbeam
 
 namespace vdbeam::test {
 

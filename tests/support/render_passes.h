@@ -1,9 +1,8 @@
 #pragma once
 
-#include "estimators/estimator.h"
 #include "support/memory_scene.h"
 #include "support/statistics.h"
-#include "transport/camera.h"
+#include "support/test_frame.h"
 
 #include <array>
 #include <vector>
@@ -34,9 +33,8 @@ inline void add_means(std::array<Samples, 3>& samples, const std::vector<Rgb>& v
 /// Renders passes 0 to `passes` - 1 of a scene.
 inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes) {
   scene.scene.render.estimator = type;
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, 1});
+  const TestFrame frame(scene);
+  const std::unique_ptr<Estimator> estimator = frame.estimator();
   PassMeans means;
   PassImage image;
   std::vector<Vec3d> sums;

@@ -41,6 +41,11 @@ class Checker(unittest.TestCase):
         self.refuses("src/scene/a.cpp", "#include <openvdb/openvdb.h>\n", "OpenVDB")
         self.accepts("src/volume/a.cpp", "#include <openvdb/openvdb.h>\n")
 
+    def test_openexr_stays_in_image(self):
+        for header in ("ImfHeader.h", "OpenEXR/OpenEXRConfig.h", "Imath/half.h", "half.h"):
+            self.refuses("src/film/a.cpp", f"#include <{header}>\n", "OpenEXR")
+        self.accepts("src/image/a.cpp", "#include <ImfHeader.h>\n")
+
     def test_public_headers_know_no_other_library(self):
         self.refuses("include/vdbeam/a.h", "#pragma once\n#include <tbb/task.h>\n", "standard library")
         self.refuses("include/vdbeam/a.h", "#pragma once\n#include \"math/ray.h\"\n", "standard library")

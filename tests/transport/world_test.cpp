@@ -181,7 +181,6 @@ TEST(World, VolumesWithoutContentAreLeftOut) {
   EXPECT_EQ(world.medium.volumes.size(), 1u);
   EXPECT_EQ(world.active_voxels.size(), 3u);
   EXPECT_EQ(world.active_voxels[1], 0u);
-  EXPECT_FALSE(world.grey);
 }
 
 TEST(World, EqualPhaseFunctionsShareAGroup) {
@@ -192,7 +191,6 @@ TEST(World, EqualPhaseFunctionsShareAGroup) {
   EXPECT_EQ(world.medium.phases.size(), 2u);
   EXPECT_EQ(world.medium.volumes[0].phase_index, world.medium.volumes[2].phase_index);
   EXPECT_NE(world.medium.volumes[0].phase_index, world.medium.volumes[1].phase_index);
-  EXPECT_TRUE(world.grey);
 }
 
 } // namespace

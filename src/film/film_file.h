@@ -15,7 +15,9 @@ struct FilmFileInfo {
   int frame = 1;
   std::vector<int> passes; ///< sorted; which passes the film holds
   std::uint64_t invalid_values = 0;
-  double seconds = 0; ///< spent on rendering them
+  double seconds = 0;    ///< spent on rendering them
+  bool glows = false;    ///< the film holds emission
+  bool unbiased = false; ///< as the plan has it (RenderPlan::unbiased)
 
   /// Same scene, frame, pixels and arithmetic: the passes may be added.
   bool joins(const FilmFileInfo& other) const;

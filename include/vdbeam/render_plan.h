@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vdbeam {
+
+/// What a render may consist of (docs/architecture.md).
+enum class Stage {
+  read,
+  majorants,
+  photons,
+  photon_importance,
+  kernel_pilot,
+  map,
+  neighbours,
+  photon_directions,
+  photon_color,
+  spectral_tracking,
+  depth_profiles,
+  emission,
+  shadow_rays,
+  beam_query,
+  march,
+  paths,
+  bias,
+  environment
+};
+inline constexpr std::size_t stage_count = 18;
+
+/// A stage as plans and reports call it, e.g. "photon importance".
+constexpr std::string_view stage_name(Stage stage) {
+  constexpr std::array<std::string_view, stage_count> names{"read",           "majorants",
+                                                            "photons",        "photon importance",
+                                                            "kernel pilot",   "map",
+                                                            "neighbours",     "photon directions",
+                                                            "photon colour",  "spectral tracking",
+                                                            "depth profiles", "emission",
+                                                            "shadow rays",    "beam query",
+                                                            "march",          "paths",
+                                                            "bias",           "environment"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+/// A set of stages.
+class StageSet {
+public:
+  constexpr StageSet() = default;
+  constexpr StageSet(std::initializer_list<Stage> stages) {
+    for (const Stage stage : stages)
+      bits_ |= bit(stage);
+  }
+  constexpr bool contains(Stage stage) const { return (bits_ & bit(stage)) != 0; }
+
+private:
+  static constexpr std::uint32_t bit(Stage stage) {
+    return std::uint32_t{1} << static_cast<unsigned>(stage);
+  }
+  std::uint32_t bits_ = 0;
+};
+
+/// Whether a stage runs, and why or why not.
+struct PlanStage {
+  Stage stage;
+  bool needed = false;
+  std::string reason; ///< one clause
+};
+
+/// What is decided about a render before its first pass, as a value. Estimators follow it.
+struct RenderPlan {
+  std::vector<PlanStage> stages; ///< all of them, in the order of Stage
+  /// Per light of the scene: single scattering is found by shadow rays. What the other lights send
+  /// is left to photons, or to scattered rays that leave the scene.
+  std::vector<bool> shadow_ray_lights;
+  /// The mean of the passes is the true picture; else its bias vanishes only in the limit.
+  bool unbiased = false;
+  std::uint64_t volume_bytes = 0, photon_bytes = 0, film_bytes = 0; ///< estimates
+
+  bool needs(Stage stage) const {
+    for (const PlanStage& s : stages)
+      if (s.stage == stage)
+        return s.needed;
+    return false;
+  }
+};
+
+} // namespace vdbeam

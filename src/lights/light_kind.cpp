@@ -1,0 +1,38 @@
+#include "lights/light_table.h"
+#include "vdbeam/error.h"
+
+#include <fmt/core.h>
+
+namespace vdbeam {
+
+const LightKind& light_kind(const LightType& type) {
+  for (const LightKind* kind : light_table())
+    if (kind->name == type.name)
+      return *kind;
+  throw InputError(fmt::format("light.type: there is no light \"{}\"", type.name));
+}
+
+std::optional<LightComplaint> direction_complaint(const LightSettings& settings) {
+  if (length(settings.direction) == 0)
+    return LightComplaint{"direction", "must not be [0, 0, 0]"};
+  return std::nullopt;
+}
+
+Rgb estimate_power(const Light& light) {
+  constexpr int count = 4096;
+  Vec3d sum;
+  for (int i = 0; i < count; ++i) {
+    Rng rng({}, RngStage::light, static_cast<std::uint64_t>(i));
+    sum += Vec3d(light.emit(rng).flux);
+  }
+  return Rgb(sum / static_cast<double>(count));
+}
+
+Vec3d unit_direction(const Vec3d& v, const char* key) {
+  const double scale = max_component(Vec3d{std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(scale > 0 && scale < std::numeric_limits<double>::infinity()))
+    throw InputError(fmt::format("{} must have a direction, got [{}, {}, {}]", key, v.x, v.y, v.z));
+  return normalize(v / scale);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,73 @@
+#include "render/plan_needs.h"
+
+#include "lights/light_table.h"
+#include "math/color.h"
+#include "phase/phase_function.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+void add_volume(const VolumeSettings& volume, const VolumeFacts& facts, PlanNeeds& needs) {
+  if (facts.glowing_voxels > 0) {
+    needs.glows = true;
+    needs.glow_visible = needs.glow_visible || facts.in_view;
+    needs.colored =
+        needs.colored || !volume.emission.temperature.empty() || !is_grey(volume.emission.color);
+  }
+  if (facts.empty || !volume.absorbs_or_scatters())
+    return;
+  needs.medium = true;
+  needs.visible = needs.visible || facts.in_view;
+  needs.scatters = needs.scatters || max_component(volume.albedo) > 0;
+  needs.anisotropic = needs.anisotropic || !PhaseFunction(volume.phase).isotropic();
+  needs.chromatic = needs.chromatic || !is_grey(volume.extinction_scale);
+  needs.colored = needs.colored || needs.chromatic || !is_grey(volume.albedo);
+}
+
+/// Whether single scattering of a light is found by shadow rays. An estimator without photons finds
+/// a light that wants none by the scattered rays that leave the scene.
+bool takes_shadow_rays(const LightSettings& light, const LightKind& kind,
+                       const EstimatorKind& estimator, DirectLight direct) {
+  const DirectLight asked = light.direct.value_or(direct);
+  if (estimator.shoots_photons() && asked != DirectLight::automatic)
+    return asked == DirectLight::sampled;
+  return kind.wants_shadow_rays(light);
+}
+
+void add_light(const LightSettings& light, const EstimatorKind& estimator, DirectLight direct,
+               PlanNeeds& needs) {
+  const LightKind& kind = light_kind(light.type);
+  needs.surrounded = needs.surrounded || kind.surrounds;
+  needs.colored = needs.colored || kind.colored(light);
+  needs.shadow_ray_lights.push_back(takes_shadow_rays(light, kind, estimator, direct));
+}
+
+} // namespace
+
+bool PlanNeeds::shadow_rays() const {
+  return scatters && std::find(shadow_ray_lights.begin(), shadow_ray_lights.end(), true) !=
+                         shadow_ray_lights.end();
+}
+
+PlanNeeds find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes,
+                     const EstimatorKind& estimator) {
+  PlanNeeds needs;
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    add_volume(scene.volumes[i], volumes[i], needs);
+  for (const LightSettings& light : scene.lights)
+    add_light(light, estimator, scene.render.direct, needs);
+  const int bounces = scene.render.max_bounces.value_or(std::numeric_limits<int>::max());
+  const bool lit = !scene.lights.empty() || needs.glows;
+  needs.scatters = needs.scatters && needs.visible && lit && bounces > 0;
+  // No shadow ray looks for what glows: its first flight is left to photons.
+  const bool first_flight =
+      needs.glows || std::find(needs.shadow_ray_lights.begin(), needs.shadow_ray_lights.end(),
+                               false) != needs.shadow_ray_lights.end();
+  needs.photons = estimator.shoots_photons() && needs.scatters && (bounces > 1 || first_flight);
+  return needs;
+}
+
+} // namespace vdbeam

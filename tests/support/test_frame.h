@@ -1,0 +1,32 @@
+#pragma once
+
+#include "estimators/estimator_table.h"
+#include "render/plan.h"
+#include "support/memory_scene.h"
+#include "transport/camera.h"
+
+namespace vdbeam::test {
+
+/// A frame of a scene, ready for estimators, which refer to it.
+class TestFrame {
+public:
+  explicit TestFrame(const MemoryScene& scene)
+      : world(scene.world()), camera(scene.scene.camera, scene.scene.image, world.space),
+        plan(plan_stages(scene.scene, volume_facts(world, camera))),
+        type_(scene.scene.render.estimator) {}
+  TestFrame(const TestFrame&) = delete;
+
+  EstimatorInput input(std::uint64_t frame = 1) const { return {world, camera, plan, frame}; }
+  std::unique_ptr<Estimator> estimator(std::uint64_t frame = 1) const {
+    return make_estimator(type_, input(frame));
+  }
+
+  const World world;
+  const Camera camera;
+  const RenderPlan plan;
+
+private:
+  EstimatorType type_;
+};
+
+} // namespace vdbeam::test
