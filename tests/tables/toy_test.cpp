@@ -1,5 +1,6 @@
 // A new estimator and a new light are one file and one line each: this program links tables that
 // are one line longer than the renderer's, and everything that reads them follows.
+#include "lights/light_table.h"
 #include "math/color.h"
 #include "report/report.h"
 #include "scene/scene_keys.h"
@@ -75,8 +76,8 @@ std::span<const EstimatorKind* const> estimator_table() {
 }
 
 std::span<const LightKind* const> light_table() {
-  static constexpr std::array table{&distant_light, &point_light, &spot_light, &environment_light,
-                                    &lantern_light};
+  static constexpr std::array table{&distant_light,     &point_light, &spot_light,
+                                    &environment_light, &sky_light,   &lantern_light};
   return table;
 }
 
