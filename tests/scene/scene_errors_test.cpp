@@ -280,7 +280,7 @@ TEST(ValidateScene, ChecksScenesFilledByHand) {
   scene.render.radius = -1;
   EXPECT_THROW(validate_scene(scene), InputError);
   scene.render.radius = 0;
-  scene.lights[0].type = static_cast<LightType>(99);
+  scene.lights[0].type = {"lantern"};
   EXPECT_THROW(validate_scene(scene), InputError);
   scene.lights[0].type = LightType::distant;
   scene.volumes[0].file = "";
