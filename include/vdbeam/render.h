@@ -41,23 +41,27 @@ struct CheckpointSettings {
   bool resume = true; ///< begin with what is in the file, if it is of this scene
 };
 
-/// Hooks of the caller; all optional.
+/// What of a frame is rendered, and the files that passes go to.
+struct FrameSettings {
+  std::optional<PassRange> pass_range; ///< exactly these instead of those of the scene's stop rule
+  std::optional<PixelRegion> region;   ///< only this part; its pixels are those of the whole image
+  std::string partial; ///< where the passes go as a partial image, for merge_partials
+  /// Written at intervals and when stopped, removed by nobody but the caller.
+  CheckpointSettings checkpoint;
+  /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
+  const Image* reference = nullptr;
+};
+
+/// By which the caller follows a render and ends it; all optional. They are called on the rendering
+/// thread.
 struct RenderHooks {
-  /// After each pass, on the rendering thread.
+  /// After each pass.
   std::function<void(const PassRecord&, const RenderStatistics&)> on_pass;
   /// A line for the user, as soon as it is known.
   std::function<void(const std::string&)> on_note;
   /// Ends the render soon when it becomes true; the pass in progress is lost, the first for a quick
   /// look.
   const std::atomic<bool>* stop = nullptr;
-  /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
-  const Image* reference = nullptr;
-  int frame = 1;                       ///< keys the random numbers
-  std::optional<PassRange> pass_range; ///< exactly these instead of those of the scene's stop rule
-  std::optional<PixelRegion> region;   ///< only this part; its pixels are those of the whole image
-  std::string partial; ///< where the passes go as a partial image, for merge_partials
-  /// Written at intervals and when stopped, removed by nobody but the caller.
-  CheckpointSettings checkpoint;
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
   std::function<void(RenderResult&)> on_snapshot;
@@ -74,10 +78,11 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
 
 /// Renders one frame of a scene that is ready. Throws InputError and FrameError.
 RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
-                    const RenderHooks& hooks = {});
+                    const FrameSettings& frame = {}, const RenderHooks& hooks = {});
 
 /// Renders one frame. Throws InputError and FrameError.
-RenderResult render(const Scene& scene, const RenderHooks& hooks = {});
+RenderResult render(const Scene& scene, const FrameSettings& frame = {},
+                    const RenderHooks& hooks = {});
 
 /// How merge_partials joins.
 struct MergeSettings {

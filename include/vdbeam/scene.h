@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/emission_settings.h"
+#include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
 #include "vdbeam/vec.h"
 
@@ -122,6 +123,7 @@ struct RenderSettings {
 
 struct Scene {
   std::string path; ///< where it came from, for messages
+  FrameTime frame;  ///< which frame of a sequence it is
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;

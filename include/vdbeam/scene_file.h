@@ -8,9 +8,10 @@
 namespace vdbeam {
 
 /// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB. `overrides` are
-/// "key.path=value" strings, applied last. `frame` replaces ####, %04d and $F4 in paths. Throws
-/// InputError "file:line: key ..." if this is not a valid scene.
-Scene load_scene(const std::string& path, int frame = 1,
+/// "key.path=value" strings, applied last. The number of `frame` replaces ####, %04d and $F4 in
+/// paths; animated keys are evaluated at its time. Throws InputError "file:line: key ..." if this
+/// is not a valid scene.
+Scene load_scene(const std::string& path, const FrameTime& frame = {},
                  const std::vector<std::string>& overrides = {});
 
 /// The text of a commented scene file for this volume (`vdbeam init`), with paths relative to

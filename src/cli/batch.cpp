@@ -2,6 +2,7 @@
 
 #include "cli/signals.h"
 #include "cli/streams.h"
+#include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
@@ -17,12 +18,6 @@
 
 namespace vdbeam::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Ends the program although a frame is still being read, which may take longer than a farm waits.
 /// Reading leaves nothing behind.
@@ -54,7 +49,6 @@ void Batch::say(const std::string& line) const {
 
 Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
   Loaded loaded;
-  loaded.frame.frame = frame;
   loaded.frame.prepared = previous;
   try {
     loaded.frame.scene = document_.scene_at(frame, options_.missing);
@@ -157,7 +151,7 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
 
 /// One frame and what became of it. False where the batch ends with it.
 bool Batch::process(std::size_t index, const Loaded& loaded) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   FrameOutcome outcome;
   outcome.frame = frames_[index];
   outcome.output = substitute_frame(options_.frame.files.output, outcome.frame);
@@ -165,7 +159,7 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
   try {
     handle(index, loaded, outcome);
   } catch (const std::exception& error) {
-    outcome.seconds = seconds_since(start);
+    outcome.seconds = watch.seconds();
     fail(index, error, outcome);
     if (frames_.size() == 1) { // the program has its own way to tell it
       finish();
@@ -173,7 +167,7 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
     }
     return !options_.stop_on_error;
   }
-  outcome.seconds = seconds_since(start);
+  outcome.seconds = watch.seconds();
   summary_.outcomes.push_back(outcome);
   if (outcome.status != "interrupted")
     farm_.frame_at(index, 1);

@@ -5,6 +5,7 @@
 #include "cli/signals.h"
 #include "film/film_file.h"
 #include "image/output_formats.h"
+#include "machine/stopwatch.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
 #include "scene/scene_enums.h"
@@ -14,7 +15,6 @@
 #include "vdbeam/image_file.h"
 #include "vdbeam/scene_file.h"
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -115,7 +115,7 @@ std::string FrameRenderer::region_text() const {
 
 void FrameRenderer::add_metadata(Image& image, const LoadedFrame& loaded,
                                  const RenderResult& result) const {
-  add_image_metadata(image, loaded.scene, result, loaded.frame, loaded.hash);
+  add_image_metadata(image, loaded.scene, result, loaded.hash);
   if (options_.region)
     image.metadata["vdbeam:region"] = region_text();
 }
@@ -125,7 +125,7 @@ std::string FrameRenderer::why_no_part(const std::string& path, const LoadedFram
   const PassRange range = *options_.pass_range;
   std::vector<int> wanted(static_cast<std::size_t>(range.last - range.first + 1));
   std::iota(wanted.begin(), wanted.end(), range.first);
-  if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame ||
+  if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame() ||
       info.passes != wanted)
     return "is of another scene, frame or pass range";
   read_film(path, info); // all of it: the header does not tell a truncated file
@@ -146,7 +146,8 @@ std::string FrameRenderer::why_no_image(const std::string& path, const LoadedFra
   if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
     return "is of another scene";
   const auto frame = image.numbers.find("vdbeam:frame");
-  return frame != image.numbers.end() && frame->second == loaded.frame ? "" : "is of another frame";
+  return frame != image.numbers.end() && frame->second == loaded.frame() ? ""
+                                                                         : "is of another frame";
 }
 
 std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
@@ -163,20 +164,20 @@ std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
   const auto image = [&](const std::string& path) { return why_no_image(path, loaded); };
   const auto part = [&](const std::string& path) { return why_no_part(path, loaded); };
   if (!options_.pass_range)
-    return why(output(loaded.frame), image);
+    return why(output(loaded.frame()), image);
   if (!options_.merged.empty() &&
-      why(substitute_frame(options_.merged, loaded.frame), image).empty())
+      why(substitute_frame(options_.merged, loaded.frame()), image).empty())
     return "";
-  return why(output(loaded.frame), part);
+  return why(output(loaded.frame()), part);
 }
 
 void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   const std::string hash = pass_hash(loaded.scene);
   std::vector<std::string> paths;
   for (const std::string& pattern : options_.parts) {
-    const std::string path = substitute_frame(pattern, loaded.frame);
+    const std::string path = substitute_frame(pattern, loaded.frame());
     const FilmFileInfo info = read_film_info(path);
-    if (info.pass_hash != hash || info.frame != loaded.frame)
+    if (info.pass_hash != hash || info.frame != loaded.frame())
       throw FrameError(path + ": shows another frame, another scene, or volumes that have changed "
                               "since; render its passes again");
     paths.push_back(path);
@@ -188,19 +189,19 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   if (options_.region)
     image.metadata["vdbeam:region"] = region_text();
   if (!options_.files.preview.empty())
-    write_image(image, substitute_frame(options_.files.preview, loaded.frame), {options_.exposure});
-  write_image(image, output(loaded.frame), {options_.exposure});
-  remove_side_files(loaded.frame);
+    write_image(image, substitute_frame(options_.files.preview, loaded.frame()),
+                {options_.exposure});
+  write_image(image, output(loaded.frame()), {options_.exposure});
+  remove_side_files(loaded.frame());
 }
 
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
   const FrameFiles& files = options_.files;
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   ReportContext context;
-  context.frame = loaded.frame;
   context.scene_hash = loaded.hash;
-  context.output = output(loaded.frame);
-  context.reference = substitute_frame(files.reference, loaded.frame);
+  context.output = output(loaded.frame());
+  context.reference = substitute_frame(files.reference, loaded.frame());
   const bool complete = result.stopped_by != "stop";
   std::optional<FrameError> lost_preview;
   if (complete) {
@@ -208,7 +209,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     // The image comes last, for it says that the frame is done; yet no preview is worth an image.
     try {
       if (!files.preview.empty())
-        write_image(result.image, substitute_frame(files.preview, loaded.frame),
+        write_image(result.image, substitute_frame(files.preview, loaded.frame()),
                     {options_.exposure, options_.view});
     } catch (const FrameError& problem) {
       lost_preview = problem;
@@ -216,16 +217,15 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
     if (!result.quick_look)
-      remove_side_files(loaded.frame);
+      remove_side_files(loaded.frame());
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);
     write_image(result.image, side_file(context.output, "snapshot"), {});
   }
-  result.statistics.write =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.statistics.write = watch.seconds();
   if (!files.report.empty())
     write_json_output(report_json(loaded.scene, result, context),
-                      substitute_frame(files.report, loaded.frame));
+                      substitute_frame(files.report, loaded.frame()));
   if (lost_preview)
     throw *lost_preview;
 }
@@ -236,9 +236,9 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
   Film film(loaded.scene.image.width, loaded.scene.image.height);
   result.image = film.develop();
   add_metadata(result.image, loaded, result);
-  write_image(result.image, output(loaded.frame), {options_.exposure, options_.view});
+  write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
   if (!options_.files.preview.empty())
-    write_image(result.image, substitute_frame(options_.files.preview, loaded.frame),
+    write_image(result.image, substitute_frame(options_.files.preview, loaded.frame()),
                 {options_.exposure, options_.view});
 }
 
@@ -250,10 +250,18 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   std::optional<Image> reference;
   if (!options_.files.reference.empty())
     reference =
-        read_reference(substitute_frame(options_.files.reference, loaded.frame), scene.image);
+        read_reference(substitute_frame(options_.files.reference, loaded.frame()), scene.image);
   progress.start(start_text(scene));
   for (const std::string& note : scene.notes)
     progress.note(note);
+  FrameSettings frame;
+  frame.pass_range = options_.pass_range;
+  frame.region = options_.region;
+  if (options_.pass_range)
+    frame.partial = output(loaded.frame());
+  frame.checkpoint = options_.checkpoint;
+  frame.checkpoint.path = checkpoint_path(loaded.frame());
+  frame.reference = reference ? &*reference : nullptr;
   RenderHooks hooks;
   hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
     progress.pass(record);
@@ -261,18 +269,10 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   };
   hooks.on_note = [&](const std::string& note) { progress.note(note); };
   hooks.stop = &stop_requested();
-  hooks.reference = reference ? &*reference : nullptr;
-  hooks.frame = loaded.frame;
-  hooks.pass_range = options_.pass_range;
-  hooks.region = options_.region;
-  if (options_.pass_range)
-    hooks.partial = output(loaded.frame);
-  hooks.checkpoint = options_.checkpoint;
-  hooks.checkpoint.path = checkpoint_path(loaded.frame);
   hooks.snapshot = &snapshot_requested();
   hooks.on_snapshot = [&](RenderResult& so_far) {
-    const std::string path = side_file(output(loaded.frame), "snapshot");
-    add_image_metadata(so_far.image, scene, so_far, loaded.frame, loaded.hash);
+    const std::string path = side_file(output(loaded.frame()), "snapshot");
+    add_image_metadata(so_far.image, scene, so_far, loaded.hash);
     so_far.image.numbers.erase("vdbeam:complete");
     write_exr(so_far.image, path);
     progress.note(
@@ -280,22 +280,22 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   };
   if (options_.early_preview && !options_.files.preview.empty())
     hooks.on_quick_look = [&](RenderResult& look) {
-      write_image(look.image, substitute_frame(options_.files.preview, loaded.frame),
+      write_image(look.image, substitute_frame(options_.files.preview, loaded.frame()),
                   {options_.exposure});
     };
-  RenderResult result = render(scene, loaded.prepared, hooks);
+  RenderResult result = render(scene, loaded.prepared, frame, hooks);
   write_files(loaded, result);
   if (result.stopped_by == "stop") {
     progress.finish(
-        stop_text(result, hooks.checkpoint.path, side_file(output(loaded.frame), "snapshot")));
+        stop_text(result, frame.checkpoint.path, side_file(output(loaded.frame()), "snapshot")));
     return false;
   }
   if (result.quick_look)
     throw FrameError(fmt::format("{}: the time limit of {} ended the frame before its first pass "
                                  "was finished; the image is a quick look; give it more time or "
                                  "fewer pixels",
-                                 output(loaded.frame), format_duration(*scene.render.time)));
-  progress.finish(end_text(result, output(loaded.frame)));
+                                 output(loaded.frame()), format_duration(*scene.render.time)));
+  progress.finish(end_text(result, output(loaded.frame())));
   return true;
 }
 

@@ -32,10 +32,11 @@ struct FrameOptions {
 
 /// A frame that is ready to be rendered.
 struct LoadedFrame {
-  int frame = 1;
   Scene scene;
   std::string hash; ///< of the scene
   PreparedScenePtr prepared;
+
+  int frame() const { return scene.frame.number; }
 };
 
 /// "out.0007.exr" gives "out.0007.checkpoint.exr": beside the image, for any kind of output.

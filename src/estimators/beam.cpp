@@ -12,7 +12,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const int channels = photons_.map().channels();
   const bool first_flights = photons_.map().has_first_flights();
   WeightSettings weights;
-  weights.store = world.settings.store;
+  weights.store = input_.settings.store;
   weights.albedo_in_power = photons_.plan().albedo_in_power;
   weights.colored = channels > 1;
   weights.reach = 4 * photons_.map().mean_radius();

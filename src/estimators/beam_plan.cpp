@@ -43,7 +43,7 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
     sample.position.push_back(pilot.position[i]);
     sample.power.push_back(pilot.power[i]);
   }
-  RadiusSettings radii = radius_settings(input.world, plan, 0);
+  RadiusSettings radii = radius_settings(input, plan, 0);
   const double photons =
       plan.stored_per_path * static_cast<double>(choose_paths(input, plan.stored_per_path));
   radii.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
@@ -67,7 +67,7 @@ void thin_by_view(const EstimatorInput& input, const TracedPhotons& pilot, Photo
 /// The neighbours at which pictures of narrow and wide kernels tell that the error is least.
 double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const World& world = input.world;
-  const KernelShare share = boundary_share(world, input.camera, KernelDomain::disc);
+  const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
   const double trial_paths = std::ceil(std::min(most_trial_paths, trial_share * paths));
   KernelTrial narrow, wide;
@@ -83,17 +83,17 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     if (input.stopped())
       return plan.neighbours;
     for (KernelTrial* trial : {&narrow, &wide}) {
-      RadiusSettings radii = radius_settings(world, plan, 0);
+      RadiusSettings radii = radius_settings(input, plan, 0);
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
       trial->maps.push_back(PhotonMap::build(traced.photons, input.photon_channels(), radii,
-                                             world.settings.kernel_shape));
+                                             input.settings.kernel_shape));
       if (share)
         trial->maps.back().divide_power(share);
     }
   }
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
   const double best =
-      best_neighbours(narrow, wide, errors, trial_paths / paths, world.settings.alpha);
+      best_neighbours(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
   return in_kernel_steps(best);
 }
 

@@ -28,6 +28,7 @@ public:
 struct EstimatorInput {
   const World& world;
   const Camera& camera;
+  const RenderSettings& settings;
   const RenderPlan& plan; ///< which stages run; no estimator decides that again
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
@@ -37,11 +38,11 @@ struct EstimatorInput {
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera, plan, frame, window, stop, photons};
+    return {other, camera, settings, plan, frame, window, stop, photons};
   }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera, other, frame, window, stop, photons};
+    return {world, camera, settings, other, frame, window, stop, photons};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a

@@ -88,9 +88,9 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
                    const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key) {
   const World& world = input.world;
   TileRays rays;
-  rays.prepare(world, input.camera, key, place.x0, place.y0);
+  rays.prepare(input, key, place.x0, place.y0);
   WeightSettings weights;
-  weights.store = world.settings.store;
+  weights.store = input.settings.store;
   weights.albedo_in_power = plan.albedo_in_power;
   weights.colored = input.photon_channels() > 1;
   BeamTile tile;
@@ -104,7 +104,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || ray.profile.empty())
       continue;
-    shade_profile(world, ray.camera, ray.profile, i, beside, emission_rays);
+    shade_profile(input, ray.camera, ray.profile, i, beside, emission_rays);
     // One sample is enough, since it only enters the pixel's weight.
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,

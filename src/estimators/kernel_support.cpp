@@ -53,13 +53,13 @@ float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
   return std::max(least_share, static_cast<float>(hits) / 14);
 }
 
-KernelShare boundary_share(const World& world, const Camera& camera, KernelDomain domain) {
+KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain) {
   // The share is that of a positive kernel; a kernel of fourth order, whose rim is negative, would
   // gain bias by it. Scattering events lie in the medium, wherever it is.
-  if (world.settings.store == PhotonStore::scatter ||
-      world.settings.kernel_shape == KernelShape::fourth_order)
+  if (input.settings.store == PhotonStore::scatter ||
+      input.settings.kernel_shape == KernelShape::fourth_order)
     return nullptr;
-  const KernelSupport support(world.medium, camera);
+  const KernelSupport support(input.world.medium, input.camera);
   if (domain == KernelDomain::ball)
     return
         [support](const Vec3f& photon, float radius) { return support.ball_share(photon, radius); };

@@ -1,8 +1,7 @@
 #pragma once
 
+#include "estimators/estimator.h"
 #include "photonmap/photon_map.h"
-#include "transport/camera.h"
-#include "transport/world.h"
 
 namespace vdbeam {
 
@@ -36,7 +35,7 @@ private:
 enum class KernelDomain { disc, ball };
 
 /// The share that photons' powers of a map are to be divided by for this camera; none where the
-/// estimate gains nothing by it. World and camera must outlive it.
-KernelShare boundary_share(const World& world, const Camera& camera, KernelDomain domain);
+/// estimate gains nothing by it. The input's world must outlive it.
+KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain);
 
 } // namespace vdbeam

@@ -11,12 +11,14 @@ namespace {
 /// Tr(a) - Tr(b), exactly; with scatter storage Tr times the step's length.
 class RayMarcher {
 public:
-  RayMarcher(const World& world, const PhotonPass& photons) : world_(world), photons_(photons) {
+  RayMarcher(const RenderSettings& settings, const PhotonPass& photons)
+      : world_(photons.world()), photons_(photons),
+        scatter_photons_(settings.store == PhotonStore::scatter) {
     float voxel = infinity;
-    for (const Volume& volume : world.medium.volumes)
+    for (const Volume& volume : world_.medium.volumes)
       voxel = std::min(voxel, volume.voxel_size);
-    step_ = static_cast<float>(world.settings.step) * voxel;
-    reach_ = world.settings.store == PhotonStore::scatter ? 4 * photons.map().mean_radius() : 0;
+    step_ = static_cast<float>(settings.step) * voxel;
+    reach_ = scatter_photons_ ? 4 * photons.map().mean_radius() : 0;
   }
 
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
@@ -59,7 +61,6 @@ private:
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
             const std::vector<Rgb>& gathered) const {
     const std::vector<Volume>& volumes = world_.medium.volumes;
-    const bool scatter = world_.settings.store == PhotonStore::scatter;
     Rgb tau, piece;
     for (std::size_t v = 0; v < volumes.size(); ++v) {
       tau += volumes[v].channel_scale * before[v];
@@ -69,7 +70,7 @@ private:
     for (int c = 0; c < 3; ++c) {
       const float tr = std::exp(-tau[c]);
       const float whole =
-          scatter ? std::exp(-0.5f * piece[c]) * tr * step : tr * -std::expm1(-piece[c]);
+          scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * -std::expm1(-piece[c]);
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         const float share = piece[c] > 0
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
@@ -83,6 +84,7 @@ private:
 
   const World& world_;
   const PhotonPass& photons_;
+  bool scatter_photons_;
   float step_ = 0, reach_ = 0;
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights
@@ -94,7 +96,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
   photons_.trace_and_build(pass, statistics);
   shade_tiles(input_, photons_, pass, image, statistics,
               [&](TileScratch& scratch, const RngKey& key) {
-                RayMarcher marcher(photons_.world(), photons_);
+                RayMarcher marcher(input_.settings, photons_);
                 for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
                   const TileRays::PixelRay& ray = scratch.rays[i];
                   if (!ray.inside || ray.profile.empty())

@@ -5,12 +5,12 @@
 #include "estimators/estimator_table.h"
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
+#include "machine/stopwatch.h"
 #include "transport/distance_sampling.h"
 #include "transport/photon_tracing.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include <chrono>
 #include <utility>
 
 namespace vdbeam {
@@ -29,8 +29,8 @@ int choose_walks_per_ray(const EstimatorInput& input) {
   PhotonPassSettings pilot;
   pilot.paths = pilot_paths;
   pilot.skip_first_flight.assign(input.world.lights.size(), true);
-  pilot.max_bounces = std::min(input.world.settings.max_bounces.value_or(16), 16);
-  pilot.key = {input.world.settings.seed, input.frame, ~std::uint64_t(0)};
+  pilot.max_bounces = std::min(input.settings.max_bounces.value_or(16), 16);
+  pilot.key = {input.settings.seed, input.frame, ~std::uint64_t(0)};
   pilot.stop = input.stop;
   const double collisions = trace_photons(input.world, pilot).mean_collisions;
   return std::clamp(static_cast<int>(std::lround(48 / (1 + collisions))), 4, 32);
@@ -39,13 +39,14 @@ int choose_walks_per_ray(const EstimatorInput& input) {
 } // namespace
 
 PathEstimator::PathEstimator(const EstimatorInput& input)
-    : input_(input), shadow_rays_(input.shadow_ray_lights()), tracer_(input.world, shadow_rays_),
+    : input_(input), shadow_rays_(input.shadow_ray_lights()),
+      tracer_(input.world, shadow_rays_, input.settings.max_bounces),
       scatters_(input.plan.needs(Stage::paths)) {
   if (!scatters_)
     return;
   walks_per_ray_ = choose_walks_per_ray(input);
   uncounted_pilot_paths_ = pilot_paths;
-  const int samples = input_.world.settings.direct_samples;
+  const int samples = input_.settings.direct_samples;
   direct_samples_ = samples > 0 ? samples : std::max(4, walks_per_ray_ / 4);
 }
 
@@ -85,8 +86,8 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   const World& world = input_.world;
   Rng rng(key, RngStage::path, pixel);
   DepthProfile& profile = scratch.profile;
-  profile.build(world.medium, camera.segment, static_cast<float>(world.settings.cutoff));
-  shade_profile(world, camera, profile, target, image, scratch.counts.emission_rays);
+  profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff));
+  shade_profile(input_, camera, profile, target, image, scratch.counts.emission_rays);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
@@ -104,7 +105,7 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
 }
 
 RngKey PathEstimator::key(int pass) const {
-  return {input_.world.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
+  return {input_.settings.seed, input_.frame, static_cast<std::uint64_t>(pass)};
 }
 
 /// Pixel `pixel` of the picture, to pixel `target` of `image`.
@@ -172,7 +173,7 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
 }
 
 void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(pass);
   image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty());
@@ -190,8 +191,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   for (const Scratch& scratch : scratches)
     statistics += scratch.counts;
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
-  statistics.path +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics.path += watch.seconds();
 }
 
 const EstimatorKind path_estimator{

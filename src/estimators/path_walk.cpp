@@ -32,8 +32,7 @@ void WalkTracer::find_narrow_lights() {
   for (const PhaseFunction& phase : world_.medium.phases)
     peaked_.push_back(4 * pi * phase.evaluate(1) > sharp_peak);
   // Detours would count scatterings differently.
-  if (world_.settings.max_bounces ||
-      std::find(peaked_.begin(), peaked_.end(), true) == peaked_.end())
+  if (max_bounces_ || std::find(peaked_.begin(), peaked_.end(), true) == peaked_.end())
     return;
   for (std::size_t i = 0; i < world_.lights.size(); ++i)
     if (shadow_rays_[i] && world_.lights[i].narrow_direction())
@@ -118,8 +117,7 @@ void WalkTracer::meet(PathWalk& walk, const Collision& hit) const {
 bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
   if (meets_light_ && !world_.medium.chromatic)
     gather_light(walk, hit.t);
-  const std::optional<int>& most = world_.settings.max_bounces;
-  if (most && walk.bounces >= *most)
+  if (max_bounces_ && walk.bounces >= *max_bounces_)
     return false;
   walk.throughput *= hit.volume->albedo;
   if (!survive_roulette(roulette_below, walk.throughput, walk.rng) ||

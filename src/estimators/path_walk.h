@@ -42,9 +42,10 @@ struct PathWalk : Flight {
 /// first, and the two ways share it by the balance heuristic (docs/physics.md, "The reference").
 class WalkTracer {
 public:
-  /// `shadow_rays`: per light, whether next-event estimation samples it.
-  WalkTracer(const World& world, std::vector<bool> shadow_rays)
-      : world_(world), shadow_rays_(std::move(shadow_rays)),
+  /// `shadow_rays`: per light, whether next-event estimation samples it. `max_bounces`: scattering
+  /// events of a light path; absent: no limit.
+  WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
+      : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {
     find_narrow_lights();
   }
@@ -75,6 +76,7 @@ private:
 
   const World& world_;
   std::vector<bool> shadow_rays_;
+  std::optional<int> max_bounces_;
   bool meets_light_;                       ///< flights may meet light before they end
   std::vector<std::size_t> narrow_lights_; ///< towards which walks make detours
   std::vector<bool> peaked_;               ///< per phase function: has a sharp forward peak

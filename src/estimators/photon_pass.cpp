@@ -1,27 +1,17 @@
 #include "estimators/photon_pass.h"
 
 #include "estimators/photon_cache.h"
+#include "machine/stopwatch.h"
 
-#include <chrono>
 #include <utility>
 
 namespace vdbeam {
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-} // namespace
 
 PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
                        KernelDomain domain)
     : input_(input), worlds_(input.world, default_photon_plan(input).similar),
       world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
-      boundary_share_(boundary_share(input.world, input.camera, domain)) {}
+      boundary_share_(boundary_share(input, domain)) {}
 
 /// The pilot belongs to no pass; its counts go with the first.
 void PhotonPass::count_pilot(RenderStatistics& statistics) {
@@ -34,19 +24,19 @@ void PhotonPass::count_pilot(RenderStatistics& statistics) {
 void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   world_ = &worlds_.of(pass);
   const World& world = *world_;
-  const RadiusSettings radii = radius_settings(world, plan_, pass);
+  const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
   if (!input_.plan.needs(Stage::photons)) {
-    map_ = PhotonMap::build({}, 1, radii, world.settings.kernel_shape);
+    map_ = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
     return;
   }
   count_pilot(statistics);
   // Only the boundary's correction depends on the camera.
   make_map(pass_settings(input_.in(world), plan_, static_cast<std::uint64_t>(pass)), radii,
            statistics);
-  const auto start = Clock::now();
+  const Stopwatch watch;
   if (boundary_share_)
     map_.divide_power(boundary_share_);
-  statistics.radii += seconds_since(start);
+  statistics.radii += watch.seconds();
   statistics.photons_stored += map_.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);
   statistics.neighbourhoods += adaptive ? map_.size() : 0;
@@ -64,16 +54,16 @@ void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettin
     ++statistics.maps_reused;
     return;
   }
-  const auto start = Clock::now();
+  const Stopwatch watch;
   const World& world = *world_;
   TracedPhotons traced = trace_photons(world, settings);
-  statistics.trace += seconds_since(start);
+  statistics.trace += watch.seconds();
   const bool stopped = input_.stopped();
   if (stopped)
     traced = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
   map_ = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
-                          world.settings.kernel_shape);
+                          input_.settings.kernel_shape);
   statistics.order += map_.times().order;
   statistics.radii += map_.times().radii;
   statistics.build += map_.times().build;

@@ -60,8 +60,9 @@ bool common_albedo(const Medium& medium) {
 /// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
 /// from all around; photons of other lights would lose it. Scattering events are counted exactly
 /// where their number is limited, and the scene's own light is not split from the peak's.
-bool may_take_peak_out(const World& world, const std::vector<bool>& sampled_lights) {
-  const RenderSettings& settings = world.settings;
+bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sampled_lights) {
+  const World& world = input.world;
+  const RenderSettings& settings = input.settings;
   bool possible = settings.forward_peak == ForwardPeak::automatic &&
                   settings.store == PhotonStore::fluence && !settings.max_bounces &&
                   world.medium.emitters.empty();
@@ -74,10 +75,10 @@ bool may_take_peak_out(const World& world, const std::vector<bool>& sampled_ligh
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {
   const World& world = input.world;
-  const RenderSettings& settings = world.settings;
+  const RenderSettings& settings = input.settings;
   PhotonPlan plan;
   plan.sampled_lights = input.shadow_ray_lights();
-  plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(world, plan.sampled_lights);
+  plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(input, plan.sampled_lights);
   plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
@@ -85,7 +86,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
 }
 
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
-  const RenderSettings& settings = input.world.settings;
+  const RenderSettings& settings = input.settings;
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = pilot_paths;
   TracedPhotons pilot = trace_photons(input.world, pass);
@@ -101,7 +102,7 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
 }
 
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) {
-  const RenderSettings& settings = input.world.settings;
+  const RenderSettings& settings = input.settings;
   double paths = static_cast<double>(settings.photons.value_or(0)) *
                  std::min(1 / stored_per_path, most_paths_per_photon);
   if (!settings.photons)
@@ -124,17 +125,17 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   const World& world = input.world;
   PhotonPassSettings settings;
   settings.paths = plan.paths;
-  settings.store = world.settings.store;
+  settings.store = input.settings.store;
   settings.store_probability = static_cast<float>(plan.store_probability);
   settings.store_probability_by_cell = plan.store_probability_by_cell;
   settings.skip_first_flight = plan.sampled_lights;
-  settings.max_bounces = world.settings.max_bounces;
+  settings.max_bounces = input.settings.max_bounces;
   settings.truncation_order = world.medium.peak ? world.medium.peak->order : 0;
   // Without its peak a medium may be isotropic where the scene's is not.
   settings.directions = input.plan.needs(Stage::photon_directions) && !world.medium.isotropic();
   if (plan.albedo_in_power && settings.store == PhotonStore::fluence)
     settings.albedo = world.medium.volumes[0].albedo;
-  settings.key = {world.settings.seed, input.frame, pass};
+  settings.key = {input.settings.seed, input.frame, pass};
   settings.stop = input.stop;
   return settings;
 }
@@ -146,8 +147,9 @@ float radius_scale(int pass, double alpha) {
   return static_cast<float>(std::sqrt(squared));
 }
 
-RadiusSettings radius_settings(const World& world, const PhotonPlan& plan, int pass) {
-  const RenderSettings& settings = world.settings;
+RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
+  const World& world = input.world;
+  const RenderSettings& settings = input.settings;
   const float scale = static_cast<float>(world.space.scale);
   RadiusSettings radii;
   radii.mode = settings.kernel;

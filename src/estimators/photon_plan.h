@@ -57,7 +57,7 @@ inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
                                  std::uint64_t pass);
 /// How wide the kernels of a pass are.
-RadiusSettings radius_settings(const World& world, const PhotonPlan& plan, int pass);
+RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass);
 /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
 float radius_scale(int pass, double alpha);
 

@@ -37,8 +37,10 @@ Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfi
 
 } // namespace
 
-void shade_profile(const World& world, const CameraRay& camera, const DepthProfile& profile,
-                   std::size_t pixel, PassImage& image, std::uint64_t& emission_rays) {
+void shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                   std::uint64_t& emission_rays) {
+  const World& world = input.world;
   Rgb tr(1);
   if (!profile.empty()) {
     const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
@@ -54,7 +56,7 @@ void shade_profile(const World& world, const CameraRay& camera, const DepthProfi
   if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;
     image.emission[pixel] = emission_along(world.medium, camera.segment, profile,
-                                           static_cast<float>(world.settings.cutoff));
+                                           static_cast<float>(input.settings.cutoff));
   }
 }
 

@@ -1,14 +1,15 @@
 #pragma once
 
 #include "estimators/camera_ray.h"
-#include "image/pass_image.h"
+#include "estimators/estimator.h"
 #include "transport/depth_profile.h"
 
 namespace vdbeam {
 
 /// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
 /// through the medium, and emission. Counts a ray in `emission_rays` where emission was integrated.
-void shade_profile(const World& world, const CameraRay& camera, const DepthProfile& profile,
-                   std::size_t pixel, PassImage& image, std::uint64_t& emission_rays);
+void shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                   std::uint64_t& emission_rays);
 
 } // namespace vdbeam

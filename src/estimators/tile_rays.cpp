@@ -2,8 +2,9 @@
 
 namespace vdbeam {
 
-void TileRays::prepare(const World& world, const Camera& camera, const RngKey& key, int x0,
-                       int y0) {
+void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, int y0) {
+  const World& world = input.world;
+  const Camera& camera = input.camera;
   x0_ = x0;
   y0_ = y0;
   for (int i = 0; i < count; ++i) {
@@ -20,7 +21,7 @@ void TileRays::prepare(const World& world, const Camera& camera, const RngKey& k
     Segment segment = out.camera.segment;
     if (!out.inside)
       segment.t_end = segment.t_begin;
-    out.profile.build(world.medium, segment, static_cast<float>(world.settings.cutoff));
+    out.profile.build(world.medium, segment, static_cast<float>(input.settings.cutoff));
   }
 }
 

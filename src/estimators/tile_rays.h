@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/camera_ray.h"
+#include "estimators/estimator.h"
 #include "photonmap/beam_tile.h"
 #include "transport/depth_profile.h"
 
@@ -16,7 +17,7 @@ public:
   static constexpr int count = BeamTile::ray_count;
 
   /// One jittered ray per pixel of the tile whose upper left pixel is (x0, y0), and its profile.
-  void prepare(const World& world, const Camera& camera, const RngKey& key, int x0, int y0);
+  void prepare(const EstimatorInput& input, const RngKey& key, int x0, int y0);
 
   struct PixelRay {
     CameraRay camera;

@@ -3,20 +3,13 @@
 #include "estimators/direct_light.h"
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
+#include "machine/stopwatch.h"
 
 #include <tbb/enumerable_thread_specific.h>
-
-#include <chrono>
 
 namespace vdbeam {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_between(Clock::time_point a, Clock::time_point b) {
-  return std::chrono::duration<double>(b - a).count();
-}
 
 /// Light of surrounding lights that only the peak of the phase function scattered on its way along
 /// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
@@ -47,14 +40,14 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty());
-  const RngKey key{world.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
+  const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
     counts.depth_profiles += ray.profile.empty() ? 0 : 1;
     if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
-      shade_profile(input.world, ray.camera, ray.profile.scaled(peak->extinction_factor), ray.pixel,
+      shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), ray.pixel,
                     image, counts.emission_rays);
     else
-      shade_profile(input.world, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
+      shade_profile(input, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
         light_of_the_peak(world, ray, photons.plan().sampled_lights) +
@@ -64,18 +57,16 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, image, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
-    const Clock::time_point start = Clock::now();
-    scratch.rays.prepare(world, camera, key, x0, y0);
-    const Clock::time_point profiled = Clock::now();
+    Stopwatch watch;
+    scratch.rays.prepare(input.in(world), key, x0, y0);
+    scratch.statistics.profile += watch.restart();
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (scratch.rays[i].inside)
         shade_ray(scratch.rays[i], scratch.statistics);
-    const Clock::time_point shaded = Clock::now();
+    scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       gather(scratch, key);
-    scratch.statistics.profile += seconds_between(start, profiled);
-    scratch.statistics.direct += seconds_between(profiled, shaded);
-    scratch.statistics.query += seconds_between(shaded, Clock::now());
+    scratch.statistics.query += watch.seconds();
   });
   RenderStatistics tiles;
   for (const TileScratch& scratch : scratches)

@@ -1,5 +1,6 @@
 #include "photonmap/photon_map.h"
 
+#include "machine/stopwatch.h"
 #include "photonmap/kernel_radii.h"
 #include "photonmap/map_queries.h"
 #include "photonmap/photon_blocks.h"
@@ -7,15 +8,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include <chrono>
-
 namespace vdbeam {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 bool finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -96,25 +90,23 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   PhotonMap map;
   Data& data = *map.data_;
   data.shape = shape;
-  auto start = Clock::now();
+  Stopwatch watch;
   std::vector<OrderedPhoton> order = finite_photons(photons);
   data.dropped = photons.size() - order.size();
   order_photons(order);
   data.blocks = gather_blocks(photons, order, channels);
-  data.times.order = seconds_since(start);
+  data.times.order = watch.restart();
 
-  start = Clock::now();
   find_kernel_radii(data.blocks, radii);
-  data.times.radii = seconds_since(start);
+  data.times.radii = watch.restart();
 
-  start = Clock::now();
   data.tree = build_block_tree(data.blocks);
   double sum = 0;
   for (std::size_t i = 0; i < data.blocks.count(); ++i)
     sum += data.blocks.at(i, PhotonBlocks::radius);
   data.mean_radius =
       data.blocks.count() ? static_cast<float>(sum / static_cast<double>(data.blocks.count())) : 0;
-  data.times.build = seconds_since(start);
+  data.times.build = watch.seconds();
   return map;
 }
 

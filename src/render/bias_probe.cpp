@@ -1,23 +1,21 @@
 #include "render/bias_probe.h"
 
-#include "render/plan.h"
+#include "machine/stopwatch.h"
 
-#include <chrono>
 #include <cmath>
 
 namespace vdbeam {
 
-BiasProbe::BiasProbe(const Scene& scene, const EstimatorInput& input, const PixelRegion& window,
+BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
                      const std::vector<std::size_t>& pixels)
-    : plan_(plan_paths(scene, input.world, input.camera)), path_(input.with(plan_)),
-      window_(window), image_width_(input.camera.width()), pixels_(pixels) {
-  const double wanted = scene.render.bias_rays * window.width() * window.height();
+    : path_(input), window_(window), image_width_(input.camera.width()), pixels_(pixels) {
+  const double wanted = input.settings.bias_rays * window.width() * window.height();
   const double period = static_cast<double>(pixels.size()) / std::max(wanted, 1.0);
   period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
 }
 
 std::vector<ProbeValue> BiasProbe::trace(int pass, RenderStatistics& statistics) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   std::vector<ProbeValue> probes;
   std::vector<std::size_t> image_pixels;
   // Every period-th pixel in an order that jumps, so that a pass does not probe columns.
@@ -33,8 +31,7 @@ std::vector<ProbeValue> BiasProbe::trace(int pass, RenderStatistics& statistics)
   for (std::size_t i = 0; i < probes.size(); ++i)
     probes[i].radiance = radiance[i];
   statistics.bias_rays += probes.size();
-  statistics.bias +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics.bias += watch.seconds();
   return probes;
 }
 

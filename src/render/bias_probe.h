@@ -9,16 +9,15 @@ namespace vdbeam {
 /// held against to tell its bias (Film::error_estimate). They never change the picture.
 class BiasProbe {
 public:
-  /// `input` is that of the estimator that is probed. `pixels` are of the window; of the window's
-  /// pixels the share render.bias_rays is probed per pass.
-  BiasProbe(const Scene& scene, const EstimatorInput& input, const PixelRegion& window,
+  /// `input` has the plan of the path estimator (plan_paths). `pixels` are of the window; of the
+  /// window's pixels the share render.bias_rays is probed per pass.
+  BiasProbe(const EstimatorInput& input, const PixelRegion& window,
             const std::vector<std::size_t>& pixels);
 
   /// The pixels whose turn it is in this pass. A pure function of scene, seed, frame and pass.
   std::vector<ProbeValue> trace(int pass, RenderStatistics& statistics);
 
 private:
-  RenderPlan plan_; ///< of the path estimator
   PathEstimator path_;
   PixelRegion window_;
   int image_width_;

@@ -64,23 +64,23 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
 
 } // namespace
 
-PassLoop::PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelRegion& window,
-                   RenderResult& result)
-    : scene_(scene), hooks_(hooks), window_(window),
+PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderHooks& hooks,
+                   const PixelRegion& window, RenderResult& result)
+    : scene_(scene), frame_(frame), hooks_(hooks), window_(window),
       whole_(window.width() == scene.image.width && window.height() == scene.image.height),
       result_(result), film_(window.width(), window.height(), scene.glows()), stop_(hooks.stop) {
-  if (hooks.pass_range)
-    first_pass_ = hooks.pass_range->first;
-  if (!hooks.checkpoint.path.empty() || !hooks.partial.empty())
+  if (frame.pass_range)
+    first_pass_ = frame.pass_range->first;
+  if (!frame.checkpoint.path.empty() || !frame.partial.empty())
     pass_hash_ = pass_hash(scene);
-  if (!hooks.checkpoint.path.empty() && hooks.checkpoint.resume)
+  if (!frame.checkpoint.path.empty() && frame.checkpoint.resume)
     resume();
   set_deadline();
 }
 
 /// Rendering time [s] that the passes may take; infinite without a limit.
 double PassLoop::limit_seconds() const {
-  return scene_.render.time && !hooks_.pass_range ? *scene_.render.time
+  return scene_.render.time && !frame_.pass_range ? *scene_.render.time
                                                   : std::numeric_limits<double>::infinity();
 }
 
@@ -102,18 +102,18 @@ void PassLoop::note(const std::string& line) {
     hooks_.on_note(line);
 }
 
-void PassLoop::run(const EstimatorInput& input, Estimator& estimator, BiasProbe* probe) {
-  last_attempt_ = Clock::now();
+void PassLoop::run(Estimator& estimator, BiasProbe* probe, const EstimatorInput& quick_look) {
+  since_attempt_.restart();
   while (!finished())
     render_pass(estimator, probe);
   if (result_.stopped_by == "stop")
     write_checkpoint();
-  else if (!hooks_.partial.empty())
-    write_film(file_info(), film_, hooks_.partial);
+  else if (!frame_.partial.empty())
+    write_film(file_info(), film_, frame_.partial);
   if (film_.passes() == 0) {
     StopToken soon;
     soon.set_deadline(Clock::now() + quick_look_time);
-    take_quick_look(input, soon, image_);
+    take_quick_look(quick_look, soon, image_);
     result_.quick_look = true;
     note("not one pass was finished: the image is a quick look, rough and for the eye only");
   } else {
@@ -130,7 +130,7 @@ void PassLoop::run(const EstimatorInput& input, Estimator& estimator, BiasProbe*
 
 /// Adds the next pass to the film, or nothing where it was stopped.
 void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   estimator.render_pass(next_pass(), image_, result_.statistics);
   if (stop_.requested() || !is_finished(image_, window_))
     return;
@@ -145,7 +145,7 @@ void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
     image_ = cut_out(image_, window_);
   clamp(image_);
   film_.add(image_, probes);
-  const double took = std::chrono::duration<double>(Clock::now() - begin).count();
+  const double took = watch.seconds();
   shortest_pass_ = shortest_pass_ > 0 ? std::min(shortest_pass_, took) : took;
   record();
   serve_requests();
@@ -154,7 +154,7 @@ void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
 /// Renders a quick look into the result's image, by way of the film that has no pass yet.
 void PassLoop::take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image) {
   input.stop = &stop;
-  fill_with_quick_look(scene_, input, image);
+  fill_with_quick_look(input, image);
   if (!whole_)
     image = cut_out(image, window_);
   clamp(image);
@@ -192,8 +192,8 @@ bool PassLoop::finished() {
   if (stop_.requested())
     return stop("stop");
   const RenderSettings& settings = scene_.render;
-  if (hooks_.pass_range)
-    return next_pass() > hooks_.pass_range->last && stop("passes");
+  if (frame_.pass_range)
+    return next_pass() > frame_.pass_range->last && stop("passes");
   if (settings.passes && passes >= *settings.passes)
     return stop("passes");
   if (time_is_over())
@@ -239,7 +239,7 @@ std::string PassLoop::why_not_resumable(const FilmFileInfo& info) const {
     return fmt::format("holds the passes {}, but this render begins with pass {}",
                        format_frame_range(info.passes), first_pass_);
   const std::optional<int> most =
-      hooks_.pass_range ? hooks_.pass_range->last - first_pass_ + 1 : scene_.render.passes;
+      frame_.pass_range ? frame_.pass_range->last - first_pass_ + 1 : scene_.render.passes;
   if (most && static_cast<int>(info.passes.size()) > *most)
     return fmt::format("holds {}, more than the {} asked for",
                        count_text(info.passes.size(), "pass"), *most);
@@ -249,7 +249,7 @@ std::string PassLoop::why_not_resumable(const FilmFileInfo& info) const {
 /// Takes the film of the checkpoint if it is of this scene and holds this render's first passes. A
 /// file that is not is left where it is until the next checkpoint replaces it.
 void PassLoop::resume() {
-  const std::string& path = hooks_.checkpoint.path;
+  const std::string& path = frame_.checkpoint.path;
   std::error_code error;
   if (!std::filesystem::exists(path, error))
     return;
@@ -287,7 +287,7 @@ void PassLoop::record() {
   record.seconds = seconds();
   record.photons = result_.statistics.photons_stored - photons_before_;
   photons_before_ = result_.statistics.photons_stored;
-  if (hooks_.reference)
+  if (frame_.reference)
     compare(record);
   result_.passes.push_back(record);
   result_.statistics.peak_memory = peak_memory();
@@ -296,7 +296,7 @@ void PassLoop::record() {
 }
 
 void PassLoop::compare(PassRecord& record) {
-  const ImageError error = image_error(film_.develop(), *hooks_.reference);
+  const ImageError error = image_error(film_.develop(), *frame_.reference);
   record.has_reference = true;
   record.rmse = error.rmse;
   record.mrse = error.mrse;
@@ -313,12 +313,11 @@ void PassLoop::serve_requests() {
     develop();
     attempt([&] { hooks_.on_snapshot(result_); });
   }
-  const CheckpointSettings& settings = hooks_.checkpoint;
-  const double since = std::chrono::duration<double>(Clock::now() - last_attempt_).count();
-  if ((settings.seconds > 0 && since >= settings.seconds) ||
+  const CheckpointSettings& settings = frame_.checkpoint;
+  if ((settings.seconds > 0 && since_attempt_.seconds() >= settings.seconds) ||
       (settings.passes > 0 && film_.passes() - last_attempt_passes_ >= settings.passes)) {
     attempt([&] { write_checkpoint(); });
-    last_attempt_ = Clock::now();
+    since_attempt_.restart();
     last_attempt_passes_ = film_.passes();
   }
 }
@@ -334,9 +333,9 @@ void PassLoop::attempt(F write) {
 }
 
 void PassLoop::write_checkpoint() {
-  if (hooks_.checkpoint.path.empty() || film_.passes() == last_checkpoint_passes_)
+  if (frame_.checkpoint.path.empty() || film_.passes() == last_checkpoint_passes_)
     return;
-  write_film(file_info(), film_, hooks_.checkpoint.path);
+  write_film(file_info(), film_, frame_.checkpoint.path);
   last_checkpoint_passes_ = film_.passes();
 }
 
@@ -359,9 +358,9 @@ FilmFileInfo PassLoop::file_info() const {
   info.header.y = window_.y0;
   info.header.full_width = scene_.image.width;
   info.header.full_height = scene_.image.height;
-  add_image_metadata(info.header, scene_, result_, hooks_.frame, scene_hash(scene_));
+  add_image_metadata(info.header, scene_, result_, scene_hash(scene_));
   info.pass_hash = pass_hash_;
-  info.frame = hooks_.frame;
+  info.frame = scene_.frame.number;
   info.passes.resize(static_cast<std::size_t>(film_.passes()));
   std::iota(info.passes.begin(), info.passes.end(), first_pass_);
   info.invalid_values = film_.invalid_values();

@@ -2,6 +2,7 @@
 
 #include "estimators/estimator.h"
 #include "film/film_file.h"
+#include "machine/stopwatch.h"
 #include "render/bias_probe.h"
 
 #include <chrono>
@@ -12,16 +13,17 @@ namespace vdbeam {
 /// signals, checkpoints, snapshots.
 class PassLoop {
 public:
-  PassLoop(const Scene& scene, const RenderHooks& hooks, const PixelRegion& window,
-           RenderResult& result);
+  PassLoop(const Scene& scene, const FrameSettings& frame, const RenderHooks& hooks,
+           const PixelRegion& window, RenderResult& result);
 
   /// What the estimator's input is to have as its `stop`.
   const StopToken& stop_token() const { return stop_; }
-  /// Shows a quick look to the caller who asked for one, before there is any pass.
+  /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
+  /// plan of the path estimator (plan_paths).
   void show_quick_look(EstimatorInput input);
-  /// `probe` tells the bias; null where the estimator has none or nobody asks. `input` is that of
-  /// the estimator.
-  void run(const EstimatorInput& input, Estimator& estimator, BiasProbe* probe);
+  /// `probe` tells the bias; null where the estimator has none or nobody asks. `quick_look` is the
+  /// input of the quick look that stands for a picture without any pass.
+  void run(Estimator& estimator, BiasProbe* probe, const EstimatorInput& quick_look);
 
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
 
@@ -52,6 +54,7 @@ private:
   int next_pass() const { return first_pass_ + film_.passes(); }
 
   const Scene& scene_;
+  const FrameSettings& frame_;
   const RenderHooks& hooks_;
   PixelRegion window_;
   bool whole_;
@@ -65,7 +68,7 @@ private:
   double shortest_pass_ = 0;   ///< [s] of those rendered here; 0: there is none
   PassImage image_;            ///< of the pass in progress
   std::uint64_t photons_before_ = 0;
-  Clock::time_point last_attempt_; ///< to write a checkpoint
+  Stopwatch since_attempt_; ///< to write a checkpoint
   int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;
   std::string pass_hash_; ///< empty where no film goes to disk
 };

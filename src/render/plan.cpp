@@ -173,18 +173,18 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   return plan;
 }
 
-std::vector<VolumeFacts> volume_facts(const World& world, const Camera& camera) {
-  std::vector<VolumeFacts> facts;
-  for (std::size_t i = 0; i < world.active_voxels.size(); ++i) {
-    const std::uint64_t voxels = world.active_voxels[i];
-    facts.push_back({voxels == 0, voxels, may_see_medium(world, camera), world.glowing_voxels[i]});
-  }
-  return facts;
+std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
+                                      const Camera& camera) {
+  std::vector<VolumeFacts> volumes;
+  for (const WorldFacts::Voxels& voxels : facts.volumes)
+    volumes.push_back(
+        {voxels.density == 0, voxels.density, may_see_medium(world, camera), voxels.emission});
+  return volumes;
 }
 
-RenderPlan plan_paths(Scene scene, const World& world, const Camera& camera) {
+RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes) {
   scene.render.estimator = EstimatorType::path;
-  return plan_stages(scene, volume_facts(world, camera));
+  return plan_stages(scene, volumes);
 }
 
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows) {

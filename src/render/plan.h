@@ -14,11 +14,12 @@ struct VolumeFacts {
 };
 
 /// The same of a world that is built already.
-std::vector<VolumeFacts> volume_facts(const World& world, const Camera& camera);
+std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
+                                      const Camera& camera);
 
 /// What the path estimator would do about the frame: quick looks are made by it, and the bias of
 /// the other estimators is measured against it.
-RenderPlan plan_paths(Scene scene, const World& world, const Camera& camera);
+RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes);
 
 /// The stages that the scene needs, each with the reason why it runs or is left out, and estimates
 /// of the memory that they take. A pure function of its arguments.

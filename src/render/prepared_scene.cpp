@@ -1,12 +1,11 @@
 #include "render/prepared_scene.h"
 
+#include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-
-#include <chrono>
 
 namespace vdbeam {
 namespace {
@@ -20,12 +19,12 @@ std::string file_identity(const std::string& path) {
                      status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
-/// Every value that a world is made from. Sizes and cameras are not among them, but for the way up,
-/// about which skies turn.
-std::string world_settings(const Scene& scene) {
+/// The values of all keys that `wanted` names.
+template <class Wanted>
+std::string settings_text(const Scene& scene, const Wanted& wanted) {
   std::string text;
   for (const SceneKey& key : scene_keys()) {
-    if (!key.get || !key.changes_world)
+    if (!key.get || !wanted(key))
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
       const std::string value = key.format(key.get(scene, i));
@@ -34,9 +33,21 @@ std::string world_settings(const Scene& scene) {
         text += file_identity(std::get<std::string>(key.get(scene, i))) + ";";
     }
   }
+  return text;
+}
+
+/// Every value that a world is made from. Sizes and cameras are not among them, but for the way up,
+/// about which skies turn.
+std::string world_settings(const Scene& scene) {
+  std::string text = settings_text(scene, [](const SceneKey& key) { return key.changes_world; });
   for (const VolumeSettings& volume : scene.volumes)
     text += volume.present ? "+" : "-";
   return text;
+}
+
+std::string photon_settings(const Scene& scene) {
+  return settings_text(scene,
+                       [](const SceneKey& key) { return key.section == SceneSection::render; });
 }
 
 /// The grid from the last frame, or nothing where it is another one.
@@ -101,13 +112,16 @@ void keep_facts(const DensityGrid& grid, ReadVolume& read) {
 } // namespace
 
 PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   auto prepared = std::make_shared<PreparedScene>();
-  prepared->settings = world_settings(scene);
-  if (previous && previous->settings == prepared->settings) {
+  prepared->world_settings = world_settings(scene);
+  prepared->photon_settings = photon_settings(scene);
+  if (previous && previous->world_settings == prepared->world_settings) {
     prepared->world = previous->world;
+    prepared->facts = previous->facts;
     prepared->volumes = previous->volumes;
-    prepared->photons = previous->photons;
+    if (previous->photon_settings == prepared->photon_settings)
+      prepared->photons = previous->photons;
     if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
       prepared->photons = std::make_shared<PhotonCache>(cache_capacity());
     return prepared;
@@ -128,11 +142,10 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
       read.identity.clear(); // its field is not kept
     prepared->volumes.push_back(std::move(read));
   }
-  prepared->seconds_read =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  prepared->world =
-      std::make_shared<const World>(build_world(scene, std::move(grids), std::move(emissions)));
-  prepared->seconds_build = prepared->world->seconds_build;
+  prepared->seconds_read = watch.restart();
+  prepared->world = std::make_shared<const World>(
+      build_world(scene, std::move(grids), std::move(emissions), &prepared->facts));
+  prepared->seconds_build = watch.seconds();
   for (ReadVolume& read : prepared->volumes)
     if (read.index >= 0 &&
         prepared->world->medium.volumes[static_cast<std::size_t>(read.index)].limited)

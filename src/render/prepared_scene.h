@@ -23,8 +23,10 @@ struct ReadVolume {
 class PreparedScene {
 public:
   std::shared_ptr<const World> world;
+  WorldFacts facts;
   std::vector<ReadVolume> volumes;
-  std::string settings; ///< everything but the volumes' contents that the world is made from
+  std::string world_settings;  ///< all but the volumes' contents that the world is made from
+  std::string photon_settings; ///< and what its photons depend on beyond that
   /// Photons of earlier frames with this world; null where no frame can use those of another.
   std::shared_ptr<PhotonCache> photons;
   double seconds_read = 0, seconds_build = 0;

@@ -1,7 +1,6 @@
 #include "render/quick_look.h"
 
 #include "estimators/path.h"
-#include "render/plan.h"
 
 #include <tbb/parallel_for.h>
 
@@ -87,13 +86,12 @@ void fill_from_neighbours(const PixelRegion& window, int finest, const KnownPixe
 
 } // namespace
 
-void fill_with_quick_look(const Scene& scene, const EstimatorInput& input, PassImage& image) {
+void fill_with_quick_look(const EstimatorInput& input, PassImage& image) {
   const Camera& camera = input.camera;
   if (image.width != camera.width() || image.height != camera.height())
     image.resize(camera.width(), camera.height(), !input.world.medium.emitters.empty());
   KnownPixels known(input.window, image);
-  const RenderPlan plan = plan_paths(scene, input.world, camera);
-  const PathEstimator path(input.with(plan));
+  const PathEstimator path(input);
   int spacing = coarsest_spacing;
   for (; spacing >= 1 && !input.stopped(); spacing /= 2) {
     const std::vector<std::size_t> pixels =

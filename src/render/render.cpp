@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
+#include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "render/limit_notes.h"
 #include "render/memory_check.h"
@@ -13,8 +14,6 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-
-#include <chrono>
 
 namespace vdbeam {
 namespace {
@@ -39,18 +38,18 @@ void check_range(const std::optional<PassRange>& range) {
 
 } // namespace
 
-RenderResult render(const Scene& scene, const RenderHooks& hooks) {
+RenderResult render(const Scene& scene, const FrameSettings& frame, const RenderHooks& hooks) {
   validate_scene(scene);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
-  return render(scene, prepare_scene(scene), hooks);
+  return render(scene, prepare_scene(scene), frame, hooks);
 }
 
 RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
-                    const RenderHooks& hooks) {
+                    const FrameSettings& frame, const RenderHooks& hooks) {
   validate_scene(scene);
-  check_range(hooks.pass_range);
-  const PixelRegion window = choose_window(scene.image, hooks.region);
+  check_range(frame.pass_range);
+  const PixelRegion window = choose_window(scene.image, frame.region);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
   RenderResult result;
@@ -60,31 +59,33 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
       hooks.on_note(line);
   };
   const World& world = *prepared->world;
-  for (const std::string& line : world.notes)
+  for (const std::string& line : prepared->facts.notes)
     note(line);
   result.statistics.read = prepared->seconds_read;
   result.statistics.prepare = prepared->seconds_build;
   const Camera camera(scene.camera, scene.image, world.space);
-  result.plan = plan_stages(scene, volume_facts(world, camera));
+  const std::vector<VolumeFacts> volumes = volume_facts(prepared->facts, world, camera);
+  result.plan = plan_stages(scene, volumes);
   result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
   check_memory(scene, result.plan, granted_memory());
   for (const std::string& line : limit_notes(scene, world, result.plan))
     note(line);
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
-  const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(hooks.frame);
-  PassLoop loop(scene, hooks, window, result);
-  const EstimatorInput input{
-      world, camera, result.plan, key, window, &loop.stop_token(), prepared->photons.get()};
-  loop.show_quick_look(input);
-  const auto start = std::chrono::steady_clock::now();
+  const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(scene.frame.number);
+  PassLoop loop(scene, frame, hooks, window, result);
+  const EstimatorInput input{world, camera, scene.render,       result.plan,
+                             key,   window, &loop.stop_token(), prepared->photons.get()};
+  const RenderPlan path_plan = plan_paths(scene, volumes);
+  const EstimatorInput path_input = input.with(path_plan);
+  loop.show_quick_look(path_input);
+  const Stopwatch watch;
   const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
   std::optional<BiasProbe> probe;
   if (result.plan.needs(Stage::bias))
-    probe.emplace(scene, input, window, loop.probe_pixels());
-  result.statistics.pilot =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  loop.run(input, *estimator, probe ? &*probe : nullptr);
+    probe.emplace(path_input, window, loop.probe_pixels());
+  result.statistics.pilot = watch.seconds();
+  loop.run(*estimator, probe ? &*probe : nullptr, path_input);
   return result;
 }
 

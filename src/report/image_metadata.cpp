@@ -61,12 +61,13 @@ std::vector<float> flatten(const Matrix& m) {
 }
 
 /// When the picture was made, and which moment of the shot it shows.
-void add_time(Image& image, const Scene& scene, int frame) {
+void add_time(Image& image, const Scene& scene) {
   image.metadata["capDate"] = fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
   image.numbers["utcOffset"] = 0;
   if (!scene.image.fps)
     return;
   const double fps = *scene.image.fps;
+  const int frame = scene.frame.number;
   image.numbers["framesPerSecond"] = fps;
   // A time code counts whole frames, of which it holds at most 30 in a second and a day in all.
   const int count = static_cast<int>(std::ceil(fps - 1e-6));
@@ -95,7 +96,7 @@ void add_error_metadata(Image& image, const PassRecord& record) {
   }
 }
 
-void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result, int frame,
+void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result,
                         const std::string& hash) {
   for (const auto& [name, version] : component_versions())
     if (name == "vdbeam")
@@ -106,7 +107,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:sceneHash"] = hash;
   image.metadata["vdbeam:estimator"] = std::string(scene.render.estimator.name);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
-  image.numbers["vdbeam:frame"] = frame;
+  image.numbers["vdbeam:frame"] = scene.frame.number;
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "not one pass was finished";
     image.numbers["vdbeam:passes"] = 0;
@@ -130,7 +131,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
                            "vdbeam:photonsStored", "vdbeam:clampedPixels"})
     if (image.numbers.contains(name))
       image.integers.insert(name);
-  add_time(image, scene, frame);
+  add_time(image, scene);
   image.numbers["vdbeam:cameraFov"] = scene.camera.fov;
   const Vec3d& position = scene.camera.position;
   image.matrices["vdbeam:cameraPosition"] = {static_cast<float>(position.x),

@@ -122,7 +122,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
     report["versions"][name] = version;
   report["scene"] = scene.path;
   report["scene_hash"] = context.scene_hash;
-  report["frame"] = context.frame;
+  report["frame"] = scene.frame.number;
   report["output"] = context.output;
   if (!context.reference.empty())
     report["reference"] = context.reference;

@@ -9,7 +9,6 @@ namespace vdbeam {
 
 /// What a report says beside the result of the render.
 struct ReportContext {
-  int frame = 1;
   std::string scene_hash;
   std::string output;    ///< path of the image
   std::string reference; ///< path of the reference, or empty

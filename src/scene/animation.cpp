@@ -68,12 +68,12 @@ public:
   Animation(const SceneKey& key, const std::string& path, const toml::table& table)
       : key_(key), path_(path), table_(table) {}
 
-  KeyValue at(int frame) {
+  KeyValue at(double time) {
     read_interpolation();
     read_keys();
     std::vector<double> values;
     for (const Curve& curve : curves_)
-      values.push_back(curve.at(frame, smooth_));
+      values.push_back(curve.at(time, smooth_));
     if (key_.kind == KeyKind::integer)
       return static_cast<std::int64_t>(std::llround(values[0]));
     if (values.size() == 1)
@@ -143,11 +143,11 @@ bool is_numeric(KeyKind kind) {
 } // namespace
 
 KeyValue read_value_at(const SceneKey& key, const std::string& path, const toml::node& node,
-                       int frame) {
+                       double time) {
   const toml::table* table = node.as_table();
   if (!table || !is_numeric(key.kind))
     return read_key_value(key, path, node);
-  return Animation(key, path, *table).at(frame);
+  return Animation(key, path, *table).at(time);
 }
 
 } // namespace vdbeam

@@ -139,7 +139,7 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
     apply_override(root_, entry);
 }
 
-Scene SceneDocument::scene_at(int frame, MissingFile missing) const {
+Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const {
   Scene scene = SceneReader(path_, folder_, frame, missing).read(root_);
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
   if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
@@ -183,7 +183,8 @@ std::vector<int> SceneDocument::frames_on_disk() const {
   return vdbeam::frames_on_disk(first_pattern());
 }
 
-Scene load_scene(const std::string& path, int frame, const std::vector<std::string>& overrides) {
+Scene load_scene(const std::string& path, const FrameTime& frame,
+                 const std::vector<std::string>& overrides) {
   std::vector<Override> entries;
   entries.reserve(overrides.size());
   for (const std::string& text : overrides)

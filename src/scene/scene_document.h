@@ -25,7 +25,7 @@ public:
   SceneDocument(const std::string& path, const std::vector<Override>& overrides);
 
   /// Throws InputError as load_scene.
-  Scene scene_at(int frame, MissingFile missing = MissingFile::error) const;
+  Scene scene_at(const FrameTime& frame, MissingFile missing = MissingFile::error) const;
 
   /// Where a path holds a frame number's place.
   bool has_frame_pattern() const;

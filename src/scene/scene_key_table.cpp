@@ -340,8 +340,10 @@ std::vector<SceneKey> make_table() {
   for (SceneKey& key : keys) {
     if (key.section == SceneSection::light)
       key.types = kinds_with_key<LightType>(key.name);
-    if (key.section == SceneSection::render)
+    if (key.section == SceneSection::render) {
       key.estimators = kinds_with_key<EstimatorType>(key.name);
+      key.changes_world = false;
+    }
   }
   return keys;
 }

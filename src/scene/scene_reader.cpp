@@ -143,7 +143,7 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
   if (section == SceneSection::volume) {
     time_.reset();
     if (const toml::node* node = table.get("time"))
-      time_ = read_volume_time(*node, fmt::format("volume.{}.time", index), frame_);
+      time_ = read_volume_time(*node, fmt::format("volume.{}.time", index), frame_.number);
   }
   for (const Child& child : children_of(table)) {
     const SceneKey* key = find_key(section, child.name);
@@ -198,7 +198,7 @@ void SceneReader::read_part(SceneSection section, std::size_t index, const toml:
 
 void SceneReader::read_key(const SceneKey& key, std::size_t index, const toml::node& node) {
   const std::string path = key_path(key, index);
-  KeyValue value = read_value_at(key, path, node, frame_);
+  KeyValue value = read_value_at(key, path, node, frame_.time);
   locations_[path] = location_of(node);
   if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
     value = resolve_file(key, index, std::get<std::string>(value), node);
@@ -213,13 +213,13 @@ std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
   namespace fs = std::filesystem;
   // A path typed in a shell is relative to where it was typed.
   const std::string pattern = (is_override(node) ? fs::path(text) : folder_ / text).string();
-  int number = frame_;
+  int number = frame_.number;
   if (key.section == SceneSection::volume && time_ && !has_frame_pattern(pattern))
     scene_.notes.push_back(fmt::format("{}: volume.{}.time does nothing: file names a single file, "
                                        "not a sequence like smoke.####.vdb",
                                        location_of(node), index));
   if (key.section == SceneSection::volume && time_ && has_frame_pattern(pattern)) {
-    const auto mapped = time_->file_frame(frame_, frames_on_disk(pattern));
+    const auto mapped = time_->file_frame(frame_.number, frames_on_disk(pattern));
     if (!mapped) {
       scene_.volumes[index].present = false;
       return pattern;

@@ -19,9 +19,11 @@ enum class MissingFile { error, black, hold };
 class SceneReader {
 public:
   /// `folder` is what relative paths of the file are relative to.
-  SceneReader(std::string path, std::filesystem::path folder, int frame,
+  SceneReader(std::string path, std::filesystem::path folder, const FrameTime& frame,
               MissingFile missing = MissingFile::error)
-      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame), missing_(missing) {}
+      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame), missing_(missing) {
+    scene_.frame = frame;
+  }
 
   /// Throws InputError with file and line.
   Scene read(const toml::table& root);
@@ -48,7 +50,7 @@ private:
 
   std::string path_;
   std::filesystem::path folder_;
-  int frame_;
+  FrameTime frame_;
   MissingFile missing_;
   std::optional<VolumeTime> time_; ///< of the volume that is being read
   Scene scene_;

@@ -6,7 +6,8 @@
 
 namespace vdbeam {
 
-/// Which file of a sequence a frame shows: number offset + speed * frame, rounded.
+/// Which file of a sequence a frame shows: number offset + speed * frame, rounded. The same at all
+/// times of a frame.
 struct VolumeTime {
   enum class OutOfRange { clip, hold, repeat, ping_pong };
 

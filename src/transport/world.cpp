@@ -5,16 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 Affine to_affine(const std::array<double, 12>& m) {
   Affine a;
@@ -142,14 +137,11 @@ Emitter make_emitter(const EmissionGrid& grid, const VolumeSettings& settings,
   return emitter;
 }
 
-/// Notes and voxels of a volume's emission; returns its bounds in the world.
-Boxd add_emission_facts(World& world, const EmissionGrid& grid, const VolumeSettings& settings) {
-  world.notes.insert(world.notes.end(), grid.notes.begin(), grid.notes.end());
-  world.glowing_voxels.push_back(grid.empty() ? 0 : grid.active_voxels);
-  if (grid.empty())
-    return {};
-  return mapped_bounds(local_to_world(grid.field->origin(), grid.index_to_world, settings),
-                       grid.field->occupied());
+void add_facts(WorldFacts& facts, const DensityGrid& density, const EmissionGrid& emission) {
+  facts.notes.insert(facts.notes.end(), density.notes.begin(), density.notes.end());
+  facts.notes.insert(facts.notes.end(), emission.notes.begin(), emission.notes.end());
+  facts.volumes.push_back({density.field.empty() ? 0 : density.active_voxels,
+                           emission.empty() ? 0 : emission.active_voxels});
 }
 
 /// Adds every emitting volume as a light for the scattering ones.
@@ -176,21 +168,22 @@ void bound_region(World& world, const Boxd& bounds) {
 } // namespace
 
 World build_world(const Scene& scene, std::vector<DensityGrid> grids,
-                  std::vector<EmissionGrid> emissions) {
-  const auto start = std::chrono::steady_clock::now();
+                  std::vector<EmissionGrid> emissions, WorldFacts* facts) {
   World world;
-  world.settings = scene.render;
+  WorldFacts found;
   std::vector<Affine> maps;
   Boxd bounds;
   emissions.resize(grids.size());
   for (std::size_t i = 0; i < grids.size(); ++i) {
-    world.notes.insert(world.notes.end(), grids[i].notes.begin(), grids[i].notes.end());
-    world.active_voxels.push_back(grids[i].field.empty() ? 0 : grids[i].active_voxels);
-    maps.push_back(
-        local_to_world(grids[i].field.origin(), grids[i].index_to_world, scene.volumes[i]));
+    const VolumeSettings& settings = scene.volumes[i];
+    add_facts(found, grids[i], emissions[i]);
+    maps.push_back(local_to_world(grids[i].field.origin(), grids[i].index_to_world, settings));
     if (!grids[i].field.empty())
       bounds.extend(mapped_bounds(maps[i], grids[i].field.occupied()));
-    bounds.extend(add_emission_facts(world, emissions[i], scene.volumes[i]));
+    if (const EmissionGrid& glow = emissions[i]; !glow.empty())
+      bounds.extend(
+          mapped_bounds(local_to_world(glow.field->origin(), glow.index_to_world, settings),
+                        glow.field->occupied()));
   }
   world.space = choose_space(bounds);
   for (std::size_t i = 0; i < grids.size(); ++i)
@@ -203,32 +196,17 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
       continue;
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
-    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, world.notes);
+    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, found.notes);
     volume.phase_index = phase_index_of(world.medium.phases, known, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }
   if (world.medium.visible())
     bound_region(world, bounds);
-  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &world.notes);
+  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &found.notes);
   add_volume_lights(world);
-  world.seconds_build = seconds_since(start);
-  return world;
-}
-
-World build_world(const Scene& scene) {
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<DensityGrid> grids;
-  std::vector<EmissionGrid> emissions;
-  for (const VolumeSettings& volume : scene.volumes) {
-    grids.push_back(volume.needs_density() ? read_density_grid(volume.file, volume.density)
-                                           : DensityGrid{});
-    emissions.push_back(volume.glows() ? read_emission_grid(volume.file, volume.emission)
-                                       : EmissionGrid{});
-  }
-  const double seconds_read = seconds_since(start);
-  World world = build_world(scene, std::move(grids), std::move(emissions));
-  world.seconds_read = seconds_read;
+  if (facts)
+    *facts = std::move(found);
   return world;
 }
 

@@ -16,20 +16,22 @@ struct World {
   Medium medium;
   LightSet lights;
   OccupiedRegion region;
-  RenderSettings settings;
-  std::vector<std::string> notes;           ///< for the user
-  std::vector<std::uint64_t> active_voxels; ///< per volume of the scene; 0: left out as empty
-  std::vector<std::uint64_t>
-      glowing_voxels; ///< per volume, of its emission grids; 0: does not glow
-  double seconds_read = 0, seconds_build = 0;
 };
 
-/// Reads the volumes and builds the world. Throws InputError and FrameError.
-World build_world(const Scene& scene);
+/// What the plan and the user are told about the volumes that a world was built from.
+struct WorldFacts {
+  struct Voxels {
+    std::uint64_t density = 0;  ///< active voxels; 0: the volume is left out as empty
+    std::uint64_t emission = 0; ///< active voxels of its emission grids; 0: it does not glow
+  };
+  std::vector<Voxels> volumes; ///< one per scene.volumes entry
+  std::vector<std::string> notes;
+};
 
-/// The same from fields that are already there: one per scene.volumes entry; of emission as many,
-/// or none at all.
+/// Builds the world from the volumes' fields: one grid per scene.volumes entry; of emission as
+/// many, or none at all. Throws InputError for lights that cannot be made. `facts`, unless it is
+/// null, is filled.
 World build_world(const Scene& scene, std::vector<DensityGrid> grids,
-                  std::vector<EmissionGrid> emissions = {});
+                  std::vector<EmissionGrid> emissions = {}, WorldFacts* facts = nullptr);
 
 } // namespace vdbeam

@@ -1,5 +1,6 @@
 #include "volume/guarded_process.h"
 
+#include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -188,9 +188,8 @@ std::optional<Message> Child::receive(int milliseconds) {
 }
 
 std::optional<Message> Child::wait(double seconds) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  while (std::chrono::duration<double>(Clock::now() - start).count() < seconds) {
+  const Stopwatch watch;
+  while (watch.seconds() < seconds) {
     // A child that dies says nothing, and the pipe may stay open in a sibling forked meanwhile, so
     // its death is looked for now and then.
     if (auto message = receive(20))

@@ -1,5 +1,6 @@
 #include "volume/vdb_reader.h"
 
+#include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
 #include "volume/guarded_process.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 
 namespace vdbeam {
@@ -129,8 +129,7 @@ GridSummary read_grid_header(const std::string& path, const std::string& grid_na
 }
 
 std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  const Stopwatch watch;
   GuardLimits guard = guard_limits(check_file(path), limits);
   prepare_openvdb();
   const MappedFile list =
@@ -143,8 +142,7 @@ std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits
   std::vector<GridSummary> summaries;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     const std::string name = text.substr(begin, end - begin);
-    const double passed = std::chrono::duration<double>(Clock::now() - start).count();
-    guard.seconds = std::max(limits.seconds - passed, 0.0);
+    guard.seconds = std::max(limits.seconds - watch.seconds(), 0.0);
     const MappedFile summary =
         run_guarded(path, guard, [&](int output) { write_summary(path, name, output); });
     summaries.push_back(decode_summary(path, summary.data(), summary.size()));

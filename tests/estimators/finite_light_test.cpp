@@ -65,16 +65,18 @@ MemoryScene box(const Rgb& albedo) {
 
 std::array<Samples, 3> render_sphere(MemoryScene scene, EstimatorType type, float radius,
                                      bool shadow_rays, int passes) {
-  World world = scene.world();
+  WorldFacts facts;
+  World world = scene.world(&facts);
   EXPECT_EQ(world.space.scale, 1);
   world.lights.add(std::make_unique<HollowSphere>(radius));
   const Camera camera(scene.scene.camera, scene.scene.image, world.space);
   // No scene file can hold such a light: for the plan an environment stands in for it.
   scene.add_light(LightType::environment);
   scene.scene.render.estimator = type;
-  RenderPlan plan = plan_stages(scene.scene, volume_facts(world, camera));
+  RenderPlan plan = plan_stages(scene.scene, volume_facts(facts, world, camera));
   plan.shadow_ray_lights = {shadow_rays};
-  const std::unique_ptr<Estimator> estimator = make_estimator(type, {world, camera, plan, 1});
+  const std::unique_ptr<Estimator> estimator =
+      make_estimator(type, {world, camera, scene.scene.render, plan});
   std::array<Samples, 3> means;
   RenderStatistics statistics;
   for (int pass = 0; pass < passes; ++pass) {

@@ -1,6 +1,7 @@
 #include "estimators/estimator.h"
 #include "film/film.h"
 #include "render/plan.h"
+#include "render/prepared_scene.h"
 #include "support/statistics.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/metrics.h"
@@ -42,10 +43,11 @@ Outcome render(const Subject& subject, EstimatorType type, int passes) {
   Scene scene = load_scene(data + subject.name + ".toml", subject.frame);
   scene.render.estimator = type;
   const Image reference = read_image(data + "reference/" + subject.name + ".exr");
-  const World world = build_world(scene);
+  const PreparedScenePtr prepared = prepare_scene(scene);
+  const World& world = *prepared->world;
   const Camera camera(scene.camera, scene.image, world.space);
-  const RenderPlan plan = plan_stages(scene, volume_facts(world, camera));
-  const auto estimator = make_estimator(type, {world, camera, plan, 1});
+  const RenderPlan plan = plan_stages(scene, volume_facts(prepared->facts, world, camera));
+  const auto estimator = make_estimator(type, {world, camera, scene.render, plan});
   Film film(scene.image.width, scene.image.height);
   PassImage pass_image;
   RenderStatistics statistics;

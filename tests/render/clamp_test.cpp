@@ -68,11 +68,11 @@ TEST(Clamp, TalliesOfPartsAddUp) {
   const RenderStatistics whole = render(scene).statistics;
   std::vector<std::string> parts;
   for (const int first : {0, 2}) {
-    RenderHooks hooks;
-    hooks.pass_range = PassRange{first, first + 1};
-    hooks.partial = folder.file(std::to_string(first) + ".exr");
-    parts.push_back(hooks.partial);
-    render(scene, hooks);
+    FrameSettings frame;
+    frame.pass_range = PassRange{first, first + 1};
+    frame.partial = folder.file(std::to_string(first) + ".exr");
+    parts.push_back(frame.partial);
+    render(scene, frame);
   }
   const Image merged = merge_partials(parts);
   EXPECT_NEAR(merged.numbers.at("vdbeam:clampRemoved"), whole.clamp_removed,
@@ -80,9 +80,9 @@ TEST(Clamp, TalliesOfPartsAddUp) {
   EXPECT_NEAR(merged.numbers.at("vdbeam:clampTotal"), whole.clamp_total, 1e-6 * whole.clamp_total);
   EXPECT_EQ(merged.numbers.at("vdbeam:clampedPixels"), static_cast<double>(whole.clamped_pixels));
 
-  RenderHooks hooks; // the first two passes as a checkpoint
-  hooks.checkpoint.path = parts[0];
-  const RenderResult resumed = render(scene, hooks);
+  FrameSettings frame; // the first two passes as a checkpoint
+  frame.checkpoint.path = parts[0];
+  const RenderResult resumed = render(scene, frame);
   EXPECT_EQ(resumed.resumed_passes, 2);
   EXPECT_NEAR(resumed.statistics.clamp_removed, whole.clamp_removed, 1e-6 * whole.clamp_removed);
   EXPECT_EQ(resumed.statistics.clamped_pixels, whole.clamped_pixels);

@@ -89,13 +89,13 @@ Case slab() {
   return result;
 }
 
-RenderResult render_seed(Case& scene, int seed, const RenderHooks& hooks = {}) {
+RenderResult render_seed(Case& scene, int seed, const FrameSettings& frame = {}) {
   Scene& settings = scene.memory.scene;
   settings.volumes[0].file = "in memory";
   settings.render.seed = static_cast<std::uint64_t>(seed);
   const auto prepared = std::make_shared<PreparedScene>();
-  prepared->world = std::make_shared<World>(scene.memory.world());
-  return render(settings, prepared, hooks);
+  prepared->world = std::make_shared<World>(scene.memory.world(&prepared->facts));
+  return render(settings, prepared, frame);
 }
 
 /// MRSE of each image against the mean of the others: the truth about noise, whatever the bias.
@@ -143,15 +143,15 @@ TEST_P(ErrorCalibrationSlow, TrueErrorLiesInItsIntervalAndTargetsAreMet) {
   settings.estimator = EstimatorType::beam;
   settings.passes = 11;
   settings.bias_rays = 0.2;
-  RenderHooks hooks;
-  hooks.reference = &truth.image;
+  FrameSettings frame;
+  frame.reference = &truth.image;
 
   std::vector<Image> images;
   int inside = 0;
   double error = 0, estimate = 0, noise = 0;
   test::Samples bias_errors;
   for (int seed = 1; seed <= seeds; ++seed) {
-    RenderResult result = render_seed(scene, seed, hooks);
+    RenderResult result = render_seed(scene, seed, frame);
     const PassRecord& last = result.passes.back();
     const double actual = last.mrse - truth_noise;
     inside += last.error_low <= actual && actual <= last.error_high ? 1 : 0;
@@ -175,7 +175,7 @@ TEST_P(ErrorCalibrationSlow, TrueErrorLiesInItsIntervalAndTargetsAreMet) {
   double stopped = 0;
   constexpr int runs = 25;
   for (int seed = 1; seed <= runs; ++seed) {
-    const RenderResult result = render_seed(scene, 1000 + seed, hooks);
+    const RenderResult result = render_seed(scene, 1000 + seed, frame);
     EXPECT_EQ(result.stopped_by, "target_error");
     stopped += (result.passes.back().mrse - truth_noise) / runs;
   }

@@ -70,11 +70,11 @@ TEST(SampleFire, PartsMergeToTheWhole) {
   const Image whole = render(small_fire(14)).image;
   std::vector<std::string> parts;
   for (const auto& [first, last] : {std::pair(0, 0), std::pair(1, 3)}) {
-    RenderHooks hooks;
-    hooks.pass_range = PassRange{first, last};
-    hooks.partial = folder.file(std::to_string(first) + ".exr");
-    render(small_fire(14), hooks);
-    parts.push_back(hooks.partial);
+    FrameSettings frame;
+    frame.pass_range = PassRange{first, last};
+    frame.partial = folder.file(std::to_string(first) + ".exr");
+    render(small_fire(14), frame);
+    parts.push_back(frame.partial);
   }
   expect_same_pixels(merge_partials(parts), whole);
 }

@@ -37,11 +37,11 @@ void expect_same_pixels(const Image& a, const Image& b) {
 class Partial : public ::testing::Test {
 protected:
   std::string render_range(int first, int last, const Scene& scene = small_cloud()) {
-    RenderHooks hooks;
-    hooks.pass_range = PassRange{first, last};
-    hooks.partial = folder_.file(std::to_string(first) + ".exr");
-    render(scene, hooks);
-    return hooks.partial;
+    FrameSettings frame;
+    frame.pass_range = PassRange{first, last};
+    frame.partial = folder_.file(std::to_string(first) + ".exr");
+    render(scene, frame);
+    return frame.partial;
   }
   std::string error_of(const std::vector<std::string>& paths, const MergeSettings& settings = {}) {
     try {
@@ -155,9 +155,9 @@ TEST(Region, PixelsAreThoseOfTheWholeImage) {
     const Scene scene =
         small_cloud({std::string("render.estimator=") + estimator, "render.passes=2"});
     const Image whole = render(scene).image;
-    RenderHooks hooks;
-    hooks.region = PixelRegion{9, 5, 31, 19};
-    const Image part = render(scene, hooks).image;
+    FrameSettings frame;
+    frame.region = PixelRegion{9, 5, 31, 19};
+    const Image part = render(scene, frame).image;
     ASSERT_EQ(part.width, 22);
     ASSERT_EQ(part.height, 14);
     for (const char* name : {"R", "volume_indirect.G", "depth.Z"})
@@ -171,30 +171,31 @@ TEST(Region, PixelsAreThoseOfTheWholeImage) {
 
 TEST(Region, IsADataWindowInTheFile) {
   const test::TempFolder folder;
-  RenderHooks hooks;
-  hooks.region = PixelRegion{9, 5, 31, 19};
-  const Image part = render(small_cloud({"render.passes=1"}), hooks).image;
+  FrameSettings frame;
+  frame.region = PixelRegion{9, 5, 31, 19};
+  const Image part = render(small_cloud({"render.passes=1"}), frame).image;
   write_exr(part, folder.file("a.exr"));
   const Image read = read_image(folder.file("a.exr"));
   ASSERT_EQ(read.width, 40);
   ASSERT_EQ(read.height, 23);
   EXPECT_EQ(read.find("A")->data[4 * 40 + 20], 0);
   EXPECT_EQ(read.find("depth.Z")->data[12 * 40 + 20], part.find("depth.Z")->data[7 * 22 + 11]);
-  hooks.region = PixelRegion{9, 5, 41, 19};
-  EXPECT_THROW(render(small_cloud(), hooks), InputError);
+  frame.region = PixelRegion{9, 5, 41, 19};
+  EXPECT_THROW(render(small_cloud(), frame), InputError);
 }
 
 /// Ends a render after some passes, as a signal does.
 struct Stopper {
   explicit Stopper(int passes) : passes_(passes) {}
-  RenderHooks hooks(const std::string& checkpoint) {
+  RenderResult render(const Scene& scene, const std::string& checkpoint) {
+    FrameSettings frame;
+    frame.checkpoint.path = checkpoint;
     RenderHooks hooks;
     hooks.stop = &stop_;
     hooks.on_pass = [this](const PassRecord& record, const RenderStatistics&) {
       stop_ = record.pass >= passes_;
     };
-    hooks.checkpoint.path = checkpoint;
-    return hooks;
+    return vdbeam::render(scene, frame, hooks);
   }
 
 private:
@@ -208,13 +209,13 @@ TEST(Checkpoint, ResumesBitForBit) {
   const RenderResult whole = render(small_cloud());
   for (const int passes : {2, 5}) {
     Stopper stopper(passes);
-    const RenderResult stopped = render(small_cloud(), stopper.hooks(path));
+    const RenderResult stopped = stopper.render(small_cloud(), path);
     EXPECT_EQ(stopped.stopped_by, "stop");
     EXPECT_EQ(read_film_info(path).passes.size(), static_cast<std::size_t>(passes));
   }
-  RenderHooks hooks;
-  hooks.checkpoint.path = path;
-  const RenderResult resumed = render(small_cloud(), hooks);
+  FrameSettings frame;
+  frame.checkpoint.path = path;
+  const RenderResult resumed = render(small_cloud(), frame);
   EXPECT_EQ(resumed.resumed_passes, 5);
   EXPECT_EQ(resumed.passes.back().pass, 6);
   EXPECT_EQ(resumed.passes.back().error_estimate, whole.passes.back().error_estimate);
@@ -224,13 +225,13 @@ TEST(Checkpoint, ResumesBitForBit) {
 TEST(Checkpoint, IsWrittenAtIntervalsOfPassesAndOfSeconds) {
   const test::TempFolder folder;
   for (const bool by_time : {false, true}) {
-    RenderHooks hooks;
-    hooks.checkpoint.path = folder.file("c.exr");
-    hooks.checkpoint.passes = by_time ? 0 : 4;
-    hooks.checkpoint.seconds = by_time ? 1e-9 : 0;
-    hooks.checkpoint.resume = false;
-    render(small_cloud(), hooks);
-    EXPECT_EQ(read_film_info(hooks.checkpoint.path).passes.size(), by_time ? 6u : 4u);
+    FrameSettings frame;
+    frame.checkpoint.path = folder.file("c.exr");
+    frame.checkpoint.passes = by_time ? 0 : 4;
+    frame.checkpoint.seconds = by_time ? 1e-9 : 0;
+    frame.checkpoint.resume = false;
+    render(small_cloud(), frame);
+    EXPECT_EQ(read_film_info(frame.checkpoint.path).passes.size(), by_time ? 6u : 4u);
   }
 }
 
@@ -240,11 +241,11 @@ TEST(Checkpoint, OfAMachineThatRoundsDifferentlyIsNotUsed) {
   {
     const OldMachine old;
     Stopper stopper(2);
-    render(small_cloud(), stopper.hooks(path));
+    stopper.render(small_cloud(), path);
   }
-  RenderHooks hooks;
-  hooks.checkpoint.path = path;
-  const RenderResult resumed = render(small_cloud(), hooks);
+  FrameSettings frame;
+  frame.checkpoint.path = path;
+  const RenderResult resumed = render(small_cloud(), frame);
   EXPECT_EQ(resumed.resumed_passes, 0);
   ASSERT_FALSE(resumed.notes.empty());
   EXPECT_NE(resumed.notes.back().find("rounds differently"), std::string::npos);
@@ -255,16 +256,16 @@ TEST(Checkpoint, OfAnotherSceneOrBrokenIsNotUsed) {
   const test::TempFolder folder;
   const std::string path = folder.file("c.exr");
   Stopper stopper(2);
-  render(small_cloud({"render.seed=9"}), stopper.hooks(path));
-  RenderHooks hooks;
-  hooks.checkpoint.path = path;
-  const RenderResult whole = render(small_cloud()), other = render(small_cloud(), hooks);
+  stopper.render(small_cloud({"render.seed=9"}), path);
+  FrameSettings frame;
+  frame.checkpoint.path = path;
+  const RenderResult whole = render(small_cloud()), other = render(small_cloud(), frame);
   EXPECT_EQ(other.resumed_passes, 0);
   ASSERT_FALSE(other.notes.empty());
   EXPECT_NE(other.notes.back().find("another scene"), std::string::npos);
   expect_same_pixels(other.image, whole.image);
   test::write_bytes(path, test::read_bytes(path).substr(0, 5000));
-  const RenderResult broken = render(small_cloud(), hooks);
+  const RenderResult broken = render(small_cloud(), frame);
   EXPECT_EQ(broken.resumed_passes, 0);
   expect_same_pixels(broken.image, whole.image);
 }

@@ -25,16 +25,14 @@ struct Outcome {
 
 inline Outcome run(const MemoryScene& scene) {
   Outcome result;
-  const World world = scene.world();
-  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
-  result.plan = plan_stages(scene.scene, volume_facts(world, camera));
+  const TestFrame frame(scene);
+  result.plan = frame.plan;
   for (const PlanStage& stage : result.plan.stages) {
     EXPECT_FALSE(stage.reason.empty()) << stage_name(stage.stage);
     if (stage.needed)
       result.needed.insert(stage.stage);
   }
-  make_estimator(scene.scene.render.estimator, {world, camera, result.plan, 1})
-      ->render_pass(0, result.image, result.statistics);
+  frame.estimator()->render_pass(0, result.image, result.statistics);
   return result;
 }
 

@@ -20,10 +20,9 @@ Scene small_cloud(int frame = 1, const std::vector<std::string>& more = {}) {
   return load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", frame, overrides);
 }
 
-RenderResult render_frame(const Scene& scene, int frame, const PreparedScenePtr& prepared) {
-  RenderHooks hooks;
-  hooks.frame = frame;
-  return render(scene, prepared, hooks);
+RenderResult render_frame(Scene scene, int frame, const PreparedScenePtr& prepared) {
+  scene.frame = frame;
+  return render(scene, prepared);
 }
 Image render_alone(const Scene& scene, int frame) {
   return render_frame(scene, frame, prepare_scene(scene)).image;

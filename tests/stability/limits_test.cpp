@@ -171,7 +171,7 @@ TEST(Limits, QuickLookBeforeTheFirstPassChangesNothing) {
     for (const float value : look.image.find("R")->data)
       EXPECT_GT(value, 0);
   };
-  const RenderResult with = render(scene, hooks);
+  const RenderResult with = render(scene, {}, hooks);
   EXPECT_EQ(looks, 1);
   EXPECT_FALSE(with.quick_look);
   for (std::size_t c = 0; c < without.image.channels.size(); ++c)

@@ -122,7 +122,9 @@ struct MemoryScene {
     scene.camera.fov = fov;
     scene.image = {width, height};
   }
-  World world() const { return build_world(scene, grids, emissions); }
+  World world(WorldFacts* facts = nullptr) const {
+    return build_world(scene, grids, emissions, facts);
+  }
 };
 
 inline PhaseSettings henyey_greenstein(double g) {

@@ -11,22 +11,26 @@ namespace vdbeam::test {
 class TestFrame {
 public:
   explicit TestFrame(const MemoryScene& scene)
-      : world(scene.world()), camera(scene.scene.camera, scene.scene.image, world.space),
-        plan(plan_stages(scene.scene, volume_facts(world, camera))),
-        type_(scene.scene.render.estimator) {}
+      : settings(scene.scene.render), world(scene.world(&facts_)),
+        camera(scene.scene.camera, scene.scene.image, world.space),
+        plan(plan_stages(scene.scene, volume_facts(facts_, world, camera))) {}
   TestFrame(const TestFrame&) = delete;
 
-  EstimatorInput input(std::uint64_t frame = 1) const { return {world, camera, plan, frame}; }
+  EstimatorInput input(std::uint64_t frame = 1) const {
+    return {world, camera, settings, plan, frame};
+  }
   std::unique_ptr<Estimator> estimator(std::uint64_t frame = 1) const {
-    return make_estimator(type_, input(frame));
+    return make_estimator(settings.estimator, input(frame));
   }
 
+private:
+  WorldFacts facts_;
+
+public:
+  const RenderSettings settings;
   const World world;
   const Camera camera;
   const RenderPlan plan;
-
-private:
-  EstimatorType type_;
 };
 
 } // namespace vdbeam::test

@@ -177,10 +177,11 @@ TEST(World, VolumesWithoutContentAreLeftOut) {
   MemoryScene scene = noisy_scene();
   scene.add(DensityField(), Affine());
   scene.add_box({5, 5, 5}, {6, 6, 6}).extinction = 0;
-  const World world = scene.world();
+  WorldFacts facts;
+  const World world = scene.world(&facts);
   EXPECT_EQ(world.medium.volumes.size(), 1u);
-  EXPECT_EQ(world.active_voxels.size(), 3u);
-  EXPECT_EQ(world.active_voxels[1], 0u);
+  ASSERT_EQ(facts.volumes.size(), 3u);
+  EXPECT_EQ(facts.volumes[1].density, 0u);
 }
 
 TEST(World, EqualPhaseFunctionsShareAGroup) {
