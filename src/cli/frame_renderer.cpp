@@ -8,7 +8,6 @@
 #include "machine/stopwatch.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
-#include "scene/scene_enums.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"

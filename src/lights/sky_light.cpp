@@ -1,4 +1,4 @@
-#include "lights/entry_sampler.h"
+#include "lights/distant_emission.h"
 #include "lights/light_table.h"
 #include "math/color.h"
 #include "math/sampling.h"
@@ -37,11 +37,8 @@ public:
     return {segment.t_end == infinity ? radiance(sine(segment.ray.direction)) : Rgb()};
   }
   EmittedPhoton emit(double place, Rng& rng) const override {
-    const float u_face = static_cast<float>(place), u = rng.uniform(), v = rng.uniform();
-    const float u_direction = rng.uniform(), v_direction = rng.uniform();
-    const Drawn drawn = draw(u_direction, v_direction);
-    const EntrySampler::Entry entry = boxes_.sample_line(-drawn.direction, u_face, u, v);
-    return {{entry.point, -drawn.direction}, drawn.value * entry.weight};
+    return emit_from_all_around(boxes_, place, rng,
+                                [this](float u, float v) { return draw(u, v); });
   }
   Rgb power() const override { return power_; }
   bool is_delta() const override { return false; }

@@ -7,17 +7,8 @@ namespace {
 
 /// World bounds of all that a grid can make visible: a border voxel ramps to 0 over one voxel.
 Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
-  Affine placed;
-  placed.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
-  placed.translation = {m[3], m[7], m[11]};
-  const Affine map = placed.after(grid.index_to_world);
-  const Vec3d lower = Vec3d(grid.index_lower) - Vec3d(1),
-              upper = Vec3d(grid.index_upper) + Vec3d(1);
-  Boxd bounds;
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.extend(map.point({corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
-                             corner & 4 ? upper.z : lower.z}));
-  return bounds;
+  const Affine map = Affine::from_matrix(m).after(grid.index_to_world);
+  return map.bounds({Vec3d(grid.index_lower) - Vec3d(1), Vec3d(grid.index_upper) + Vec3d(1)});
 }
 
 /// Voxels of the grids that a volume's emission is made from, as their headers say; 0 where one of

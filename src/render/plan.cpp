@@ -6,6 +6,8 @@
 #include "render/plan_needs.h"
 #include "volume/emission_field.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
 namespace vdbeam {
@@ -14,7 +16,7 @@ namespace {
 /// Photons of a pass where their number is chosen by the estimator.
 constexpr std::uint64_t usual_photons = 400000;
 
-std::string first_reason(std::initializer_list<std::pair<bool, const char*>> reasons) {
+std::string first_reason(std::initializer_list<std::pair<bool, std::string>> reasons) {
   for (const auto& [applies, reason] : reasons)
     if (applies)
       return reason;
@@ -67,9 +69,10 @@ private:
     const bool sees = runs(Stage::photon_importance);
     const bool by_view = render.thinning != PhotonThinning::even && !(render.keep > 0);
     add(Stage::photons, needs_.photons,
-        first_reason({{!needs_.scatters, no_scattering_},
-                      {!runs(Stage::photons), "the estimator shoots none"},
-                      {!needs_.photons, "single bounce, all by shadow rays"}}));
+        first_reason(
+            {{!needs_.scatters, no_scattering_},
+             {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
+             {!needs_.photons, "single bounce, all by shadow rays"}}));
     const bool importance = needs_.photons && sees && by_view;
     add(Stage::photon_importance, importance,
         first_reason({{!needs_.photons, no_photons},

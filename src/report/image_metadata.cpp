@@ -1,7 +1,6 @@
 #include "report/image_metadata.h"
 
 #include "report/versions.h"
-#include "scene/scene_enums.h"
 
 #include <array>
 #include <cmath>

@@ -90,10 +90,8 @@ struct VolumeShape {
     const Vec3d lower = Vec3d(summary.index_lower) - Vec3d(1);
     const Vec3d size = Vec3d(summary.index_upper) + Vec3d(1) - lower;
     const auto add_box = [&](const Vec3d& from, const Vec3d& to) {
-      for (int corner = 0; corner < 8; ++corner)
-        points.push_back(summary.index_to_world.point(
-            lower + size * Vec3d(corner & 1 ? to.x : from.x, corner & 2 ? to.y : from.y,
-                                 corner & 4 ? to.z : from.z)));
+      for (int i = 0; i < 8; ++i)
+        points.push_back(summary.index_to_world.point(lower + size * Boxd{from, to}.corner(i)));
     };
     if (summary.outline.empty()) {
       add_box(Vec3d(0), Vec3d(1));

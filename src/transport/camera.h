@@ -44,10 +44,7 @@ public:
     const double tan_x = tan_half_ * width_ / height_;
     bool behind = true, right = true, left = true, above = true, below = true;
     for (int corner = 0; corner < 8; ++corner) {
-      const Vec3d p =
-          Vec3d{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                corner & 4 ? box.upper.z : box.lower.z} -
-          origin_;
+      const Vec3d p = box.corner(corner) - origin_;
       const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
       behind = behind && z < 0;
       right = right && x > tan_x * z;

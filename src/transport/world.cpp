@@ -11,28 +11,16 @@ namespace vdbeam {
 
 namespace {
 
-Affine to_affine(const std::array<double, 12>& m) {
-  Affine a;
-  a.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
-  a.translation = {m[3], m[7], m[11]};
-  return a;
-}
-
 /// Local coordinates of a field -> world.
 Affine local_to_world(const Vec3<std::int64_t>& origin, const Affine& index_to_world,
                       const VolumeSettings& settings) {
   Affine shift;
   shift.translation = Vec3d(origin);
-  return to_affine(settings.transform).after(index_to_world).after(shift);
+  return Affine::from_matrix(settings.transform).after(index_to_world).after(shift);
 }
 
 Boxd mapped_bounds(const Affine& map, const Boxf& box) {
-  Boxd result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.extend(
-        map.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                   corner & 4 ? box.upper.z : box.lower.z}));
-  return result;
+  return map.bounds({Vec3d(box.lower), Vec3d(box.upper)});
 }
 
 /// Moves the bounds' centre to 0 and scales by the power of two that brings the size to [1, 2).
@@ -65,9 +53,10 @@ void add_region(OccupiedRegion& region, const DensityField& field, const Affine&
       for (int k = 0; k < n.z; ++k) {
         if (field.cell_maximum(field.cell_offset(i, j, k)) == 0)
           continue;
-        const Vec3d lower = max(Vec3d(8.0 * i, 8.0 * j, 8.0 * k), Vec3d(occupied.lower));
+        const Vec3d cell = Vec3d(Vec3<int>{i, j, k}) * double{DensityField::cell_width};
+        const Vec3d lower = max(cell, Vec3d(occupied.lower));
         const Vec3d upper =
-            min(Vec3d(8.0 * i + 8, 8.0 * j + 8, 8.0 * k + 8), Vec3d(occupied.upper));
+            min(cell + Vec3d(double{DensityField::cell_width}), Vec3d(occupied.upper));
         if (lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)
           region.cells.push_back(parallelepiped(local_to_render, {lower, upper}));
       }

@@ -83,13 +83,6 @@ std::vector<std::string> notes(const std::string& label, const RawGridHeader& he
   return notes;
 }
 
-Affine to_affine(const std::array<double, 12>& m) {
-  Affine affine;
-  affine.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
-  affine.translation = {m[3], m[7], m[11]};
-  return affine;
-}
-
 } // namespace
 
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
@@ -114,7 +107,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   grid.field = std::move(bricked.field);
   grid.repairs = bricked.repairs;
   grid.active_voxels = header.active_voxels;
-  grid.index_to_world = to_affine(header.index_to_world);
+  grid.index_to_world = Affine::from_matrix(header.index_to_world);
   grid.notes = notes(label, header, grid);
   return grid;
 }

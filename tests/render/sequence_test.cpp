@@ -140,6 +140,22 @@ TEST(PhotonReuse, IsNotDoneWhereTheNumberOfPhotonsFollowsTheView) {
   EXPECT_EQ(counts, (Counts{0, 0, 0, 0}));
 }
 
+/// A volume that stands still is read once, whatever becomes of the settings; photons that were
+/// found with other settings serve no more.
+TEST(PhotonReuse, SettingsMayChangeOverOneWorld) {
+  PreparedScenePtr first, prepared;
+  for (int frame = 1; frame <= 4; ++frame) {
+    Scene scene = small_cloud(frame, {"render.thinning=even"});
+    scene.render.kernel_shape = frame < 4 ? KernelShape::biweight : KernelShape::constant;
+    prepared = prepare_scene(scene, prepared);
+    first = first ? first : prepared;
+    EXPECT_EQ(prepared->world, first->world) << frame;
+    const RenderResult result = render_frame(scene, frame, prepared);
+    EXPECT_EQ(result.statistics.maps_reused, frame == 3 ? 3u : 0u) << frame;
+    EXPECT_TRUE(same_pixels(result.image, render_alone(scene, frame))) << frame;
+  }
+}
+
 TEST(PhotonReuse, EndsWhenALightOrTheVolumeChanges) {
   PreparedScenePtr prepared;
   for (int frame = 1; frame <= 5; ++frame) {

@@ -23,6 +23,19 @@ TEST_F(Animation, LinearKeysHoldOutsideAndInterpolateInside) {
   EXPECT_DOUBLE_EQ(at(99), 0);
 }
 
+/// An open shutter sees a frame at other times than its own.
+TEST_F(Animation, AFrameIsEvaluatedAtAnyOfItsTimes) {
+  write("s.0002.vdb", "two");
+  const std::string text = "[[volume]]\nfile = 's.####.vdb'\n"
+                           "extinction = { keys = [[1, 10], [5, 30]] }\n";
+  const Scene scene = load(text, {}, {2, 2.75});
+  EXPECT_DOUBLE_EQ(scene.volumes[0].extinction, 18.75);
+  EXPECT_EQ(scene.volumes[0].file, file("s.0002.vdb"));
+  EXPECT_EQ(scene.frame.number, 2);
+  EXPECT_EQ(scene.frame.time, 2.75);
+  EXPECT_EQ(load(text, {}, 2).frame.time, 2);
+}
+
 TEST_F(Animation, SmoothCurvesMeetTheirKeysWithoutOvershoot) {
   const std::string text = scene_with(
       "", "[camera]\nposition = { keys = [[0, [0, 1, 5]], [10, [0, 2, 5]], [40, [8, 2, 5]]], "

@@ -28,7 +28,7 @@ protected:
   }
   /// Loads this text as "s.toml" of a folder that holds "cloud.vdb" (its content is never parsed).
   Scene load(const std::string& text, const std::vector<std::string>& overrides = {},
-             int frame = 1) const {
+             const FrameTime& frame = {}) const {
     if (!std::filesystem::exists(file("cloud.vdb")))
       write("cloud.vdb", "first");
     return load_scene(write("s.toml", text), frame, overrides);
