@@ -251,7 +251,7 @@ TEST(OutputFormats, UnknownExtensionNamesTheKnown) {
     output_format("cloud.tif");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(".exr, .png"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(".exr or .png"), std::string::npos) << error.what();
   }
 }
 

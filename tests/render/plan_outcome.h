@@ -1,10 +1,6 @@
 #pragma once
 
-#include "estimators/camera_ray.h"
-#include "estimators/estimator.h"
-#include "render/plan.h"
-#include "support/memory_scene.h"
-#include "transport/camera.h"
+#include "support/test_frame.h"
 
 #include <gtest/gtest.h>
 
