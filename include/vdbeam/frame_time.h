@@ -10,7 +10,7 @@ struct FrameTime {
   double time = 1; ///< when animated keys are evaluated [frames]
 
   constexpr FrameTime() = default;
-  constexpr FrameTime(int frame) : number(frame), time(frame) {} // NOLINT: an int is a FrameTime
+  constexpr FrameTime(int frame) : number(frame), time(frame) {} ///< of a whole frame
   constexpr FrameTime(int frame, double at) : number(frame), time(at) {}
 };
 

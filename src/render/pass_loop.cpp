@@ -2,10 +2,11 @@
 
 #include "film/clamp.h"
 #include "render/arithmetic.h"
+#include "render/checkpoint.h"
 #include "render/error_record.h"
+#include "render/pass_window.h"
 #include "render/quick_look.h"
 #include "report/image_metadata.h"
-#include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
@@ -31,36 +32,6 @@ std::uint64_t peak_memory() {
 
 /// How long a quick look may take.
 constexpr std::chrono::milliseconds quick_look_time{250};
-
-bool is_finished(const PassImage& pass, const PixelRegion& window) {
-  constexpr int tile = PassImage::tile_width;
-  for (int y = window.y0 / tile * tile; y < window.y1; y += tile)
-    for (int x = window.x0 / tile * tile; x < window.x1; x += tile)
-      if (!pass.finished_tiles[pass.tile_of(x, y)])
-        return false;
-  return true;
-}
-
-/// The part of a pass that lies in the window.
-PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
-  PassImage part;
-  part.resize(window.width(), window.height(), !pass.emission.empty());
-  for (int y = 0; y < window.height(); ++y) {
-    const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
-    const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(y) * part.width;
-    const auto copy = [&](const auto& source, auto& target) {
-      std::copy_n(source.begin() + from, part.width, target.begin() + to);
-    };
-    copy(pass.direct, part.direct);
-    copy(pass.indirect, part.indirect);
-    copy(pass.background, part.background);
-    if (!pass.emission.empty())
-      copy(pass.emission, part.emission);
-    copy(pass.opacity, part.opacity);
-    copy(pass.depth, part.depth);
-  }
-  return part;
-}
 
 } // namespace
 
@@ -217,33 +188,9 @@ bool PassLoop::stop(const char* reason) {
   return true;
 }
 
-/// Why the checkpoint does not hold this render's first passes; empty where it does.
-std::string PassLoop::why_not_resumable(const FilmFileInfo& info) const {
-  const FilmFileInfo own = file_info();
-  if (info.frame != own.frame)
-    return fmt::format("is a checkpoint of frame {}, not {}", info.frame, own.frame);
-  if (info.header.full_width != own.header.full_width ||
-      info.header.full_height != own.header.full_height)
-    return fmt::format("is a checkpoint of {}x{} pixels, not {}x{}", info.header.full_width,
-                       info.header.full_height, own.header.full_width, own.header.full_height);
-  if (info.arithmetic != own.arithmetic)
-    return "is a checkpoint of a machine that rounds differently (one of the two lacks fused "
-           "multiply-add or has another C library)";
-  if (info.pass_hash != own.pass_hash)
-    return "is a checkpoint of another scene, or of other settings than these";
-  if (!info.joins(own))
-    return "is a checkpoint of another region";
-  std::vector<int> expected(info.passes.size());
-  std::iota(expected.begin(), expected.end(), first_pass_);
-  if (info.passes != expected)
-    return fmt::format("holds the passes {}, but this render begins with pass {}",
-                       format_frame_range(info.passes), first_pass_);
-  const std::optional<int> most =
-      frame_.pass_range ? frame_.pass_range->last - first_pass_ + 1 : scene_.render.passes;
-  if (most && static_cast<int>(info.passes.size()) > *most)
-    return fmt::format("holds {}, more than the {} asked for",
-                       count_text(info.passes.size(), "pass"), *most);
-  return "";
+PassRange PassLoop::passes_asked_for() const {
+  constexpr int no_limit = std::numeric_limits<int>::max();
+  return frame_.pass_range.value_or(PassRange{0, scene_.render.passes.value_or(no_limit) - 1});
 }
 
 /// Takes the film of the checkpoint if it is of this scene and holds this render's first passes. A
@@ -255,7 +202,8 @@ void PassLoop::resume() {
     return;
   try {
     const FilmFileInfo info = read_film_info(path);
-    if (const std::string reason = why_not_resumable(info); !reason.empty())
+    if (const std::string reason = why_not_resumable(info, file_info(), passes_asked_for());
+        !reason.empty())
       return note(fmt::format("{}: {}; the frame begins anew", path, reason));
     film_ = read_film(path, info);
     earlier_seconds_ = info.seconds;

@@ -33,7 +33,7 @@ private:
   bool finished();
   bool stop(const char* reason);
   void resume();
-  std::string why_not_resumable(const FilmFileInfo& info) const;
+  PassRange passes_asked_for() const;
   void record();
   PassRecord estimate_errors() const;
   void compare(PassRecord& record);

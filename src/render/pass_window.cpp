@@ -1,0 +1,36 @@
+#include "render/pass_window.h"
+
+#include <algorithm>
+
+namespace vdbeam {
+
+bool is_finished(const PassImage& pass, const PixelRegion& window) {
+  constexpr int tile = PassImage::tile_width;
+  for (int y = window.y0 / tile * tile; y < window.y1; y += tile)
+    for (int x = window.x0 / tile * tile; x < window.x1; x += tile)
+      if (!pass.finished_tiles[pass.tile_of(x, y)])
+        return false;
+  return true;
+}
+
+PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
+  PassImage part;
+  part.resize(window.width(), window.height(), !pass.emission.empty());
+  for (int y = 0; y < window.height(); ++y) {
+    const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
+    const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(y) * part.width;
+    const auto copy = [&](const auto& source, auto& target) {
+      std::copy_n(source.begin() + from, part.width, target.begin() + to);
+    };
+    copy(pass.direct, part.direct);
+    copy(pass.indirect, part.indirect);
+    copy(pass.background, part.background);
+    if (!pass.emission.empty())
+      copy(pass.emission, part.emission);
+    copy(pass.opacity, part.opacity);
+    copy(pass.depth, part.depth);
+  }
+  return part;
+}
+
+} // namespace vdbeam
