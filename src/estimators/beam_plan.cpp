@@ -1,5 +1,6 @@
 #include "estimators/beam_plan.h"
 
+#include "estimators/fit_path_guide.h"
 #include "estimators/kernel_pilot.h"
 #include "estimators/kernel_support.h"
 #include "estimators/view_importance.h"
@@ -19,6 +20,8 @@ constexpr float least_importance = 1.0f / 1024;
 constexpr double trial_share = 0.25;
 constexpr double most_trial_paths = 25000;
 constexpr int trial_maps = 4;
+/// Paths that tell how many photons guided paths leave, and where.
+constexpr std::uint64_t guided_pilot_paths = 1024;
 /// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie
 /// about what is chosen in the end, so that little is extrapolated (docs/decisions.md).
 constexpr double trial_neighbours = 600;
@@ -50,15 +53,35 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
   return PhotonMap::build(std::move(sample), 1, radii, KernelShape::biweight).mean_radius();
 }
 
-/// Stores collisions where the camera sees them.
-void thin_by_view(const EstimatorInput& input, const TracedPhotons& pilot, PhotonPlan& plan) {
-  const double collisions = pilot.mean_collisions;
-  plan.stored_per_path = std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
+/// All collisions of a sample of the paths that the plan has so far.
+TracedPhotons trace_guided_pilot(const EstimatorInput& input, PhotonPlan& plan) {
+  PhotonPassSettings pass = pass_settings(input, plan, guided_pilot_pass);
+  pass.paths = guided_pilot_paths;
+  pass.store_probability = 1;
+  plan.pilot_paths += pass.paths;
+  return trace_photons(input.world, pass);
+}
+
+/// Sends light paths to where the camera sees them, and stores their collisions there.
+void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& plan) {
+  const auto wanted_per_path = [&] {
+    const double collisions = pilot.mean_collisions;
+    return std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
+  };
+  plan.stored_per_path = wanted_per_path();
   CellTables importance =
       view_importance(input.world, input.camera, typical_radius(input, plan, pilot.photons),
                       least_importance, plan.importance_rays);
+  if (input.world.settings.store == PhotonStore::fluence)
+    plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
+  if (plan.guide) {
+    pilot = trace_guided_pilot(input, plan);
+    plan.stored_per_path = wanted_per_path();
+  }
+  if (pilot.photons.size() == 0) // only where a pilot was stopped
+    return;
   ViewThinning thinning = thin_by_view(input.world, std::move(importance), pilot.photons,
-                                       collisions, plan.stored_per_path);
+                                       std::max(1e-3, pilot.mean_collisions), plan.stored_per_path);
   plan.store_probability_by_cell =
       std::make_shared<const CellTables>(std::move(thinning.store_probability));
   plan.stored_per_path = thinning.stored_per_path;
@@ -103,9 +126,9 @@ PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   PhotonPlan plan = default_photon_plan(input);
   if (!input.plan.needs(Stage::photons))
     return plan;
-  const TracedPhotons pilot = trace_pilot(input, plan);
+  TracedPhotons pilot = trace_pilot(input, plan);
   if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
-    thin_by_view(input, pilot, plan);
+    follow_view(input, std::move(pilot), plan);
   plan.paths = choose_paths(input, plan.stored_per_path);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)

@@ -26,6 +26,8 @@ struct PhotonPlan {
   /// Probability with which a storable collision is stored; by cell where the tables are given.
   double store_probability = 1;
   std::shared_ptr<const CellTables> store_probability_by_cell;
+  /// Where light paths begin, end and split; null: emission by power, no windows.
+  std::shared_ptr<const PathGuide> guide;
   double stored_per_path = 0; ///< expected photons of a light path
   double neighbours = 0;      ///< photons in the sphere of an adaptive kernel's radius
 
@@ -52,6 +54,7 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
 inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1;
 
 /// How photons of a pass are traced and stored.
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,

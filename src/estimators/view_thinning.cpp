@@ -9,17 +9,6 @@ namespace {
 /// Photons of less importance than 1 / most_factor are thinned even where there are too few.
 constexpr double most_factor = 4;
 
-/// Importance at each photon: of the volume that sees it best, where several overlap.
-std::vector<float> importance_at(const World& world, const CellTables& importance,
-                                 const PhotonList& photons) {
-  std::vector<float> values(photons.size());
-  for (std::size_t i = 0; i < photons.size(); ++i)
-    for (std::size_t v = 0; v < importance.size(); ++v)
-      values[i] =
-          std::max(values[i], importance[v][world.medium.volumes[v].cell_at(photons.position[i])]);
-  return values;
-}
-
 double mean_share(const std::vector<float>& importance, double factor) {
   double sum = 0;
   for (const float value : importance)
@@ -29,10 +18,20 @@ double mean_share(const std::vector<float>& importance, double factor) {
 
 } // namespace
 
+std::vector<float> view_importance_at(const World& world, const CellTables& importance,
+                                      const PhotonList& photons) {
+  std::vector<float> values(photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+    for (std::size_t v = 0; v < importance.size(); ++v)
+      values[i] =
+          std::max(values[i], importance[v][world.medium.volumes[v].cell_at(photons.position[i])]);
+  return values;
+}
+
 ViewThinning thin_by_view(const World& world, CellTables importance, const PhotonList& pilot,
                           double per_path, double wanted_per_path) {
   ViewThinning thinning;
-  const std::vector<float> values = importance_at(world, importance, pilot);
+  const std::vector<float> values = view_importance_at(world, importance, pilot);
   // No importance exceeds 1, so the factor is not under the share that is wanted.
   double low = std::min(most_factor, wanted_per_path / per_path), high = most_factor;
   for (int step = 0; step < 40; ++step) {

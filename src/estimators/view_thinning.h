@@ -12,6 +12,10 @@ struct ViewThinning {
   double stored_per_path = 0;
 };
 
+/// View importance at each photon: of the volume that is seen best, where several overlap.
+std::vector<float> view_importance_at(const World& world, const CellTables& importance,
+                                      const PhotonList& photons);
+
 /// Probabilities in proportion to what the camera sees of each cell (view_importance), such that a
 /// path leaves `wanted_per_path` photons, or fewer where most of them would go unseen. `pilot`
 /// holds all collisions of a sample of paths, `per_path` on average. Nothing is lost: a photon that

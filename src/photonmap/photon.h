@@ -19,6 +19,10 @@ struct PhotonList {
   /// 1 for photons that come straight from a light; empty where none does.
   std::vector<std::uint8_t> first_flight;
 
+  /// Number of the light path within its pass; empty unless it was asked for. Photons of one path
+  /// stand in the order in which it left them.
+  std::vector<std::uint32_t> path;
+
   std::size_t size() const { return position.size(); }
   static constexpr std::size_t bytes_per_photon(bool directions) {
     return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t);
@@ -28,6 +32,7 @@ struct PhotonList {
     direction.insert(direction.end(), other.direction.begin(), other.direction.end());
     power.insert(power.end(), other.power.begin(), other.power.end());
     first_flight.insert(first_flight.end(), other.first_flight.begin(), other.first_flight.end());
+    path.insert(path.end(), other.path.begin(), other.path.end());
   }
 };
 

@@ -17,33 +17,18 @@ constexpr std::uint64_t paths_per_chunk = 512;
 /// Collisions of every path under way between two looks at the clock.
 constexpr std::uint32_t rounds_per_check = 128;
 
-/// First path number of each light: lights share the paths by power.
-std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths) {
-  std::vector<double> power(lights.size());
-  double total = 0;
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    total += power[i] = mean_component(Vec3d(lights[i].power()));
-  std::vector<std::uint64_t> first{0};
-  double sum = 0;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    sum += power[i];
-    std::uint64_t end =
-        total > 0
-            ? static_cast<std::uint64_t>(std::llround(sum / total * static_cast<double>(paths)))
-            : 0;
-    if (power[i] > 0) // no light is left out altogether
-      end = std::max(end, first.back() + 1);
-    first.push_back(end);
-  }
-  return first;
-}
-
 /// A light path under way. Its throughput is flux.
 struct LightPath : Flight {
   using Flight::Flight;
 
   std::size_t light = 0;
+  std::uint32_t number = 0; ///< within the pass
 };
+
+// Weight windows (Booth and Hendricks 1984): a path that is worth less than `lowest_value` of the
+// mean is ended with a chance that brings survivors to the mean, but is no less than
+// `least_chance`; one that is worth more than `highest_value` is split in two.
+constexpr float lowest_value = 0.5f, highest_value = 2, least_chance = 1.0f / 32;
 
 /// Traces one chunk of paths into one list.
 class PathTracer {
@@ -70,6 +55,10 @@ public:
       for (std::optional<LightPath>& path : paths) {
         if (path && !step_flight(world_.medium, *path, *this))
           path.reset();
+        if (!path && !split_.empty()) {
+          path.emplace(split_.back());
+          split_.pop_back();
+        }
         for (; !path && next < end; ++next) {
           while (next >= first[light + 1])
             ++light;
@@ -98,9 +87,11 @@ public:
     if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
       return false;
     const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
-    const Vec3f direction = path.sample_direction(phase);
-    path.start(world_.medium, {{path.segment.ray.at(hit.t), direction}});
-    return advance_flight(path, *this);
+    const Vec3f point = path.segment.ray.at(hit.t);
+    const int paths = settings_.guide ? hold_in_window(path, *hit.volume, point) : 1;
+    if (paths == 2)
+      split(path, phase, point);
+    return paths > 0 && scatter(path, phase, point);
   }
   /// What leaves the medium is lost: nothing else takes photons.
   void leave(const LightPath&) const {}
@@ -109,6 +100,39 @@ public:
   std::uint64_t collisions = 0;
 
 private:
+  /// The paths that go on: none, one or two, each with the throughput that `path` has afterwards.
+  int hold_in_window(LightPath& path, const Volume& volume, const Vec3f& point) const {
+    const auto v = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
+    const float value = settings_.guide->relative_value(mean_component(path.throughput), volume, v,
+                                                        point, settings_.paths);
+    if (value < lowest_value) {
+      const float chance = std::max(value, least_chance);
+      if (path.rng.uniform() >= chance)
+        return 0;
+      path.throughput *= 1 / chance;
+    } else if (value > highest_value && !path.length.begun()) {
+      path.throughput *= 0.5f;
+      return 2;
+    }
+    return 1;
+  }
+
+  /// Sends a copy of the path on its own way; it is traced when one of those under way has ended.
+  void split(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
+    LightPath copy = path;
+    const std::uint64_t high = path.rng.bits(), low = path.rng.bits();
+    copy.rng = Rng(settings_.key, RngStage::split, high << 32 | low);
+    if (scatter(copy, phase, point))
+      split_.push_back(std::move(copy));
+  }
+
+  /// False where the path leaves the medium without another collision.
+  bool scatter(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
+    const Vec3f direction = path.sample_direction(phase);
+    path.start(world_.medium, {{point, direction}});
+    return advance_flight(path, *this);
+  }
+
   bool may_store(const LightPath& path) const {
     return path.bounces > 0 || !settings_.skip_first_flight[path.light];
   }
@@ -120,12 +144,16 @@ private:
     Rng rng(settings_.key, RngStage::photon, number);
     const double place = (static_cast<double>(index) + static_cast<double>(rng.uniform())) /
                          static_cast<double>(light_paths);
-    const EmittedPhoton photon = world_.lights[light].emit(place, rng);
-    const Rgb flux = photon.flux / static_cast<float>(light_paths);
+    const PathGuide::Emission start =
+        settings_.guide ? settings_.guide->emission(light, place) : PathGuide::Emission{place, 1};
+    const EmittedPhoton photon = world_.lights[light].emit(start.place, rng);
+    const Rgb flux =
+        photon.flux / static_cast<float>(static_cast<double>(light_paths) * start.density);
     if (!(max_component(flux) > 0) || (settings_.max_bounces && *settings_.max_bounces <= 0))
       return;
     path.emplace(rng, flux);
     path->light = light;
+    path->number = static_cast<std::uint32_t>(number);
     path->start(world_.medium, {photon.ray});
     if (!advance_flight(*path, *this))
       path.reset();
@@ -160,10 +188,13 @@ private:
     if (settings_.directions)
       photons.direction.push_back(path.segment.ray.direction);
     photons.power.push_back(power * settings_.albedo / probability);
+    if (settings_.path_numbers)
+      photons.path.push_back(path.number);
     if (first_flights_)
       photons.first_flight.push_back(path.bounces == 0);
   }
 
+  std::vector<LightPath> split_; ///< paths that wait for their turn
   const World& world_;
   const PhotonPassSettings& settings_;
   bool first_flights_; ///< of some light are stored
@@ -171,25 +202,50 @@ private:
 
 } // namespace
 
+std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
+                                       const PathGuide* guide) {
+  std::vector<double> power(lights.size());
+  double total = 0;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    total += power[i] = guide ? guide->light_shares[i] : mean_component(Vec3d(lights[i].power()));
+  std::vector<std::uint64_t> first{0};
+  double sum = 0;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    sum += power[i];
+    std::uint64_t end =
+        total > 0
+            ? static_cast<std::uint64_t>(std::llround(sum / total * static_cast<double>(paths)))
+            : 0;
+    if (power[i] > 0) // no light is left out altogether
+      end = std::max(end, first.back() + 1);
+    first.push_back(end);
+  }
+  return first;
+}
+
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
   const auto& [paths, store, store_probability, store_probability_by_cell, truncation_order,
-               skip_first_flight, max_bounces, directions, albedo, key, stop] = a;
+               skip_first_flight, max_bounces, directions, albedo, guide, path_numbers, key, stop] =
+      a;
   static_cast<void>(stop);
   const bool same_cells = store_probability_by_cell == b.store_probability_by_cell ||
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
-  return same_cells && paths == b.paths && store == b.store &&
-         store_probability == b.store_probability && truncation_order == b.truncation_order &&
-         skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
-         directions == b.directions && albedo == b.albedo && key == b.key;
+  const bool same_guide = guide == b.guide || (guide && b.guide && *guide == *b.guide);
+  return same_cells && same_guide && path_numbers == b.path_numbers && paths == b.paths &&
+         store == b.store && store_probability == b.store_probability &&
+         truncation_order == b.truncation_order && skip_first_flight == b.skip_first_flight &&
+         max_bounces == b.max_bounces && directions == b.directions && albedo == b.albedo &&
+         key == b.key;
 }
 
 TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings) {
   TracedPhotons pass;
   if (world.medium.empty() || settings.paths == 0)
     return pass;
-  const std::vector<std::uint64_t> first = share_paths(world.lights, settings.paths);
+  const std::vector<std::uint64_t> first =
+      share_paths(world.lights, settings.paths, settings.guide.get());
   const std::uint64_t paths = first.back();
   const std::uint64_t chunks = (paths + paths_per_chunk - 1) / paths_per_chunk;
   std::vector<PathTracer> tracers(chunks, PathTracer(world, settings));
@@ -209,6 +265,7 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
   pass.photons.direction.reserve(settings.directions ? stored : 0);
   pass.photons.power.reserve(stored);
   pass.photons.first_flight.reserve(stored);
+  pass.photons.path.reserve(settings.path_numbers ? stored : 0);
   for (PathTracer& tracer : tracers)
     pass.photons.append(tracer.photons);
   pass.mean_collisions =

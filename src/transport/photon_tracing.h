@@ -2,6 +2,7 @@
 
 #include "math/stop_token.h"
 #include "photonmap/photon.h"
+#include "transport/path_guide.h"
 #include "transport/world.h"
 
 #include <memory>
@@ -23,10 +24,18 @@ struct PhotonPassSettings {
   std::optional<int> max_bounces;
   bool directions = true; ///< false: no phase function needs them
   Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
+  /// Where given: what decides where light paths begin, end and split.
+  std::shared_ptr<const PathGuide> guide;
+  bool path_numbers = false; ///< photons tell their path
   RngKey key;
   /// Tells when the result is not wanted any more: it comes soon then, and is incomplete.
   const StopToken* stop = nullptr;
 };
+
+/// First path number of each light, and the number after the last: lights share the paths by power,
+/// or as the guide has it.
+std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
+                                       const PathGuide* guide);
 
 /// True where trace_photons gives the same photons in the same world. `stop` is not compared: the
 /// flag it points to may be gone.

@@ -73,6 +73,9 @@ public:
     return true;
   }
 
+  /// True from where it may end a path.
+  bool begun() const { return next_ > first; }
+
 private:
   static constexpr std::uint64_t first = 4096;
   static constexpr std::uint64_t late = std::uint64_t{1} << 17;
