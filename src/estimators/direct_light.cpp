@@ -72,7 +72,8 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
 class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
-              const std::vector<bool>& sampled, Rng& rng, std::uint64_t& shadow_rays)
+              const std::vector<bool>& sampled, const ShadowLattices& shadows, Rng& rng,
+              std::uint64_t& shadow_rays)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
         rng_(rng), shadow_rays_(shadow_rays) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
@@ -84,7 +85,9 @@ public:
         near.emplace(ray, *light.position(), profile.front(), profile.back());
       if (near && !near->useful())
         near.reset();
-      lights_.push_back({l, near});
+      lights_.push_back({l, near, {}});
+      if (l < shadows.size() && shadows[l])
+        weigh_pieces(*shadows[l], lights_.back());
     }
   }
 
@@ -99,8 +102,37 @@ public:
     if (!(point.pdf > 0)) // in a medium too dense for single precision to place the point
       return sum;
     for (const SampledLight& light : lights_) {
+      if (!light.pieces.empty())
+        continue;
       const float other = light.near ? light.near->pdf(point.t) : 0;
       sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
+    }
+    return sum;
+  }
+
+  /// Lights with a shadow lattice, at distances drawn by the weights of their pieces.
+  Rgb by_shadow(float u) {
+    Rgb sum;
+    for (const SampledLight& light : lights_) {
+      if (light.pieces.empty())
+        continue;
+      const float x = u * light.pieces.back().weight;
+      std::size_t i = 0;
+      while (i + 1 < light.pieces.size() && light.pieces[i].weight <= x)
+        ++i;
+      const Piece before = i > 0 ? light.pieces[i - 1] : Piece{0, 0};
+      const Piece& piece = light.pieces[i];
+      const float weight = piece.weight - before.weight, seen = piece.opacity - before.opacity;
+      if (!(weight > 0))
+        continue;
+      const float opacity = distances_.opacity(0);
+      const float within = std::clamp((x - before.weight) / weight, 0.0f, 1.0f);
+      const ScatterPoint point =
+          distances_.sample(std::min((before.opacity + within * seen) / opacity, 1.0f), 0);
+      // By the medium alone, the piece is drawn with its share of the opacity.
+      const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
+      if (point.pdf > 0)
+        sum += scattered(point, light.index) * (share / drawn);
     }
     return sum;
   }
@@ -120,10 +152,39 @@ public:
   }
 
 private:
+  /// Of the ray: opacity and weight from its beginning to the end of the piece.
+  struct Piece {
+    float opacity, weight;
+  };
   struct SampledLight {
     std::size_t index;
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
+    std::vector<Piece> pieces;       ///< where a lattice tells what is shadowed; else empty
   };
+
+  /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
+  void weigh_pieces(const ShadowLattice& shadow, SampledLight& light) {
+    constexpr float fewest = 32;            // pieces of equal opacity at least
+    constexpr float lit_everywhere = 0.05f; // of the mean light: what the lattice may have missed
+    const float opacity = distances_.opacity(0);
+    const std::size_t last = profile_.knots() - 1;
+    float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
+    for (std::size_t k = 1; k <= last; ++k) {
+      const float now = -std::expm1(-profile_.total(k));
+      const bool small = now - seen < opacity / fewest && profile_.t(k) - t < shadow.step();
+      if (k < last && (now == seen || small))
+        continue;
+      t = profile_.t(k);
+      const float after = shadow.transmittance(ray_.at(t));
+      sum += (now - seen) * 0.5f * (before + after);
+      light.pieces.push_back({now, sum});
+      before = after;
+      seen = now;
+    }
+    const float least = opacity > 0 ? lit_everywhere * sum / opacity + 1e-6f : 0;
+    for (Piece& piece : light.pieces)
+      piece.weight += least * piece.opacity;
+  }
 
   /// Balance heuristic (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
   Rgb scattered(const ScatterPoint& point, std::size_t light) {
@@ -168,17 +229,28 @@ private:
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
-                 std::uint64_t& shadow_rays) {
+                 std::uint64_t& shadow_rays, const ShadowLattices& shadows) {
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
-  RayLighting lighting(world, ray, profile, sampled, rng, shadow_rays);
+  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays);
   const float share = 1 / static_cast<float>(samples);
   for (int i = 0; i < samples; ++i) {
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
+    if (!shadows.empty())
+      sum += lighting.by_shadow((static_cast<float>(i) + rng.uniform()) * share);
     sum += lighting.by_nearness((static_cast<float>(i) + rng.uniform()) * share);
   }
   return sum * share;
+}
+
+ShadowLattices make_shadow_lattices(const World& world, const std::vector<bool>& sampled,
+                                    double rays) {
+  ShadowLattices lattices(world.lights.size());
+  for (std::size_t l = 0; l < lattices.size(); ++l)
+    if (const Vec3f* towards = world.lights[l].narrow_direction(); towards && sampled[l])
+      lattices[l] = std::make_unique<ShadowLattice>(world.medium, *towards, rays);
+  return lattices;
 }
 
 } // namespace vdbeam

@@ -11,7 +11,14 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
                        KernelDomain domain)
     : input_(input), worlds_(input.world, default_photon_plan(input).similar),
       world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
-      boundary_share_(boundary_share(input, domain)) {}
+      boundary_share_(boundary_share(input, domain)) {
+  const World& world = *world_;
+  if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
+      !input.stopped())
+    shadows_ =
+        make_shadow_lattices(world, plan_.sampled_lights,
+                             static_cast<double>(input.camera.width()) * input.camera.height());
+}
 
 /// The pilot belongs to no pass; its counts go with the first.
 void PhotonPass::count_pilot(RenderStatistics& statistics) {

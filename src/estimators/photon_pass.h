@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/direct_light.h"
 #include "estimators/kernel_support.h"
 #include "estimators/photon_plan.h"
 #include "transport/similar_medium.h"
@@ -19,6 +20,8 @@ public:
   void trace_and_build(int pass, RenderStatistics& statistics);
 
   const PhotonPlan& plan() const { return plan_; }
+  /// Tell where direct light is to be looked for; empty where they cannot.
+  const ShadowLattices& shadows() const { return shadows_; }
   const PhotonMap& map() const { return map_; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
   const World& world() const { return *world_; }
@@ -32,6 +35,7 @@ private:
   PassWorlds worlds_;
   const World* world_; ///< of the pass at hand
   PhotonPlan plan_;
+  ShadowLattices shadows_;
   KernelShare boundary_share_;
   bool pilot_counted_ = false;
   PhotonMap map_;

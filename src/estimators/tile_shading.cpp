@@ -52,7 +52,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     image.direct[ray.pixel] =
         light_of_the_peak(world, ray, photons.plan().sampled_lights) +
         direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
-                     photons.plan().direct_samples, rng, counts.shadow_rays);
+                     photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows());
   };
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, image, [&](int x0, int y0, int, int) {
