@@ -2,6 +2,8 @@
 
 #include "estimators/view_thinning.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 
 namespace vdbeam {
@@ -77,102 +79,81 @@ std::vector<double> ratios(const BlockSums& sums) {
 class Pilot {
 public:
   Pilot(const World& world, const TracedPhotons& traced, const CellTables& view)
-      : medium_(world.medium), photons_(traced.photons) {
-    for (const Volume& volume : medium_.volumes)
-      blocks_.emplace_back(volume);
+      : medium_(world.medium), photons_(traced.photons), blocks_(world.medium) {
+    block_of_.reserve(photons_.size());
+    for (const Vec3f& position : photons_.position)
+      block_of_.push_back(blocks_.at(position));
     weigh(view_importance_at(world, view, photons_));
   }
 
-  const std::vector<double>& values() const { return values_; }
-  double value(std::size_t photon) const { return values_[photon]; }
+  const MediumBlocks& blocks() const { return blocks_; }
 
-  /// Per volume: what paths brought after they met a block, per unit of flux. Empties `brought`,
-  /// by path, into what all of each path's photons bring.
-  std::vector<PathGuide::Importance> importance(const Rgb& albedo,
-                                                std::vector<double>& brought) const {
-    std::vector<BlockSums> sums;
-    for (const CellBlocks& blocks : blocks_)
-      sums.emplace_back(blocks.counts());
-    const double unit = 1 / mean_component(Vec3d(albedo));
+  /// What paths brought after they met a block, per unit of flux. Leaves in `brought`, by path and
+  /// 0 at first, what all of its photons bring.
+  std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
+    BlockSums sums(blocks_.counts());
+    const double unit = 1 / mean_component(Vec3d(albedo)); // stored powers hold it, paths do not
     for (std::size_t i = photons_.size(); i-- > 0;) {
       double& later = brought[photons_.path[i]];
-      double majorant = 0;
-      for_each_volume(i, [&](std::size_t, double m) { majorant += m; });
-      const double flux = mean_component(Vec3d(photons_.power[i])) * majorant * unit;
-      for_each_volume(i, [&](std::size_t v, double) {
-        sums[v].add(blocks_[v].at(medium_.volumes[v], photons_.position[i]), later, flux);
-      });
+      sums.add(block_of_[i], later, unit * power(i) * majorant(photons_.position[i]));
       later += values_[i];
     }
-    std::vector<PathGuide::Importance> result;
-    for (std::size_t v = 0; v < sums.size(); ++v) {
-      const std::vector<double> values = ratios(sums[v]);
-      result.push_back({blocks_[v], {values.begin(), values.end()}});
-    }
-    return result;
+    return ratios(sums);
   }
 
 private:
-  /// visit(v, majorant) for each volume that has something at the photon.
-  template <class Visit>
-  void for_each_volume(std::size_t photon, const Visit& visit) const {
-    for (std::size_t v = 0; v < medium_.volumes.size(); ++v)
-      if (const float m = medium_.volumes[v].majorant(photons_.position[photon]); m > 0)
-        visit(v, static_cast<double>(m));
+  double power(std::size_t photon) const { return mean_component(Vec3d(photons_.power[photon])); }
+  double majorant(const Vec3f& point) const {
+    double sum = 0;
+    for (const Volume& volume : medium_.volumes)
+      sum += static_cast<double>(volume.majorant(point));
+    return sum;
   }
 
-  /// Fluence in each block, from all photons there.
-  std::vector<std::vector<double>> fluence() const {
-    std::vector<std::vector<double>> result;
-    for (std::size_t v = 0; v < medium_.volumes.size(); ++v) {
-      const Volume& volume = medium_.volumes[v];
-      BlockSums sums(blocks_[v].counts());
-      for (std::size_t i = 0; i < photons_.size(); ++i)
-        if (volume.majorant(photons_.position[i]) > 0)
-          sums.add(blocks_[v].at(volume, photons_.position[i]),
-                   mean_component(Vec3d(photons_.power[i])), 0);
-      measure_cells(volume, blocks_[v], sums);
-      result.push_back(ratios(sums));
+  /// Mean fluence where there is medium, by block and up to a factor.
+  std::vector<double> fluence() const {
+    BlockSums sums(blocks_.counts());
+    for (std::size_t i = 0; i < photons_.size(); ++i)
+      sums.add(block_of_[i], power(i), 0);
+    const Vec3<int>& n = blocks_.counts();
+    tbb::parallel_for(0, n.x, [&](int x) {
+      for (int y = 0; y < n.y; ++y)
+        for (int z = 0; z < n.z; ++z)
+          sums.measure[(static_cast<std::size_t>(x) * n.y + y) * n.z + z] = filled({x, y, z});
+    });
+    return ratios(sums);
+  }
+
+  /// Part of a block in which there is medium, by its cells.
+  double filled(const Vec3<int>& block) const {
+    constexpr int across = 3;
+    int count = 0;
+    for (int i = 0; i < across * across * across; ++i) {
+      const Vec3<int> at{i / (across * across), i / across % across, i % across};
+      count += majorant(blocks_.point(block, (Vec3f(at) + Vec3f(0.5f)) / across)) > 0;
     }
-    return result;
-  }
-
-  /// The measure of a block is the number of its cells that are not empty.
-  static void measure_cells(const Volume& volume, const CellBlocks& blocks, BlockSums& sums) {
-    const Vec3<int>& cells = volume.field.cell_counts();
-    const Vec3<int>& n = blocks.counts();
-    const int width = blocks.width();
-    for (int x = 0; x < cells.x; ++x)
-      for (int y = 0; y < cells.y; ++y)
-        for (int z = 0; z < cells.z; ++z)
-          if (volume.majorants[volume.field.cell_offset(x, y, z)] > 0)
-            ++sums.measure[(static_cast<std::size_t>(x / width) * n.y + y / width) * n.z +
-                           z / width];
+    return static_cast<double>(count) / (across * across * across);
   }
 
   void weigh(const std::vector<float>& view) {
-    const std::vector<std::vector<double>> fluences = fluence();
-    std::vector<double> around(photons_.size());
+    const std::vector<double> around = fluence();
     double light = 0, space = 0;
     values_.resize(photons_.size());
     for (std::size_t i = 0; i < photons_.size(); ++i) {
-      for_each_volume(i, [&](std::size_t v, double) {
-        around[i] = std::max(around[i],
-                             fluences[v][blocks_[v].at(medium_.volumes[v], photons_.position[i])]);
-      });
-      values_[i] = mean_component(Vec3d(photons_.power[i])) * static_cast<double>(view[i]);
+      values_[i] = power(i) * static_cast<double>(view[i]);
       light += values_[i];
-      space += around[i] > 0 ? values_[i] / around[i] : 0;
+      space += around[block_of_[i]] > 0 ? values_[i] / around[block_of_[i]] : 0;
     }
     const double dark = space > 0 ? offset * light / space : 0;
     for (std::size_t i = 0; i < photons_.size(); ++i)
-      values_[i] = values_[i] > 0 ? values_[i] / (around[i] + dark) : 0;
+      values_[i] = values_[i] > 0 ? values_[i] / (around[block_of_[i]] + dark) : 0;
   }
 
   const Medium& medium_;
   const PhotonList& photons_;
-  std::vector<CellBlocks> blocks_;
-  std::vector<double> values_; ///< what each photon brings
+  MediumBlocks blocks_;
+  std::vector<std::size_t> block_of_; ///< each photon
+  std::vector<double> values_;        ///< what each photon brings
 };
 
 /// Cumulative distribution over the steps of a light whose paths brought this, in the order of
@@ -241,9 +222,10 @@ std::shared_ptr<const PathGuide> fit_path_guide(const EstimatorInput& input, Pho
     return nullptr;
   const std::vector<std::uint64_t> first = share_paths(world.lights, pass.paths, nullptr);
   const Pilot pilot(world, traced, view);
-  auto guide = std::make_shared<PathGuide>();
+  auto guide = std::make_shared<PathGuide>(pilot.blocks());
   std::vector<double> brought(first.back());
-  guide->importance = pilot.importance(pass.albedo, brought);
+  const std::vector<double> importance = pilot.importance(pass.albedo, brought);
+  guide->importance.assign(importance.begin(), importance.end());
   fit_lights(world, first, brought, *guide);
   return guide->total > 0 ? guide : nullptr;
 }

@@ -1,6 +1,7 @@
 #include "transport/path_guide.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vdbeam {
 
@@ -10,13 +11,25 @@ constexpr int most_blocks = 64; ///< along an axis
 
 } // namespace
 
-CellBlocks::CellBlocks(const Volume& volume) {
-  const Vec3<int>& cells = volume.field.cell_counts();
-  while (max_component(cells) > most_blocks * width_)
-    width_ *= 2;
+MediumBlocks::MediumBlocks(const Medium& medium) : lower_(medium.bounds.lower) {
+  const Vec3f size = max(medium.bounds.size(), Vec3f(0));
+  float width = max_component(size) / most_blocks;
+  float finest = infinity;
+  for (const Volume& volume : medium.volumes)
+    finest = std::min(finest, DensityField::cell_width * volume.voxel_size);
+  width = std::max(width, std::min(finest, max_component(size)));
+  for (int a = 0; a < 3; ++a) {
+    counts_[a] = std::clamp(static_cast<int>(std::lround(size[a] / width)), 1, most_blocks);
+    per_unit_[a] = size[a] > 0 ? static_cast<float>(counts_[a]) / size[a] : 0;
+  }
+}
+
+Vec3f MediumBlocks::point(const Vec3<int>& block, const Vec3f& within) const {
+  Vec3f result = lower_;
   for (int a = 0; a < 3; ++a)
-    counts_[a] = (cells[a] + width_ - 1) / width_;
-  per_local_ = 1 / static_cast<float>(DensityField::cell_width * width_);
+    if (per_unit_[a] > 0)
+      result[a] += (static_cast<float>(block[a]) + within[a]) / per_unit_[a];
+  return result;
 }
 
 PathGuide::Emission PathGuide::emission(std::size_t l, double u) const {

@@ -6,31 +6,30 @@
 
 namespace vdbeam {
 
-/// Blocks of cells of a volume's grid: single cells of small grids, more of large ones, so that a
-/// table over them stays small.
-class CellBlocks {
+/// A lattice of equal blocks over the medium, no finer than the cells of its volumes, for tables of
+/// bounded size.
+class MediumBlocks {
 public:
-  explicit CellBlocks(const Volume& volume);
+  explicit MediumBlocks(const Medium& medium);
 
   const Vec3<int>& counts() const { return counts_; }
   std::size_t size() const { return static_cast<std::size_t>(counts_.x) * counts_.y * counts_.z; }
-  /// Cells along an edge of a block.
-  int width() const { return width_; }
   /// Offset of the block of a point, outside of the nearest one.
-  std::size_t at(const Volume& volume, const Vec3f& point) const {
-    const Vec3f block = volume.local_point(point) * per_local_;
+  std::size_t at(const Vec3f& point) const {
+    const Vec3f block = (point - lower_) * per_unit_;
     const Vec3f inside = min(max(block, Vec3f(0)), Vec3f(counts_) - Vec3f(1));
     return (static_cast<std::size_t>(inside.x) * counts_.y + static_cast<std::size_t>(inside.y)) *
                counts_.z +
            static_cast<std::size_t>(inside.z);
   }
+  /// The point at `within`, in [0, 1]^3, of the block (x, y, z).
+  Vec3f point(const Vec3<int>& block, const Vec3f& within) const;
 
-  bool operator==(const CellBlocks&) const = default;
+  bool operator==(const MediumBlocks&) const = default;
 
 private:
-  int width_ = 1;
-  Vec3<int> counts_;
-  float per_local_; ///< blocks per local unit
+  Vec3<int> counts_{1, 1, 1};
+  Vec3f lower_, per_unit_; ///< blocks per render unit
 };
 
 /// Where light paths are worth their time: the importance of flux for the picture (the adjoint of
@@ -45,24 +44,19 @@ struct PathGuide {
     double place = 0, density = 1;
   };
 
-  struct Importance {
-    CellBlocks blocks;
-    std::vector<float> values;
-    bool operator==(const Importance&) const = default;
-  };
+  explicit PathGuide(const MediumBlocks& lattice) : blocks(lattice) {}
 
-  std::vector<Importance> importance;            ///< per volume
+  MediumBlocks blocks;
+  std::vector<float> importance;                 ///< by block
   double total = 0;                              ///< that all light brings together
   std::vector<double> light_shares;              ///< of the paths, per light; their sum is 1
   std::vector<std::vector<double>> distribution; ///< per light: cumulative, steps + 1 values
 
-  /// What a path of this flux at a point of volume v is expected to bring, relative to the mean of
-  /// `paths` paths.
-  float relative_value(float flux, const Volume& volume, std::size_t v, const Vec3f& point,
-                       std::uint64_t paths) const {
-    const Importance& table = importance[v];
+  /// What a path of this flux at a point is expected to bring, relative to the mean of `paths`
+  /// paths.
+  float relative_value(float flux, const Vec3f& point, std::uint64_t paths) const {
     return static_cast<float>(static_cast<double>(flux) *
-                              static_cast<double>(table.values[table.blocks.at(volume, point)]) *
+                              static_cast<double>(importance[blocks.at(point)]) *
                               static_cast<double>(paths) / total);
   }
   /// Where light l starts the path drawn by u in [0, 1).

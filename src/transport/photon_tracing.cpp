@@ -28,7 +28,7 @@ struct LightPath : Flight {
 // Weight windows (Booth and Hendricks 1984): a path that is worth less than `lowest_value` of the
 // mean is ended with a chance that brings survivors to the mean, but is no less than
 // `least_chance`; one that is worth more than `highest_value` is split in two.
-constexpr float lowest_value = 0.5f, highest_value = 2, least_chance = 1.0f / 32;
+constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
 
 /// Traces one chunk of paths into one list.
 class PathTracer {
@@ -88,7 +88,7 @@ public:
       return false;
     const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
     const Vec3f point = path.segment.ray.at(hit.t);
-    const int paths = settings_.guide ? hold_in_window(path, *hit.volume, point) : 1;
+    const int paths = settings_.guide ? hold_in_window(path, point) : 1;
     if (paths == 2)
       split(path, phase, point);
     return paths > 0 && scatter(path, phase, point);
@@ -101,10 +101,9 @@ public:
 
 private:
   /// The paths that go on: none, one or two, each with the throughput that `path` has afterwards.
-  int hold_in_window(LightPath& path, const Volume& volume, const Vec3f& point) const {
-    const auto v = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
-    const float value = settings_.guide->relative_value(mean_component(path.throughput), volume, v,
-                                                        point, settings_.paths);
+  int hold_in_window(LightPath& path, const Vec3f& point) const {
+    const float value =
+        settings_.guide->relative_value(mean_component(path.throughput), point, settings_.paths);
     if (value < lowest_value) {
       const float chance = std::max(value, least_chance);
       if (path.rng.uniform() >= chance)

@@ -1,0 +1,111 @@
+// Shadow rays are sent where a lattice of optical depths expects the light.
+#include "estimators/direct_light.h"
+
+#include "estimators/camera_ray.h"
+#include "support/render_passes.h"
+#include "transport/optical_depth.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+MemoryScene lumps(double depth) {
+  MemoryScene scene;
+  const DensityField field = closed_field(
+      {8, 6, 4}, [](int i, int j, int k) { return lattice_noise(i / 4, j / 4, k / 4); });
+  VolumeSettings& volume =
+      scene.add(field, box_map({8, 6, 4}, {-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}));
+  volume.extinction = depth;
+  volume.albedo = Rgb(0.9f);
+  volume.phase = henyey_greenstein(0.6);
+  scene.add_light(LightType::distant).direction = {0.8, -0.5, -0.2};
+  scene.look({0.4, 0.3, 3}, {0, 0, 0}, 22, 16, 16);
+  return scene;
+}
+
+TEST(ShadowLattice, IsExactAtItsPointsAndNearBetween) {
+  const World world = lumps(4).world();
+  const Vec3f towards = *world.lights[0].narrow_direction();
+  const ShadowLattice lattice(world.medium, towards, 40000);
+  const Boxf& box = world.medium.bounds;
+  const auto exact = [&](const Vec3f& p) {
+    return max_component(exact_transmittance(world.medium, {{p, towards}}));
+  };
+  for (const Vec3f& p : {box.lower, box.upper})
+    EXPECT_NEAR(lattice.transmittance(p), exact(p), 1e-5f * exact(p));
+  EXPECT_EQ(lattice.transmittance(box.upper + Vec3f(1)), lattice.transmittance(box.upper));
+  Rng rng({5, 1, 1}, RngStage::test, 0);
+  double worst = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const float u = rng.uniform(), v = rng.uniform(), w = rng.uniform();
+    const Vec3f p = box.lower + box.size() * Vec3f(u, v, w);
+    worst = std::max(worst, std::abs(std::log(static_cast<double>(lattice.transmittance(p))) -
+                                     std::log(static_cast<double>(exact(p)))));
+  }
+  EXPECT_LT(worst, 0.5); // the light is off by e^0.5 at the most
+}
+
+struct Direct {
+  std::array<Samples, 2> plain, guided; ///< means over the left and the right of the picture
+};
+
+/// Direct light of many draws with the lattice and without.
+Direct measure(const MemoryScene& scene, double rays) {
+  const World world = scene.world();
+  const Camera camera(scene.scene.camera, scene.scene.image, world.space);
+  const std::vector<bool> sampled(world.lights.size(), true);
+  const ShadowLattices none, lattices = make_shadow_lattices(world, sampled, rays);
+  Direct result;
+  std::uint64_t shadow_rays = 0;
+  for (std::uint64_t draw = 0; draw < 200; ++draw)
+    for (const bool guided : {false, true}) {
+      double sums[2] = {};
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+          const CameraRay ray = camera_ray(world, camera, x + 0.5, y + 0.5);
+          DepthProfile profile;
+          profile.build(world.medium, ray.segment, 1e-6f);
+          Rng rng({3, 1, draw + (guided ? 1000 : 0)}, RngStage::direct,
+                  static_cast<std::uint64_t>(16 * y + x));
+          const Rgb light = direct_light(world, ray.segment.ray, profile, sampled, 2, rng,
+                                         shadow_rays, guided ? lattices : none);
+          sums[x / 8] += static_cast<double>(light.x);
+        }
+      for (std::size_t i : {0u, 1u})
+        (guided ? result.guided : result.plain)[i].add(sums[i] / 128);
+    }
+  return result;
+}
+
+TEST(ShadowLattice, LosesNothingAndLowersNoise) {
+  for (const double rays : {500.0, 30000.0}) { // a coarse lattice is right on average too
+    const Direct direct = measure(lumps(40), rays);
+    for (std::size_t i : {0u, 1u})
+      expect_same_mean(direct.guided[i], direct.plain[i]);
+    EXPECT_LT(direct.guided[0].error(), 0.01 * direct.guided[0].mean());
+    if (rays > 1000) {
+      EXPECT_LT(direct.guided[0].variance(), 0.5 * direct.plain[0].variance());
+    }
+  }
+}
+
+/// Two suns have a lattice each, a sky has none, and a lamp in the medium keeps its own samples.
+TEST(ShadowLattice, BesideOtherLights) {
+  MemoryScene scene = lumps(10);
+  scene.add_light(LightType::distant).direction = {-0.3, -1, 0.2};
+  scene.add_light(LightType::environment).radiance = Rgb(0.5f);
+  scene.add_light(LightType::point).position = {0.1, 0.1, 0.2};
+  const World world = scene.world();
+  const ShadowLattices lattices = make_shadow_lattices(world, {true, true, true, true}, 1000);
+  EXPECT_TRUE(lattices[0] && lattices[1] && !lattices[2] && !lattices[3]);
+  EXPECT_FALSE(make_shadow_lattices(world, {false, true, true, true}, 1000)[0]);
+  const Direct direct = measure(scene, 5000);
+  for (std::size_t i : {0u, 1u})
+    expect_same_mean(direct.guided[i], direct.plain[i]);
+}
+
+} // namespace
+} // namespace vdbeam
