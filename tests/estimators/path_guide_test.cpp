@@ -2,9 +2,12 @@
 #include "estimators/beam_plan.h"
 
 #include "support/render_passes.h"
+#include "support/test_frame.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
+
+#include <deque>
 
 namespace vdbeam {
 namespace {
@@ -36,13 +39,12 @@ void add_haze(MemoryScene& scene) {
 
 struct Planned {
   explicit Planned(const MemoryScene& scene)
-      : world(scene.world()), camera(scene.scene.camera, scene.scene.image, world.space),
-        plan(plan_beam_photons({world, camera, 1})) {}
+      : frame(scene), world(frame.world), plan(plan_beam_photons(frame.input())) {}
 
   /// Powers of the photons of one pass in the skin that is seen, two mean free paths thick, and in
   /// all of the medium.
   std::array<double, 2> powers(bool guided, std::uint64_t pass) const {
-    PhotonPassSettings settings = pass_settings({world, camera, 1}, plan, pass);
+    PhotonPassSettings settings = pass_settings(frame.input(), plan, pass);
     if (!guided)
       settings.guide = nullptr;
     const PhotonList photons = trace_photons(world, settings).photons;
@@ -57,8 +59,8 @@ struct Planned {
     return sums;
   }
 
-  World world;
-  Camera camera;
+  TestFrame frame;
+  const World& world;
   PhotonPlan plan;
 };
 
@@ -137,13 +139,12 @@ TEST(PathGuide, EmissionIsADensity) {
 
 TEST(PathGuide, IsTheSameForAnyThreads) {
   const MemoryScene scene = lit_from_behind();
-  std::vector<Planned> planned;
+  std::deque<Planned> planned;
   std::vector<PhotonList> photons;
   for (const int threads : {1, 3})
     tbb::task_arena(threads).execute([&] {
       const Planned& p = planned.emplace_back(scene);
-      photons.push_back(
-          trace_photons(p.world, pass_settings({p.world, p.camera, 1}, p.plan, 5)).photons);
+      photons.push_back(trace_photons(p.world, pass_settings(p.frame.input(), p.plan, 5)).photons);
     });
   EXPECT_EQ(*planned[0].plan.guide, *planned[1].plan.guide);
   EXPECT_EQ(photons[0].position, photons[1].position);
@@ -155,7 +156,7 @@ TEST(PathGuide, WorkIsBoundedInADeepMedium) {
   MemoryScene scene = lit_from_behind(1e5);
   scene.scene.volumes[0].albedo = Rgb(1);
   const Planned planned(scene);
-  PhotonPassSettings settings = pass_settings({planned.world, planned.camera, 1}, planned.plan, 0);
+  PhotonPassSettings settings = pass_settings(planned.frame.input(), planned.plan, 0);
   settings.paths = 2000;
   EXPECT_LT(trace_photons(planned.world, settings).mean_collisions, 50000);
 }
