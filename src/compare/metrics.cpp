@@ -15,7 +15,7 @@ namespace {
 
 constexpr double mrse_offset = 0.01;
 /// Of two references, as MRSE of their mean: with more, pixels are weighed by their surroundings.
-constexpr double noise_that_weighs = 0.01;
+constexpr double noise_that_weighs = 0.003;
 constexpr double worst_fraction = 0.001; ///< of the pixels, left out of relMSE
 
 using Planes = std::array<const float*, 3>;

@@ -72,7 +72,7 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
   CellTables importance =
       view_importance(input.world, input.camera, typical_radius(input, plan, pilot.photons),
                       least_importance, plan.importance_rays);
-  if (input.world.settings.store == PhotonStore::fluence)
+  if (input.settings.store == PhotonStore::fluence)
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
     pilot = trace_guided_pilot(input, plan);

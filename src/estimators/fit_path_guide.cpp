@@ -18,7 +18,7 @@ constexpr std::size_t fewest_photons = 256;
 /// Cells with fewer visits than this take most of their value from those around them.
 constexpr double prior_visits = 8;
 /// Steps of a light with fewer paths than this take most of their value from all of them.
-constexpr double prior_paths = 4;
+constexpr double prior_paths = 32;
 /// Of the mean fluence that is seen, added where photons are weighed: as the 0.01 of MRSE.
 constexpr double offset = 0.03;
 /// Shares of paths that begin as if nothing were known: what the pilot missed is found all the

@@ -1,5 +1,7 @@
 #include "render/limit_notes.h"
 
+#include "estimators/photon_plan.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,8 +47,9 @@ double narrowest(const World& world) {
 
 } // namespace
 
-std::vector<std::string> limit_notes(const Scene& scene, const World& world,
-                                     const RenderPlan& plan) {
+std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& input) {
+  const World& world = input.world;
+  const RenderPlan& plan = input.plan;
   std::vector<std::string> notes;
   const double depth = deepest(world);
   if (depth > deepest_for_positions)
@@ -60,7 +63,7 @@ std::vector<std::string> limit_notes(const Scene& scene, const World& world,
                                 "in the skin that is seen, so parts may be dark or noisy; "
                                 "render.estimator = \"path\" has no such limit",
                                 depth));
-  if (narrowest(world) > narrowest_lobe)
+  if (narrowest(world) > narrowest_lobe && !default_photon_plan(input).similar)
     notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
                                 "from where it looks; render.estimator = \"path\" has less noise",
                                 narrowest(world)));

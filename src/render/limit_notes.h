@@ -1,13 +1,12 @@
 #pragma once
 
-#include "transport/world.h"
+#include "estimators/estimator.h"
 #include "vdbeam/render.h"
 
 namespace vdbeam {
 
 /// What the user should know of a scene at the ends of what the estimators resolve
 /// (docs/stability.md): lines for RenderResult::notes. Empty for ordinary scenes.
-std::vector<std::string> limit_notes(const Scene& scene, const World& world,
-                                     const RenderPlan& plan);
+std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& input);
 
 } // namespace vdbeam

@@ -68,14 +68,14 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   result.plan = plan_stages(scene, volumes);
   result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
   check_memory(scene, result.plan, granted_memory());
-  for (const std::string& line : limit_notes(scene, world, result.plan))
-    note(line);
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(scene.frame.number);
   PassLoop loop(scene, frame, hooks, window, result);
   const EstimatorInput input{world, camera, scene.render,       result.plan,
                              key,   window, &loop.stop_token(), prepared->photons.get()};
+  for (const std::string& line : limit_notes(scene, input))
+    note(line);
   const RenderPlan path_plan = plan_paths(scene, volumes);
   const EstimatorInput path_input = input.with(path_plan);
   loop.show_quick_look(path_input);
