@@ -9,6 +9,7 @@ vdbeam_find(tomlplusplus CONFIG)
 vdbeam_find(nlohmann_json CONFIG)
 vdbeam_find(PkgConfig)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 
 # OpenVDB ships find modules instead of a package config, and its folder's FindTBB and FindOpenEXR
 # would shadow the config packages above, so the module path is restored at once.

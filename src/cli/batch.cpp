@@ -61,6 +61,10 @@ Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
     }
     if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty())
       loaded.frame.prepared = prepare_scene(loaded.frame.scene, previous);
+  } catch (const InputError& error) {
+    const std::string line = error.what();
+    loaded.error =
+        std::make_exception_ptr(InputError(document_.whose_file(loaded.frame.scene, line) + line));
   } catch (...) {
     loaded.error = std::current_exception();
   }

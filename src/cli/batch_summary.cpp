@@ -26,9 +26,6 @@ std::string BatchSummary::text() const {
     }
   if (const std::size_t left = frames.size() - outcomes.size(); left > 0)
     text += fmt::format("{}{} not begun", separator, left);
-  for (const FrameOutcome& outcome : outcomes)
-    if (outcome.status == "failed")
-      text += fmt::format("\n  frame {} failed: {}", outcome.frame, outcome.reason);
   return text;
 }
 

@@ -291,8 +291,8 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   }
   if (result.quick_look)
     throw FrameError(fmt::format("{}: the time limit of {} ended the frame before its first pass "
-                                 "was finished; the image is a quick look; give it more time or "
-                                 "fewer pixels",
+                                 "was finished: the image is a quick look, rough and for the eye "
+                                 "only; give it more time or fewer pixels",
                                  output(loaded.frame()), format_duration(*scene.render.time)));
   progress.finish(end_text(result, output(loaded.frame())));
   return true;

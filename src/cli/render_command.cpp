@@ -44,6 +44,19 @@ std::string default_output(const std::string& scene, bool several) {
   return stem + (several && !has_frame_pattern(stem) ? ".####.exr" : ".exr");
 }
 
+/// The number of "smoke.0020.vdb" or "smoke_0020.vdb"; 1 where the name has none.
+int frame_of_name(const std::string& vdb) {
+  constexpr std::size_t most_digits = 8, fewest_after_underscore = 3; // "cloud_v2" is a version
+  const std::string stem = std::filesystem::path(vdb).stem().string();
+  const std::size_t before = stem.find_last_not_of("0123456789");
+  if (before == stem.npos || before + 1 == stem.size())
+    return 1;
+  const std::string digits = stem.substr(before + 1);
+  const bool numbered =
+      stem[before] == '.' || (stem[before] == '_' && digits.size() >= fewest_after_underscore);
+  return numbered && digits.size() <= most_digits ? std::stoi(digits) : 1;
+}
+
 std::vector<int> choose_frames(const RenderOptions& options, const SceneDocument& document) {
   if (!options.frames.empty()) {
     try {
@@ -53,7 +66,7 @@ std::vector<int> choose_frames(const RenderOptions& options, const SceneDocument
     }
   }
   if (!document.has_frame_pattern())
-    return {1};
+    return {is_vdb_file(options.scene.path()) ? frame_of_name(options.scene.path()) : 1};
   const std::vector<int> there = document.frames_on_disk();
   throw InputError(one_line(
       fmt::format("{}: the volume is a sequence: say which frames, e.g. -f {}",

@@ -1,6 +1,6 @@
 #include "compare/flip.h"
 
-#include "vdbeam/vec.h"
+#include "math/affine.h"
 
 #include <tbb/parallel_for.h>
 
@@ -29,13 +29,7 @@ Vec3d multiply(const std::array<Vec3d, 3>& m, const Vec3d& v) {
   return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
 }
 
-std::array<Vec3d, 3> invert(const std::array<Vec3d, 3>& m) {
-  const Vec3d a = cross(m[1], m[2]), b = cross(m[2], m[0]), c = cross(m[0], m[1]);
-  const double d = 1 / dot(m[0], a);
-  return {Vec3d{a.x, b.x, c.x} * d, Vec3d{a.y, b.y, c.y} * d, Vec3d{a.z, b.z, c.z} * d};
-}
-
-const std::array<Vec3d, 3> xyz_to_rgb = invert(rgb_to_xyz);
+const std::array<Vec3d, 3> xyz_to_rgb = Affine{rgb_to_xyz, {}}.inverse().rows;
 const Vec3d white = multiply(rgb_to_xyz, Vec3d(1.0));
 
 /// The linearised opponent space of section 4.1.

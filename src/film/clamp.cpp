@@ -13,13 +13,6 @@ double sum_of(const Rgb& c) {
 
 } // namespace
 
-ClampTally& ClampTally::operator+=(const ClampTally& other) {
-  removed += other.removed;
-  total += other.total;
-  pixels += other.pixels;
-  return *this;
-}
-
 ClampTally clamp_pass(PassImage& pass, double limit) {
   ClampTally tally;
   for (std::size_t i = 0; i < pass.direct.size(); ++i) {

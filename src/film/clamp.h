@@ -11,10 +11,6 @@ struct ClampTally {
   double removed = 0;       ///< radiance that was taken away
   double total = 0;         ///< radiance before clamping
   std::uint64_t pixels = 0; ///< pixels that were dimmed, counted in each pass
-
-  /// Fraction of the picture's light that clamping removed, which is the bias of its mean.
-  double fraction() const { return total > 0 ? removed / total : 0; }
-  ClampTally& operator+=(const ClampTally& other);
 };
 
 /// Dims what the medium scatters (direct and indirect light together) in every pixel whose largest

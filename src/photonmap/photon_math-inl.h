@@ -6,8 +6,9 @@
 #define VDBEAM_PHOTON_MATH_INL_H_
 #endif
 
-#include "math/kernels.h"
+#include "math/ray.h"
 #include "phase/phase_function.h"
+#include "vdbeam/scene.h"
 
 #include <hwy/highway.h>
 
@@ -25,7 +26,9 @@ struct KernelPolynomial {
   float step = 0, linear = 0, square = 0;
 };
 
-/// disc_kernel in this form.
+/// Disc kernels as functions of s = d^2 / r^2, to be multiplied by 1 / r^2; each integrates to 1
+/// over the disc: integral_0^1 k(s) pi ds = 1. Biweight: 3 / pi (1 - s)^2, fourth order: 6 / pi (1
+/// - s) (1 - 2 s).
 inline KernelPolynomial disc_polynomial(KernelShape shape) {
   switch (shape) {
   case KernelShape::constant:
@@ -40,7 +43,8 @@ inline KernelPolynomial disc_polynomial(KernelShape shape) {
   return {};
 }
 
-/// ball_kernel in this form.
+/// Ball kernels as functions of s = d^2 / r^2, to be multiplied by 1 / r^3; each integrates to 1
+/// over the ball: integral_0^1 k(s) 2 pi sqrt(s) ds = 1.
 inline KernelPolynomial ball_polynomial(KernelShape shape) {
   switch (shape) {
   case KernelShape::constant:
@@ -49,7 +53,7 @@ inline KernelPolynomial ball_polynomial(KernelShape shape) {
     return {0, 15 / (8 * pi), 0};
   case KernelShape::biweight:
     return {0, 0, 105 / (32 * pi)};
-  case KernelShape::fourth_order: // (1 - s)(1 - 9/5 s)
+  case KernelShape::fourth_order: // (1 - s)(1 - 9/5 s) has no second moment
     return {0, -0.8f * 525 / (64 * pi), 1.8f * 525 / (64 * pi)};
   }
   return {};

@@ -1,5 +1,7 @@
 #include "render/limit_notes.h"
 
+#include "estimators/camera_ray.h"
+
 #include "estimators/photon_plan.h"
 
 #include <fmt/format.h>
@@ -51,6 +53,13 @@ std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& i
   const World& world = input.world;
   const RenderPlan& plan = input.plan;
   std::vector<std::string> notes;
+  if (input.world.medium.visible() && !may_see_medium(input.world, input.camera)) {
+    const RenderSpace& space = input.world.space;
+    const Vec3d at = space.origin + Vec3d(input.world.medium.bounds.center()) / space.scale;
+    notes.push_back(fmt::format("no volume is in the picture: the camera looks past all of them, "
+                                "which lie around [{:.3g}, {:.3g}, {:.3g}]",
+                                at.x, at.y, at.z));
+  }
   const double depth = deepest(world);
   if (depth > deepest_for_positions)
     notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: its lit skin is "

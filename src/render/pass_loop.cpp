@@ -86,7 +86,9 @@ void PassLoop::run(Estimator& estimator, BiasProbe* probe, const EstimatorInput&
     soon.set_deadline(Clock::now() + quick_look_time);
     take_quick_look(quick_look, soon, image_);
     result_.quick_look = true;
-    note("not one pass was finished: the image is a quick look, rough and for the eye only");
+    // For the report; the program has words of its own for it.
+    result_.notes.push_back(
+        "not one pass was finished: the image is a quick look, rough and for the eye only");
   } else {
     develop();
   }

@@ -3,69 +3,32 @@
 #include "vdbeam/error.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <new>
 #include <sys/stat.h>
 #include <vector>
+#include <xxhash.h>
 
 namespace vdbeam {
-namespace {
 
-constexpr std::uint64_t odd_1 = 0x9e3779b97f4a7c15, odd_2 = 0xd6e8feb86659fd93;
-
-/// A bijection in which every input bit reaches every output bit.
-std::uint64_t scramble(std::uint64_t x) {
-  x ^= x >> 32;
-  x *= odd_2;
-  x ^= x >> 32;
-  x *= odd_2;
-  return x ^ (x >> 32);
+ContentHash::ContentHash() : state_(XXH3_createState()) {
+  if (!state_ || XXH3_64bits_reset(state_.get()) == XXH_ERROR)
+    throw std::bad_alloc();
 }
 
-} // namespace
-
-void ContentHash::add_block(const unsigned char* block) {
-  for (int i = 0; i < 4; ++i) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, block + 8 * i, 8);
-    lanes_[i] = std::rotl((lanes_[i] ^ word) * odd_1, 29) * odd_2;
-  }
+void ContentHash::Delete::operator()(XXH3_state_s* state) const {
+  XXH3_freeState(state);
 }
 
 void ContentHash::add(const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const unsigned char*>(data);
-  total_ += size;
-  if (pending_size_ > 0) {
-    const std::size_t taken = std::min(size, sizeof pending_ - pending_size_);
-    std::memcpy(pending_ + pending_size_, bytes, taken);
-    pending_size_ += taken;
-    bytes += taken;
-    size -= taken;
-    if (pending_size_ < sizeof pending_)
-      return;
-    add_block(pending_);
-    pending_size_ = 0;
-  }
-  for (; size >= sizeof pending_; bytes += sizeof pending_, size -= sizeof pending_)
-    add_block(bytes);
-  std::memcpy(pending_, bytes, size);
-  pending_size_ = size;
+  XXH3_64bits_update(state_.get(), data, size);
 }
 
 std::uint64_t ContentHash::value() const {
-  ContentHash end = *this;
-  if (end.pending_size_ > 0) {
-    std::memset(end.pending_ + end.pending_size_, 0, sizeof end.pending_ - end.pending_size_);
-    end.add_block(end.pending_);
-  }
-  std::uint64_t result = scramble(total_);
-  for (const std::uint64_t lane : end.lanes_)
-    result = scramble(result ^ lane) * odd_1;
-  return scramble(result);
+  return XXH3_64bits_digest(state_.get());
 }
 
 namespace {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -27,14 +28,23 @@ struct GridExtent {
   bool glows() const { return maximum > 0 && std::isfinite(maximum) && line > 0; }
 };
 
+constexpr const char* flame_names[] = {"flame", "flames", "fire", "heat", "burn"};
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 GridExtent find_extent(const std::vector<std::vector<GridSummary>>& summaries,
                        const std::string& name) {
   GridExtent extent{name};
   for (const std::vector<GridSummary>& grids : summaries)
     for (const GridSummary& grid : grids) {
       const bool scalar = grid.value_type == "float" || grid.value_type == "half";
-      if (grid.name != name || !scalar || grid.active_voxels == 0)
+      if (lower_case(grid.name) != name || !scalar || grid.active_voxels == 0)
         continue;
+      extent.name = grid.name;
       double cells = 1, longest = 0;
       for (int i = 0; i < 3; ++i) {
         const auto count = static_cast<double>(grid.index_upper[i] - grid.index_lower[i] + 1);
@@ -49,7 +59,7 @@ GridExtent find_extent(const std::vector<std::vector<GridSummary>>& summaries,
 }
 
 GridExtent find_flame(const std::vector<std::vector<GridSummary>>& summaries) {
-  for (const char* name : {"flame", "flames", "fire", "heat", "burn"})
+  for (const char* name : flame_names)
     if (GridExtent extent = find_extent(summaries, name); extent.glows())
       return extent;
   return {};
@@ -62,6 +72,12 @@ double kelvin_per_unit(const GridExtent& temperature) {
 }
 
 } // namespace
+
+bool is_fire_grid(const std::string& name) {
+  const std::string plain = lower_case(name);
+  return plain == "fuel" || plain == "temperature" ||
+         std::find(std::begin(flame_names), std::end(flame_names), plain) != std::end(flame_names);
+}
 
 double round_to_digits(double x, int digits) {
   if (!(x > 0) || !std::isfinite(x))

@@ -8,6 +8,9 @@
 
 namespace vdbeam {
 
+/// Whether simulators give this name to what burns or is hot; capitals do not matter.
+bool is_fire_grid(const std::string& name);
+
 /// How a bare VDB glows, from the summaries of the files that decide: by its flame grid ("flame",
 /// "flames", "fire", "heat", "burn"), in the colours of its temperature grid if there is one; or by
 /// a temperature grid that is plainly in kelvin. No emission where there is neither. `notes` takes

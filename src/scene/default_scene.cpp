@@ -27,6 +27,29 @@ bool is_density(const GridSummary& grid) {
   return !is_level_set(grid) && !why_no_density(kind_of(grid));
 }
 
+/// Of "density[1]", which is what OpenVDB calls the second of several grids "density".
+std::string given_name(const std::string& name) {
+  const std::size_t bracket = name.find_last_of('[');
+  return name.ends_with(']') && bracket != name.npos ? name.substr(0, bracket) : name;
+}
+
+/// Why this grid, none being asked for or called "density".
+std::string choice_note(const std::string& file, const GridSummary& chosen,
+                        const std::vector<GridSummary>& grids) {
+  const std::string name = given_name(chosen.name);
+  const auto same = std::count_if(grids.begin(), grids.end(), [&](const GridSummary& grid) {
+    return given_name(grid.name) == name;
+  });
+  const std::string what = name.empty() ? "without a name" : fmt::format("called \"{}\"", name);
+  if (same > 1)
+    return fmt::format("{}: there are {} grids {}; the first with voxels, \"{}\", is rendered; for "
+                       "another: --set volume.0.density={}[1]",
+                       file, same, what, chosen.name, name);
+  if (name.empty())
+    return fmt::format("{}: its grid has no name; it is rendered as density", file);
+  return fmt::format(R"({}: there is no grid "density"; "{}" is rendered)", file, chosen.name);
+}
+
 const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const FramingWishes& wishes,
                                const std::string& file, std::vector<std::string>& notes) {
   const auto find = [&](const auto& condition) -> const GridSummary* {
@@ -42,6 +65,10 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
     return is_density(g) && g.name.starts_with("density") && g.active_voxels > 0;
   });
   if (!grid)
+    grid = find([](const GridSummary& g) {
+      return is_density(g) && g.active_voxels > 0 && !is_fire_grid(g.name);
+    });
+  if (!grid)
     grid = find([](const GridSummary& g) { return is_density(g) && g.active_voxels > 0; });
   if (!grid)
     grid = find(is_level_set);
@@ -55,8 +82,7 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
     throw InputError(fmt::format("{}: there is no float grid to render; it holds {}", file,
                                  names.empty() ? "no grid at all" : join_words(names, "and")));
   }
-  notes.push_back(
-      fmt::format(R"({}: there is no grid "density"; "{}" is rendered)", file, grid->name));
+  notes.push_back(choice_note(file, *grid, grids));
   return *grid;
 }
 
@@ -273,7 +299,15 @@ Scene make_default_scene(const std::string& path,
   volume.density = shape.grid;
   volume.phase.type = PhaseType::henyey_greenstein;
   volume.phase.g = 0.5;
-  if (shape.mean_depth > 0 && shape.largest_depth > 0) {
+  std::vector<std::string> fire_notes;
+  volume.emission = default_emission(path, summaries, fire_notes);
+  if (volume.emission.glows() && is_fire_grid(shape.grid) && !wishes.grid) {
+    volume.extinction = 0;
+    scene.notes.push_back(
+        fmt::format("{}: no grid is smoke, so only the fire is rendered; for smoke "
+                    "of grid \"{}\": --set volume.0.extinction=X",
+                    path, shape.grid));
+  } else if (shape.mean_depth > 0 && shape.largest_depth > 0) {
     volume.extinction = round_to_digits(shape.extinction(), 2);
     scene.notes.push_back(fmt::format("{}: extinction {} chosen: the optical depth along the "
                                       "longest side is about {:.2g}; change "
@@ -281,7 +315,7 @@ Scene make_default_scene(const std::string& path,
                                       path, volume.extinction,
                                       volume.extinction * shape.mean_depth));
   }
-  volume.emission = default_emission(path, summaries, scene.notes);
+  scene.notes.insert(scene.notes.end(), fire_notes.begin(), fire_notes.end());
   const bool fire = volume.glows();
   volume.albedo = Rgb(fire ? 0.7f : 0.98f); // the smoke of a fire is dark
   light_scene(scene, up, fire);

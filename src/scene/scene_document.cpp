@@ -163,9 +163,27 @@ std::vector<SceneFile> SceneDocument::files() const {
       if (const auto* table = (*list)[i].as_table())
         if (const auto* file = table->get_as<std::string>(key))
           files.push_back({fmt::format("{}.{}.{}", list_name, i, key),
-                           is_override(*file) ? file->get() : (folder_ / file->get()).string()});
+                           is_override(*file) ? file->get() : (folder_ / file->get()).string(),
+                           location_of(*file)});
   }
   return files;
+}
+
+std::string SceneDocument::whose_file(const Scene& scene, const std::string& line) const {
+  std::string key;
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    if (key.empty() && line.starts_with(scene.volumes[i].file + ":"))
+      key = fmt::format("volume.{}.file", i);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (key.empty() && !scene.lights[i].image.empty() &&
+        line.starts_with(scene.lights[i].image + ":"))
+      key = fmt::format("light.{}.image", i);
+  if (is_vdb_file(path_))
+    return "";
+  for (const SceneFile& file : files())
+    if (file.key == key)
+      return fmt::format("{}: {}: ", file.location, key);
+  return "";
 }
 
 std::string SceneDocument::first_pattern() const {

@@ -13,8 +13,9 @@ namespace vdbeam {
 
 /// A file that a scene reads.
 struct SceneFile {
-  std::string key;     ///< "volume.0.file"
-  std::string pattern; ///< its path, with the frame number's place
+  std::string key;      ///< "volume.0.file"
+  std::string pattern;  ///< its path, with the placeholder of the frame number
+  std::string location; ///< "scene.toml:12", or the option that gives it
 };
 
 /// A scene file, or what stands for it for a bare VDB, from which the scene of each frame is made.
@@ -34,6 +35,10 @@ public:
 
   /// Every volume and image that the scene names.
   std::vector<SceneFile> files() const;
+
+  /// What is in front of a line about a file of this frame's scene: "scene.toml:12: volume.0.file:
+  /// ". Empty for a bare VDB, which names itself, and for a line about anything else.
+  std::string whose_file(const Scene& scene, const std::string& line) const;
 
 private:
   std::string first_pattern() const;

@@ -201,17 +201,11 @@ std::optional<Message> Child::wait(double seconds) {
   return std::nullopt;
 }
 
-/// One line for a terminal, whatever a broken file put in it: no control characters, and for
-/// OpenVDB's own messages only ASCII, not too long.
-std::string printable(std::string text, bool is_foreign) {
-  constexpr std::size_t longest_foreign = 160;
-  for (char& c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f || (is_foreign && code > 0x7f))
+/// One line for a terminal, whatever a broken file put in it: no control characters.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (const auto code = static_cast<unsigned char>(c); code < 0x20 || code == 0x7f)
       c = code == '\n' ? ' ' : '?';
-  }
-  if (is_foreign && text.size() > longest_foreign)
-    text = text.substr(0, longest_foreign) + "...";
   return text;
 }
 
@@ -231,7 +225,7 @@ std::string printable(std::string text, bool is_foreign) {
       throw FrameError(label + ": the reader was killed; is the machine out of memory?");
     throw FrameError(label + ": the file is corrupt, it crashed the reader");
   }
-  const std::string text = printable(message->text.data(), message->outcome == Outcome::exception);
+  const std::string text = printable(message->text.data());
   switch (message->outcome) {
   case Outcome::input_error:
     throw InputError(text);
@@ -242,7 +236,8 @@ std::string printable(std::string text, bool is_foreign) {
                                  "larger than the limit",
                                  label, gib));
   default:
-    throw FrameError(fmt::format("{}: the file is corrupt or cut short ({})", label, text));
+    // OpenVDB's words for it would help nobody.
+    throw FrameError(label + ": the file is corrupt or cut short; copy or export it again");
   }
 }
 

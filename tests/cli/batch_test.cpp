@@ -98,6 +98,44 @@ TEST_F(BatchCommand, TellsWhatFailedAndGoesOn) {
     EXPECT_TRUE(line.starts_with("openjd_")) << line;
 }
 
+/// Once, where it happens; the last line says which frames failed.
+TEST_F(BatchCommand, TellsAFailureOnce) {
+  write_sequence();
+  write("c.0002.vdb", "not a volume");
+  const std::string text = render_frames("1-2").error, reason = "is not a VDB file";
+  const std::size_t first = text.find(reason);
+  ASSERT_NE(first, std::string::npos) << text;
+  EXPECT_EQ(text.find(reason, first + 1), std::string::npos) << text;
+}
+
+TEST_F(BatchCommand, NamesTheLineOfTheSceneThatNamesABadFile) {
+  write_sequence();
+  const std::string head = "[[volume]]\nfile = 'c.####.vdb'\n",
+                    light = "[[light]]\ntype = 'environment'\n";
+  write("s.toml", head + "density = 'densty'\n" + light);
+  EXPECT_NE(render_frames("1").error.find("s.toml:2: volume.0.file: "), std::string::npos);
+  write("sky.exr", "no picture");
+  write("s.toml", head + light + "image = 'sky.exr'\n");
+  EXPECT_NE(render_frames("1").error.find("s.toml:5: light.0.image: "), std::string::npos);
+}
+
+TEST_F(BatchCommand, NotesACameraThatLooksPastTheVolume) {
+  write_sequence();
+  const Names away{"--set", "camera.position=[0,0,50]", "--set", "camera.look_at=[0,0,90]"};
+  EXPECT_NE(render_frames("1", away).error.find("no volume is in the picture"), std::string::npos);
+  EXPECT_EQ(render_frames("1").error.find("no volume is in the picture"), std::string::npos);
+}
+
+TEST_F(BatchCommand, ABareFileHasTheNumberInItsName) {
+  for (const auto& [name, frame] : {std::pair("c.0020.vdb", 20), std::pair("c_0021.vdb", 21),
+                                    std::pair("c_v22.vdb", 1), std::pair("c23.vdb", 1)}) {
+    std::filesystem::copy_file(cloud_vdb, folder_ / name);
+    const auto result = render({name, "--passes", "1", "-o", "o.exr"});
+    ASSERT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(read_image(file("o.exr")).numbers.at("vdbeam:frame"), frame) << name;
+  }
+}
+
 TEST_F(BatchCommand, StopsAtTheFirstFailureWhenAsked) {
   write_sequence();
   write("c.0002.vdb", "not a volume");

@@ -114,6 +114,8 @@ void expect_agreement(const MemoryScene& scene, const PassMeans& truth, Estimato
     test::expect_same_mean(means.background[c], truth.background[c]);
     EXPECT_LT(means.total[c].error(), power * truth.total[c].mean()); // or it would prove little
   }
+  // Part by part, so that a picture that is mirrored or shifted is found out.
+  EXPECT_EQ(test::regions_apart(means, truth, 6 * bias + 2 * power), 0);
 }
 
 PassMeans truth_of(const MemoryScene& scene) {
@@ -151,6 +153,14 @@ TEST_P(Agreement, BeamAndMarchWithPath) {
     scene.scene.render.direct = DirectLight::photons;
     expect_agreement(scene, truth, EstimatorType::beam, 24, 0.01, GetParam().power);
   }
+}
+
+/// The guard of the test above: it would tell a picture from its mirror image.
+TEST(AgreementOfRegions, SeesAMirroredPicture) {
+  const PassMeans truth = truth_of(lamps());
+  const PassMeans beam = test::render_passes(lamps(), EstimatorType::beam, 24);
+  EXPECT_EQ(test::regions_apart(beam, truth, 0.03), 0);
+  EXPECT_GE(test::regions_apart(mirrored(beam), truth, 0.03), 4);
 }
 
 class SingleBounce : public testing::TestWithParam<Case> {};

@@ -46,13 +46,5 @@ TEST(Clamp, LeavesValuesThatAreNotFiniteToTheFilm) {
   EXPECT_DOUBLE_EQ(tally.total, 1.75 + 27);
 }
 
-TEST(Clamp, TalliesAddUp) {
-  ClampTally sum{1, 8, 1};
-  sum += {1, 2, 3};
-  EXPECT_DOUBLE_EQ(sum.fraction(), 0.2);
-  EXPECT_EQ(sum.pixels, 4u);
-  EXPECT_EQ(ClampTally{}.fraction(), 0);
-}
-
 } // namespace
 } // namespace vdbeam

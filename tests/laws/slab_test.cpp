@@ -162,8 +162,8 @@ struct View {
   bool below;
 };
 
-MemoryScene seen_slab(const SlabSpec& spec, const View& view) {
-  MemoryScene scene = slab_scene(spec);
+MemoryScene seen_slab(const SlabSpec& spec, const View& view, double least_half_width = 100) {
+  MemoryScene scene = slab_scene(spec, least_half_width);
   LightSettings& sun = scene.add_light(LightType::distant);
   sun.direction = {0, 0, -1};
   const double sine = std::sqrt(1 - view.mu * view.mu), side = view.below ? -1 : 1;
@@ -192,6 +192,57 @@ TEST(Slab, RadianceByPaths) {
   expect_seen({4, 0.9f, test::henyey_greenstein(0.75), 1}, slab::henyey_greenstein(0.75),
               EstimatorType::path, 150, 0);
 }
+
+/// A slab as beam renders it by default: the kernels are those that its pilot chooses, a mean free
+/// path wide or more, the forward peak is taken out.
+struct BeamSlab {
+  std::string name;
+  double thickness;
+  float albedo;
+  double g;
+  /// Bias of the kernels, in parts of the radiance, where the slab is seen at mu = 0.3 and at 0.9.
+  /// Aslant, kernels wider than a mean free path reach out of the slab and blur the skin's
+  /// gradient.
+  double aslant, steep;
+};
+
+class SlowSlabRadiance : public testing::TestWithParam<BeamSlab> {};
+
+TEST_P(SlowSlabRadiance, ByBeam) {
+  const BeamSlab& slab = GetParam();
+  const std::vector<double> angles{0.3, 0.9};
+  constexpr double half = 6; // of the slab's width, in its thicknesses
+  // Moments beyond twice the points are cut: 0.95^256 = 2e-6.
+  const slab::Slab exact(slab::henyey_greenstein(slab.g), static_cast<double>(slab.albedo),
+                         slab.thickness, {1}, angles, 128);
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    for (const bool below : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "mu " << angles[i] << (below ? " below" : " above"));
+      const double expected = below ? exact.transmitted_radiance(i) : exact.reflected_radiance(i);
+      const SlabSpec spec{slab.thickness, slab.albedo, test::henyey_greenstein(slab.g), 1};
+      MemoryScene scene = seen_slab(spec, {angles[i], below}, half);
+      // From far away a part 2 wide, well inside of the slab, at one angle.
+      CameraSettings& camera = scene.scene.camera;
+      camera.position = camera.look_at + (camera.position - camera.look_at) * 100.0;
+      camera.fov = 0.23;
+      scene.scene.render.photons = 60000;
+      const test::PassMeans means = test::render_passes(scene, EstimatorType::beam, 48);
+      // Volume of the box times the fraction of its photons in a kernel.
+      const double kernel = 4 * half * half * 48 * means.statistics.neighbours /
+                            static_cast<double>(means.statistics.photons_stored);
+      const double radius = std::cbrt(kernel * 3 / (4 * std::numbers::pi));
+      EXPECT_GT(radius * slab.thickness, 1); // mean free paths
+      test::expect_mean(means.total[0], expected, (i == 0 ? slab.aslant : slab.steep) * expected);
+      test::expect_power(means.total[0], 0.02 * expected);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Slabs, SlowSlabRadiance,
+                         testing::Values(BeamSlab{"Isotropic", 4, 1, 0, 0.04, 0.02},
+                                         BeamSlab{"Forward", 4, 0.9f, 0.75, 0.09, 0.03},
+                                         BeamSlab{"MoreForward", 8, 1, 0.9, 0.17, 0.08},
+                                         BeamSlab{"MostForward", 8, 0.99f, 0.95, 0.17, 0.08}),
+                         [](const auto& slab) { return slab.param.name; });
 
 } // namespace
 } // namespace vdbeam

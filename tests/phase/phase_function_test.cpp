@@ -2,6 +2,7 @@
 #include "math/rng.h"
 #include "phase/draine.h"
 #include "phase/phase_function.h"
+#include "phase/truncated_phase.h"
 #include "support/chi_squared.h"
 #include "vdbeam/error.h"
 
@@ -86,12 +87,17 @@ double integrate(Value value, F f) {
   return sum * 2 * std::numbers::pi;
 }
 
+/// The others are even functions of the cosine.
+double mean_cosine(const PhaseFunction& phase) {
+  return phase.lobe_count() > 0 ? legendre_moments(phase, 2)[1] : 0;
+}
+
 TEST(PhaseFunction, IntegratesToOne) {
   for (const PhaseSettings& settings : all_models()) {
     const PhaseFunction phase(settings);
     const auto value = [&](double x, bool from_back) { return formula(phase, x, from_back); };
     EXPECT_NEAR(integrate(value, [](double) { return 1.0; }), 1, 1e-6) << name_of(settings);
-    EXPECT_NEAR(integrate(value, [](double mu) { return mu; }), phase.mean_cosine(), 1e-6)
+    EXPECT_NEAR(integrate(value, [](double mu) { return mu; }), mean_cosine(phase), 1e-6)
         << name_of(settings);
   }
 }
@@ -152,8 +158,8 @@ TEST(PhaseFunction, MieParametersAreThePublishedFit) {
   EXPECT_NEAR(large.lobe(1).weight, 0.498159, 2e-6);
   for (const PhaseFunction& phase : {small, large})
     EXPECT_FLOAT_EQ(phase.lobe(0).weight + phase.lobe(1).weight, 1);
-  EXPECT_GT(small.mean_cosine(), 0.8f);
-  EXPECT_LT(large.mean_cosine(), 0.9f);
+  EXPECT_GT(mean_cosine(small), 0.8);
+  EXPECT_LT(mean_cosine(large), 0.9);
 }
 
 TEST(PhaseFunction, StaysFiniteAtTheExtremes) {

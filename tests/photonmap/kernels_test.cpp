@@ -1,45 +1,44 @@
-#include "math/kernels.h"
+// The kernels that the queries evaluate are normalised.
+#include "photonmap/photon_math-inl.h"
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
+using HWY_NAMESPACE::ball_polynomial;
+using HWY_NAMESPACE::disc_polynomial;
+using HWY_NAMESPACE::KernelPolynomial;
+
 constexpr KernelShape shapes[] = {KernelShape::constant, KernelShape::epanechnikov,
                                   KernelShape::biweight, KernelShape::fourth_order};
 
-/// Integral of f over [0, 1] by the midpoint rule with n points; exact to about 1 / n^2.
-template <class F>
-double integral(const F& f) {
-  constexpr int n = 20000;
-  double sum = 0;
-  for (int i = 0; i < n; ++i)
-    sum += f((i + 0.5) / n);
-  return sum / n;
+/// Integral over [0, 1] of x^power times the kernel at the distance x, exact for polynomials.
+double moment(const KernelPolynomial& kernel, int power) {
+  return boost::math::quadrature::gauss<double, 10>::integrate(
+      [&](double x) {
+        const double k = 1 - x * x;
+        const double value =
+            static_cast<double>(kernel.step) +
+            k * (static_cast<double>(kernel.linear) + k * static_cast<double>(kernel.square));
+        return std::pow(x, power) * value;
+      },
+      0.0, 1.0);
 }
 
 TEST(Kernels, IntegrateToOne) {
   for (const KernelShape shape : shapes) {
-    EXPECT_NEAR(integral([&](double x) {
-                  return 2 * M_PI * x * disc_kernel(shape, static_cast<float>(x * x));
-                }),
-                1, 1e-6);
-    EXPECT_NEAR(integral([&](double x) {
-                  return 4 * M_PI * x * x * ball_kernel(shape, static_cast<float>(x * x));
-                }),
-                1, 1e-6);
+    EXPECT_NEAR(2 * M_PI * moment(disc_polynomial(shape), 1), 1, 1e-6);
+    EXPECT_NEAR(4 * M_PI * moment(ball_polynomial(shape), 2), 1, 1e-6);
   }
 }
 
 /// What makes the fourth-order kernel one: its second moment is 0, the others' is not.
 TEST(Kernels, FourthOrderHasNoSecondMoment) {
   for (const KernelShape shape : shapes) {
-    const double disc = integral([&](double x) {
-      return 2 * M_PI * x * x * x * disc_kernel(shape, static_cast<float>(x * x));
-    });
-    const double ball = integral([&](double x) {
-      return 4 * M_PI * std::pow(x, 4) * ball_kernel(shape, static_cast<float>(x * x));
-    });
+    const double disc = 2 * M_PI * moment(disc_polynomial(shape), 3);
+    const double ball = 4 * M_PI * moment(ball_polynomial(shape), 4);
     if (shape == KernelShape::fourth_order) {
       EXPECT_NEAR(disc, 0, 1e-6);
       EXPECT_NEAR(ball, 0, 1e-6);
@@ -47,6 +46,14 @@ TEST(Kernels, FourthOrderHasNoSecondMoment) {
       EXPECT_GT(disc, 0.2);
       EXPECT_GT(ball, 0.2);
     }
+  }
+}
+
+/// All but the constant one end without a step.
+TEST(Kernels, SmoothOnesEndAtZero) {
+  for (const KernelShape shape : shapes) {
+    EXPECT_EQ(disc_polynomial(shape).step > 0, shape == KernelShape::constant);
+    EXPECT_EQ(ball_polynomial(shape).step > 0, shape == KernelShape::constant);
   }
 }
 

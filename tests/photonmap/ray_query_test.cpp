@@ -1,4 +1,3 @@
-#include "math/kernels.h"
 #include "photonmap/query_cases.h"
 
 namespace vdbeam {
@@ -11,6 +10,21 @@ struct RayCase {
   Vec3d origin, direction;
   double t_begin, t_end;
 };
+
+/// Normalised ball kernels of radius 1 by s = d^2.
+double ball_kernel(KernelShape shape, double s) {
+  switch (shape) {
+  case KernelShape::constant:
+    return 3 / (4 * std::numbers::pi);
+  case KernelShape::epanechnikov:
+    return 15 / (8 * std::numbers::pi) * (1 - s);
+  case KernelShape::biweight:
+    return 105 / (32 * std::numbers::pi) * (1 - s) * (1 - s);
+  case KernelShape::fourth_order:
+    return 525 / (64 * std::numbers::pi) * (1 - s) * (1 - 1.8 * s);
+  }
+  return 0;
+}
 
 /// Rays along axes and at random, from inside, near and far away, over part of the photons or all.
 std::vector<RayCase> ray_cases() {
@@ -118,7 +132,7 @@ void expect_point(const TestMap& map, const Vec3f& point, const Vec3f& direction
         const double factor =
             (blocks.has_directions() ? oracle::phase(phases[g], cosine) : 1 / (4 * M_PI)) *
             blocks.at(i, PhotonBlocks::power + c % blocks.channels()) / std::pow(radius, 3);
-        sums[g][c] += ball_kernel(map.shape, static_cast<float>(s)) * factor;
+        sums[g][c] += ball_kernel(map.shape, s) * factor;
         magnitudes[g][c] += ball_kernel(map.shape, 0) * factor;
       }
   }

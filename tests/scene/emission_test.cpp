@@ -127,6 +127,41 @@ TEST(DefaultEmission, KelvinGlowsAndWarmAirDoesNot) {
   EXPECT_EQ(notes.size(), 1u);
 }
 
+/// No flame as a lump of smoke, whatever its capitals, and no fuel either.
+TEST(DefaultEmission, FireWithoutSmoke) {
+  const Scene scene =
+      make_default_scene("fire.vdb", {{summary("fuel", 1, 0.5), summary("Flame", 1, 0.5)}}, {});
+  EXPECT_EQ(scene.volumes[0].emission.intensity, "Flame");
+  EXPECT_EQ(scene.volumes[0].extinction, 0);
+  EXPECT_NE(std::find(scene.notes.begin(), scene.notes.end(),
+                      "fire.vdb: no grid is smoke, so only the fire is rendered; for smoke of grid "
+                      "\"fuel\": --set volume.0.extinction=X"),
+            scene.notes.end());
+  FramingWishes wishes;
+  wishes.grid = "fuel";
+  EXPECT_GT(
+      make_default_scene("fire.vdb", {{summary("fuel", 1, 0.5), summary("Flame", 1, 0.5)}}, wishes)
+          .volumes[0]
+          .extinction,
+      0);
+  // Smoke under another name is there to be seen.
+  const Scene smoke =
+      make_default_scene("fire.vdb", {{summary("flame", 1, 0.5), summary("soot", 1, 0.5)}}, {});
+  EXPECT_EQ(smoke.volumes[0].density, "soot");
+  EXPECT_GT(smoke.volumes[0].extinction, 0);
+}
+
+TEST(DefaultGrid, OfSeveralOfOneNameOrNone) {
+  const Scene twins = make_default_scene(
+      "a.vdb", {{summary("density[0]", 1, 0.5), summary("density[1]", 1, 0.5)}}, {});
+  EXPECT_EQ(twins.volumes[0].density, "density[0]");
+  EXPECT_EQ(twins.notes.at(0), "a.vdb: there are 2 grids called \"density\"; the first with "
+                               "voxels, \"density[0]\", is rendered; for another: "
+                               "--set volume.0.density=density[1]");
+  const Scene unnamed = make_default_scene("a.vdb", {{summary("[0]", 1, 0.5)}}, {});
+  EXPECT_EQ(unnamed.notes.at(0), "a.vdb: its grid has no name; it is rendered as density");
+}
+
 TEST(DefaultEmission, InitWritesItAndItIsRead) {
   Scene scene;
   scene.volumes.emplace_back().file = "fire.vdb";

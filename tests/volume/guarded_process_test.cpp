@@ -50,13 +50,10 @@ TEST(GuardedProcess, returns_what_was_written) {
 TEST(GuardedProcess, errors_arrive_as_they_are) {
   EXPECT_THROW(run_guarded("label", ample, [](int) { throw InputError("x.vdb: no"); }), InputError);
   EXPECT_EQ(failure(ample, [](int) { throw FrameError("x.vdb: broken"); }), "x.vdb: broken");
-  EXPECT_EQ(failure(ample, [](int) { throw std::runtime_error("odd\n\x01thing\xff"); }),
-            "label: the file is corrupt or cut short (odd ?thing?)");
-  EXPECT_EQ(failure(ample, [](int) { throw 1; }),
-            "label: the file is corrupt or cut short (unknown)");
-  const std::string cut =
-      failure(ample, [](int) { throw std::runtime_error(std::string(9999, 'x')); });
-  EXPECT_LT(cut.size(), 300u);
+  // OpenVDB's words stay away.
+  const std::string corrupt = "label: the file is corrupt or cut short; copy or export it again";
+  EXPECT_EQ(failure(ample, [](int) { throw std::runtime_error("odd\n\x01thing\xff"); }), corrupt);
+  EXPECT_EQ(failure(ample, [](int) { throw 1; }), corrupt);
 }
 
 TEST(GuardedProcess, an_exception_ends_it_before_any_destructor) {
@@ -68,7 +65,7 @@ TEST(GuardedProcess, an_exception_ends_it_before_any_destructor) {
                       const Hangs hangs;
                       throw std::runtime_error("first");
                     }),
-            "label: the file is corrupt or cut short (first)");
+            "label: the file is corrupt or cut short; copy or export it again");
 }
 
 TEST(GuardedProcess, crashes_are_errors) {
