@@ -294,7 +294,7 @@ ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
     // comes out too large where there is no bias, and that of James and Stein, which comes out too
     // small where there is some.
     const double squared_error = bias.mrse_error * bias.mrse_error;
-    if (bias.mrse * bias.mrse > 2 * squared_error)
+    if (bias.mrse > 0 && bias.mrse * bias.mrse > 2 * squared_error)
       part = bias.mrse - 2 * squared_error / bias.mrse;
     margin = t * bias.mrse_error;
   }

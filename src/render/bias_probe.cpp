@@ -6,11 +6,23 @@
 
 namespace vdbeam {
 
+namespace {
+
+/// The square of the bias is found from products of a pixel's own probes in different passes: few
+/// pixels that are probed often tell more than many that are probed once.
+constexpr double most_passes_between_probes = 4;
+
+} // namespace
+
 BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
                      const std::vector<std::size_t>& pixels)
-    : path_(input), window_(window), image_width_(input.camera.width()), pixels_(pixels) {
+    : path_(input), window_(window), image_width_(input.camera.width()) {
   const double wanted = input.settings.bias_rays * window.width() * window.height();
-  const double period = static_cast<double>(pixels.size()) / std::max(wanted, 1.0);
+  const double most = std::max(1.0, std::round(wanted)) * most_passes_between_probes;
+  const double spacing = std::max(1.0, static_cast<double>(pixels.size()) / most);
+  for (double next = 0; next < static_cast<double>(pixels.size()); next += spacing)
+    pixels_.push_back(pixels[static_cast<std::size_t>(next)]);
+  const double period = static_cast<double>(pixels_.size()) / std::max(wanted, 1.0);
   period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
 }
 

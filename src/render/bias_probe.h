@@ -21,8 +21,8 @@ private:
   PathEstimator path_;
   PixelRegion window_;
   int image_width_;
-  std::vector<std::size_t> pixels_;
-  std::size_t period_; ///< passes until a pixel's next turn
+  std::vector<std::size_t> pixels_; ///< that are probed, spread over the window
+  std::size_t period_;              ///< passes until a pixel's next turn
 };
 
 } // namespace vdbeam
