@@ -12,7 +12,17 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
 }
 
 /// What a random stream is for; two stages never share numbers.
-enum class RngStage : std::uint64_t { camera = 1, photon, path, direct, march, light, test, walk, split };
+enum class RngStage : std::uint64_t {
+  camera = 1,
+  photon,
+  path,
+  direct,
+  march,
+  light,
+  test,
+  walk,
+  split
+};
 
 /// Everything that identifies a stream, except the index within its stage.
 struct RngKey {
