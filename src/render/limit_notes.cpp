@@ -1,7 +1,6 @@
 #include "render/limit_notes.h"
 
 #include "estimators/camera_ray.h"
-
 #include "estimators/photon_plan.h"
 
 #include <fmt/format.h>
