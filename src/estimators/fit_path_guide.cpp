@@ -92,10 +92,11 @@ public:
   /// 0 at first, what all of its photons bring.
   std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
     BlockSums sums(blocks_.counts());
-    const double unit = 1 / mean_component(Vec3d(albedo)); // stored powers hold it, paths do not
+    const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not
     for (std::size_t i = photons_.size(); i-- > 0;) {
       double& later = brought[photons_.path[i]];
-      sums.add(block_of_[i], later, unit * power(i) * majorant(photons_.position[i]));
+      sums.add(block_of_[i], later,
+               unit * max_component(Vec3d(photons_.power[i])) * majorant(photons_.position[i]));
       later += values_[i];
     }
     return ratios(sums);

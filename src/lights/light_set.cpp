@@ -10,7 +10,8 @@ LightSet::LightSet(const std::vector<LightSettings>& settings, const Vec3d& up,
   const LightContext context{up, space, region, notes};
   for (const LightSettings& light : settings)
     add(light_kind(light.type).make(light, context),
-        {light.visible, light_kind(light.type).surrounds});
+        {light.visible, light_kind(light.type).surrounds,
+         light_kind(light.type).wants_shadow_rays(light)});
 }
 
 void LightSet::add(std::unique_ptr<Light> light, LightTraits traits) {

@@ -12,8 +12,9 @@ namespace vdbeam {
 
 /// What is known of a light without asking it.
 struct LightTraits {
-  bool visible = true;    ///< the camera sees it where its rays meet it
-  bool surrounds = false; ///< its light comes from all around, as a sky's does (LightKind)
+  bool visible = true;           ///< the camera sees it where its rays meet it
+  bool surrounds = false;        ///< its light comes from all around, as a sky's does (LightKind)
+  bool wants_shadow_rays = true; ///< they find it better than scattered rays do (LightKind)
 };
 
 /// All lights of a scene.

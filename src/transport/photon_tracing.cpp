@@ -103,7 +103,7 @@ private:
   /// The paths that go on: none, one or two, each with the throughput that `path` has afterwards.
   int hold_in_window(LightPath& path, const Vec3f& point) const {
     const float value =
-        settings_.guide->relative_value(mean_component(path.throughput), point, settings_.paths);
+        settings_.guide->relative_value(max_component(path.throughput), point, settings_.paths);
     if (value < lowest_value) {
       const float chance = std::max(value, least_chance);
       if (path.rng.uniform() >= chance)

@@ -12,6 +12,10 @@ namespace {
 /// the noise of as many passes (docs/decisions.md).
 constexpr int passes_of_first_order = 64;
 
+/// The first order takes no larger share than this for a peak. With more, light that is scattered
+/// twice by small angles, towards which one looks at a sun through the medium, is too dark.
+constexpr float largest_first_peak = 0.6f;
+
 /// The volume with the share `f` of its scattering taken for no scattering; adds to `peak` what
 /// leads back.
 Volume similar_volume(const Volume& volume, float f, PeakTakenOut& peak) {
@@ -54,8 +58,19 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order) {
   return similar;
 }
 
-int PassWorlds::order(int pass) {
-  int result = least_truncation_order;
+PassWorlds::PassWorlds(const World& world, bool take_out)
+    : world_(world), take_out_(take_out), first_order_(least_truncation_order) {
+  const auto leaves_enough = [&](const PhaseFunction& phase) {
+    return truncate_peak(phase, first_order_).forward <= largest_first_peak;
+  };
+  if (take_out)
+    while (first_order_ < most_truncation_order &&
+           !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
+      ++first_order_;
+}
+
+int PassWorlds::order(int pass) const {
+  int result = first_order_;
   for (std::int64_t until = passes_of_first_order; pass >= until && result < most_truncation_order;
        until *= 3)
     ++result;

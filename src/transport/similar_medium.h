@@ -19,18 +19,19 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
 class PassWorlds {
 public:
   /// `world` must outlive this. `take_out`: false where the scene's own medium is wanted.
-  PassWorlds(const World& world, bool take_out) : world_(world), take_out_(take_out) {}
+  PassWorlds(const World& world, bool take_out);
 
   /// The world of a pass; the reference holds until the next call for a pass of another order.
   const World& of(int pass);
 
-  /// The truncation order of a pass: one more whenever the number of passes has tripled.
-  static int order(int pass);
+  /// The truncation order of a pass: at first one that leaves enough of each phase function, then
+  /// one more whenever the number of passes has tripled.
+  int order(int pass) const;
 
 private:
   const World& world_;
   bool take_out_;
-  int order_ = 0;
+  int first_order_, order_ = 0;
   std::unique_ptr<World> similar_;
 };
 

@@ -204,6 +204,7 @@ struct BeamSlab {
   /// Aslant, kernels wider than a mean free path reach out of the slab and blur the skin's
   /// gradient.
   double aslant, steep;
+  double noise = 0.02; ///< standard errors stay below this share of the radiance
 };
 
 class SlowSlabRadiance : public testing::TestWithParam<BeamSlab> {};
@@ -233,7 +234,7 @@ TEST_P(SlowSlabRadiance, ByBeam) {
       const double radius = std::cbrt(kernel * 3 / (4 * std::numbers::pi));
       EXPECT_GT(radius * slab.thickness, 1); // mean free paths
       test::expect_mean(means.total[0], expected, (i == 0 ? slab.aslant : slab.steep) * expected);
-      test::expect_power(means.total[0], 0.02 * expected);
+      test::expect_power(means.total[0], slab.noise * expected);
     }
 }
 
@@ -241,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(Slabs, SlowSlabRadiance,
                          testing::Values(BeamSlab{"Isotropic", 4, 1, 0, 0.04, 0.02},
                                          BeamSlab{"Forward", 4, 0.9f, 0.75, 0.09, 0.03},
                                          BeamSlab{"MoreForward", 8, 1, 0.9, 0.17, 0.08},
-                                         BeamSlab{"MostForward", 8, 0.99f, 0.95, 0.17, 0.2}),
+                                         BeamSlab{"MostForward", 8, 0.99f, 0.95, 0.12, 0.08, 0.05}),
                          [](const auto& slab) { return slab.param.name; });
 
 } // namespace
