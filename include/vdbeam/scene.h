@@ -36,7 +36,7 @@ struct PhaseSettings {
   PhaseType type = PhaseType::isotropic;
   double g = 0;                 ///< mean cosine (first lobe), in (-1, 1)
   double g2 = 0;                ///< two_lobe: mean cosine of the second lobe
-  double blend = 0.5;           ///< two_lobe: share of the second lobe
+  double blend = 0.5;           ///< two_lobe: weight of the second lobe
   double droplet_diameter = 20; ///< mie: micrometres, 5 to 50
 };
 
@@ -110,10 +110,10 @@ struct RenderSettings {
   double alpha = 0.6;    ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
   ForwardPeak forward_peak = ForwardPeak::automatic;   ///< of scattering (beam, march)
   PhotonThinning thinning = PhotonThinning::automatic; ///< which collisions are stored (beam)
-  double keep = 0;                ///< share of them that are stored, evenly; 0: automatic
+  double keep = 0;                ///< fraction of them that is stored, evenly; 0: automatic
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
-  double bias_rays = 1.0 / 128;   ///< share of the camera rays that tell the bias
+  double bias_rays = 1.0 / 128;   ///< fraction of the camera rays that tell the bias
   std::optional<double> clamp; ///< most that the medium may send to a pixel in one pass [radiance]
   double step = 1;             ///< march: step length in voxels
   std::uint64_t seed = 1;

@@ -76,9 +76,4 @@ float sample_draine_one_minus_cos(float g, float alpha, float u) {
   return static_cast<float>(std::clamp(x, 0.0, 2.0));
 }
 
-float draine_mean_cosine(float g, float alpha) {
-  const float g2 = g * g;
-  return g * (1 + alpha * (3 + 2 * g2) / 5) / (1 + alpha * (1 + 2 * g2) / 3);
-}
-
 } // namespace vdbeam

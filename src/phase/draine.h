@@ -7,7 +7,4 @@ namespace vdbeam {
 /// Small angles keep their full relative precision. alpha = 0 is Henyey-Greenstein.
 float sample_draine_one_minus_cos(float g, float alpha, float u);
 
-/// Mean cosine of Draine's phase function (Draine 2003, eq. 5).
-float draine_mean_cosine(float g, float alpha);
-
 } // namespace vdbeam

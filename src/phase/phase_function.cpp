@@ -103,13 +103,6 @@ Vec3f PhaseFunction::sample(const Vec3f& direction, float u_lobe, float u, float
                    direction * (1 - x));
 }
 
-float PhaseFunction::mean_cosine() const {
-  float sum = 0;
-  for (int i = 0; i < lobe_count_; ++i)
-    sum += lobes_[i].weight * draine_mean_cosine(lobes_[i].g, lobes_[i].alpha);
-  return sum;
-}
-
 bool PhaseFunction::isotropic() const {
   if (coefficient_count_ > 1)
     return false;

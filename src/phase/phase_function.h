@@ -62,8 +62,6 @@ public:
   /// A direction of travel after scattering, distributed exactly as `evaluate`.
   /// u_lobe, u, v lie in [0, 1).
   Vec3f sample(const Vec3f& direction, float u_lobe, float u, float v) const;
-  /// Mean cosine.
-  float mean_cosine() const;
   bool isotropic() const;
 
   /// Of a polynomial; 0: it is given by lobes.

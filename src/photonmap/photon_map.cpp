@@ -74,7 +74,6 @@ struct PhotonMap::Data {
   BlockTree tree;
   KernelShape shape = KernelShape::biweight;
   MapTimes times;
-  std::size_t dropped = 0;
   float mean_radius = 0;
 
   MapView view() const { return {blocks, tree, shape, mean_radius}; }
@@ -92,7 +91,6 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   data.shape = shape;
   Stopwatch watch;
   std::vector<OrderedPhoton> order = finite_photons(photons);
-  data.dropped = photons.size() - order.size();
   order_photons(order);
   data.blocks = gather_blocks(photons, order, channels);
   data.times.order = watch.restart();
@@ -143,9 +141,6 @@ bool PhotonMap::has_directions() const {
 }
 MapTimes PhotonMap::times() const {
   return data_->times;
-}
-std::size_t PhotonMap::dropped() const {
-  return data_->dropped;
 }
 Boxf PhotonMap::bounds() const {
   return data_->tree.bounds;

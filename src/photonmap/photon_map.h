@@ -37,7 +37,7 @@ struct MapTimes {
 /// Building is deterministic and parallel (oneTBB); the result does not depend on the number of
 /// threads. Queries are const and may run concurrently. Any input is legal: no photons, coincident,
 /// collinear, coplanar photons; photons with a non-finite field, or
-/// farther than 1e15 from the origin, are dropped and counted.
+/// farther than 1e15 from the origin, are dropped.
 class PhotonMap {
 public:
   PhotonMap();
@@ -62,8 +62,7 @@ public:
   int channels() const;
   bool has_directions() const;
   MapTimes times() const;
-  std::size_t dropped() const; ///< photons left out
-  Boxf bounds() const;         ///< of all spheres
+  Boxf bounds() const; ///< of all spheres
   float mean_radius() const;
 
   /// Beam radiance estimate for a tile: adds to tile.radiance (Jarosz et al. 2008, eq. 11, with the

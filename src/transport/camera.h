@@ -55,10 +55,6 @@ public:
     return !(behind || right || left || above || below);
   }
   const Vec3d& origin() const { return origin_; }
-  const Vec3d& forward() const { return forward_; }
-  const Vec3d& right() const { return right_; }
-  const Vec3d& up() const { return up_; }
-  double tan_half() const { return tan_half_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
