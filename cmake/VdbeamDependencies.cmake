@@ -5,5 +5,6 @@ endmacro()
 include(VdbeamLibraries)
 
 set(VDBEAM_LIBRARIES OpenVDB::openvdb TBB::tbb OpenEXR::OpenEXR Imath::Imath PNG::PNG fmt::fmt
-    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json PkgConfig::HWY PkgConfig::XXHASH)
+    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json PkgConfig::HWY PkgConfig::XXHASH
+    embree assimp::assimp)
 set(VDBEAM_CLI_LIBRARIES CLI11::CLI11 fmt::fmt TBB::tbb nlohmann_json::nlohmann_json)

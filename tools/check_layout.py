@@ -8,7 +8,7 @@ import re
 import sys
 
 # A folder of src includes only from itself and from the folders before it.
-LAYERS = ["text", "math", "machine", "image", "volume", "phase", "lights", "photonmap", "transport",
+LAYERS = ["text", "math", "machine", "image", "volume", "geometry", "phase", "materials", "lights", "photonmap", "transport",
           "estimators", "film", "compare", "scene", "report", "render", "farm", "cli"]
 LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
@@ -44,6 +44,8 @@ def check_include(path, quote, name):
         return f"OpenVDB headers belong in src/volume/*.cpp, got {name}"
     if parts[1] != "image" and re.match(r"(OpenEXR/|Imath/)?(Imf|OpenEXR|Imath|half\.h)", name):
         return f"OpenEXR and Imath headers belong in src/image, got {name}"
+    if re.match(r"(embree3|assimp)/", name) and not (parts[1] == "geometry" and path.suffix == ".cpp"):
+        return f"Embree and assimp headers belong in src/geometry/*.cpp, got {name}"
     if quote == "<" or name.startswith("vdbeam/"):
         return None
     layer, target = parts[1], name.split("/")[0]

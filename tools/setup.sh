@@ -10,7 +10,7 @@ packages=(
   libopenvdb-dev libboost-iostreams-dev libblosc-dev zlib1g-dev
   # the other libraries
   libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
-  libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev
+  libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev libembree-dev libassimp-dev
   # tests and benchmarks
   libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools
   # tools

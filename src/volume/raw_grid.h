@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/mapped_file.h"
+#include "machine/mapped_file.h"
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include "vdbeam/error.h"
 #include "volume/density_kind.h"
-#include "volume/mapped_file.h"
+#include "machine/mapped_file.h"
 #include "volume/raw_grid.h"
 #include "volume/vdb_names.h"
 

@@ -1,4 +1,4 @@
-#include "volume/mapped_file.h"
+#include "machine/mapped_file.h"
 #include "volume/summary_codec.h"
 #include "volume/vdb_parse.h"
 

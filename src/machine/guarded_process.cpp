@@ -1,4 +1,4 @@
-#include "volume/guarded_process.h"
+#include "machine/guarded_process.h"
 
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"

@@ -1,4 +1,4 @@
-#include "volume/mapped_file.h"
+#include "machine/mapped_file.h"
 
 #include "vdbeam/error.h"
 

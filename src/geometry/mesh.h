@@ -1,0 +1,35 @@
+#pragma once
+
+#include "math/affine.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// Triangles. Positions are relative to `center`, so that single precision loses nothing where a
+/// mesh was modelled far from its origin.
+struct Mesh {
+  Vec3d center;
+  std::vector<Vec3f> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
+  std::vector<std::string> notes;                      ///< for the user: repairs
+
+  std::size_t bytes() const {
+    return positions.size() * sizeof(Vec3f) + triangles.size() * sizeof triangles[0];
+  }
+};
+
+/// Triangles as a file has them: nothing in it is checked yet.
+struct RawMesh {
+  std::vector<Vec3d> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Drops triangles that have an index beyond the vertices, a vertex that is not finite, or no area,
+/// and tells of them in the notes; recentres the rest. Throws FrameError where none is left.
+Mesh repair_mesh(const RawMesh& raw, const std::string& label);
+
+} // namespace vdbeam

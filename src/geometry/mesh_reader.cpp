@@ -1,0 +1,147 @@
+#include "geometry/mesh_reader.h"
+
+#include "machine/guarded_process.h"
+#include "vdbeam/error.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace vdbeam {
+namespace {
+
+constexpr const char* kinds = "an .obj, .ply, .gltf or .glb file";
+
+std::uint64_t check_file(const std::string& path) {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0)
+    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (!S_ISREG(status.st_mode))
+    throw InputError(path + ": is not a regular file");
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension != ".obj" && extension != ".ply" && extension != ".gltf" && extension != ".glb")
+    throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
+  if (status.st_size == 0)
+    throw FrameError(path + ": is empty (0 bytes): perhaps it is still being copied");
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0)
+    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+/// What a sound file of this size can need at most. An OBJ file needs about two bytes per index, of
+/// which assimp makes vertices with all their attributes.
+GuardLimits guard_limits(std::uint64_t file_bytes, const MeshLimits& limits) {
+  GuardLimits guard;
+  guard.seconds = limits.seconds;
+  guard.cpu_seconds = std::min(limits.seconds, 10 + 5e-6 * static_cast<double>(file_bytes));
+  guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 200 * file_bytes);
+  return guard;
+}
+
+Affine to_affine(const aiMatrix4x4& m) {
+  Affine map;
+  map.rows = {Vec3d{m.a1, m.a2, m.a3}, Vec3d{m.b1, m.b2, m.b3}, Vec3d{m.c1, m.c2, m.c3}};
+  map.translation = {m.a4, m.b4, m.c4};
+  return map;
+}
+
+void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
+  const auto first = static_cast<std::uint32_t>(raw.positions.size());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& p = mesh.mVertices[i];
+    raw.positions.push_back(map.point({p.x, p.y, p.z}));
+  }
+  // A map that mirrors turns triangles inside out.
+  const bool mirrors = map.determinant() < 0;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices != 3)
+      continue;
+    std::array<std::uint32_t, 3> t;
+    for (int k = 0; k < 3; ++k) {
+      const unsigned index = face.mIndices[k];
+      t[k] = index < mesh.mNumVertices ? first + index : ~std::uint32_t(0);
+    }
+    if (mirrors)
+      std::swap(t[1], t[2]);
+    raw.triangles.push_back(t);
+  }
+}
+
+void append_node(const aiScene& scene, const aiNode& node, const Affine& parent, RawMesh& raw) {
+  const Affine map = parent.after(to_affine(node.mTransformation));
+  for (unsigned i = 0; i < node.mNumMeshes; ++i)
+    if (node.mMeshes[i] < scene.mNumMeshes)
+      append_mesh(*scene.mMeshes[node.mMeshes[i]], map, raw);
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    append_node(scene, *node.mChildren[i], map, raw);
+}
+
+struct Counts {
+  std::uint64_t positions = 0, triangles = 0;
+};
+
+/// In the child: parses the file and writes counts, positions and triangles.
+void parse(const std::string& path, int output) {
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                  aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
+  const aiScene* scene =
+      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                  aiProcess_JoinIdenticalVertices);
+  if (!scene)
+    throw std::runtime_error(importer.GetErrorString());
+  RawMesh raw;
+  if (scene->mRootNode)
+    append_node(*scene, *scene->mRootNode, {}, raw);
+  const Counts counts{raw.positions.size(), raw.triangles.size()};
+  write_all(output, &counts, sizeof counts);
+  write_all(output, raw.positions.data(), raw.positions.size() * sizeof raw.positions[0]);
+  write_all(output, raw.triangles.data(), raw.triangles.size() * sizeof raw.triangles[0]);
+}
+
+} // namespace
+
+Mesh read_mesh(const std::string& path, const MeshLimits& limits) {
+  const std::uint64_t bytes = check_file(path);
+  const MappedFile file =
+      run_guarded(path, guard_limits(bytes, limits), [&](int output) { parse(path, output); });
+  RawMesh raw;
+  Counts counts;
+  if (file.size() < sizeof counts)
+    throw FrameError(path + ": the reader returned too little");
+  std::memcpy(&counts, file.data(), sizeof counts);
+  const std::uint64_t rest = file.size() - sizeof counts;
+  const std::uint64_t position = sizeof raw.positions[0], triangle = sizeof raw.triangles[0];
+  if (counts.positions > rest / position || counts.triangles > rest / triangle ||
+      counts.positions * position + counts.triangles * triangle != rest)
+    throw FrameError(path + ": the reader returned too little");
+  raw.positions.resize(counts.positions);
+  raw.triangles.resize(counts.triangles);
+  const std::byte* data = file.data() + sizeof counts;
+  std::copy_n(data, counts.positions * position,
+              reinterpret_cast<std::byte*>(raw.positions.data()));
+  std::copy_n(data + counts.positions * position, counts.triangles * triangle,
+              reinterpret_cast<std::byte*>(raw.triangles.data()));
+  return repair_mesh(raw, path);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "geometry/mesh.h"
+
+#include <cstdint>
+#include <string>
+
+namespace vdbeam {
+
+/// What reading a mesh file may take.
+struct MeshLimits {
+  double seconds = 120;                             ///< of wall-clock time
+  std::uint64_t bytes = std::uint64_t(16) << 30;    ///< of memory
+};
+
+/// Reads the triangles of an OBJ, PLY or glTF file, all of its nodes in their places; polygons are
+/// triangulated, lines and points left out. The file is parsed in a guarded child process
+/// (machine/guarded_process.h). Throws InputError for what is no mesh file, FrameError for one that
+/// is damaged.
+Mesh read_mesh(const std::string& path, const MeshLimits& limits = {});
+
+} // namespace vdbeam

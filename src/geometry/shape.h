@@ -1,0 +1,45 @@
+#pragma once
+
+#include "geometry/mesh.h"
+#include "vdbeam/surface_settings.h"
+
+#include <memory>
+#include <optional>
+
+namespace vdbeam {
+
+/// Where a line meets a primitive of a shape, in the shape's own space.
+struct ShapeHit {
+  double t = 0;
+  Vec3d normal; ///< to the front, of any length but 0
+};
+
+/// A point drawn uniformly by area, in the shape's own space.
+struct ShapePoint {
+  Vec3d position, normal;
+};
+
+/// A surface in its own space, made of primitives numbered from 0. All arithmetic is in double
+/// precision, so that rays find even huge triangles where they are.
+class Shape {
+public:
+  virtual ~Shape() = default;
+
+  virtual std::size_t primitives() const = 0;
+  virtual Boxd bounds(std::size_t primitive) const = 0;
+  /// The nearest point of the line origin + t direction with t_begin < t < t_end; `direction` need
+  /// not have unit length.
+  virtual std::optional<ShapeHit> intersect(std::size_t primitive, const Vec3d& origin,
+                                            const Vec3d& direction, double t_begin,
+                                            double t_end) const = 0;
+  virtual double area() const = 0;
+  virtual ShapePoint sample(double u_primitive, double u, double v) const = 0;
+  virtual std::size_t bytes() const { return 0; }
+  Boxd bounds() const;
+};
+
+std::shared_ptr<const Shape> make_mesh_shape(Mesh mesh);
+/// `kind` is not `file`.
+std::shared_ptr<const Shape> make_simple_shape(SurfaceShape kind);
+
+} // namespace vdbeam

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "geometry/shape.h"
+#include "math/ray.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// A shape in its place.
+struct PlacedShape {
+  std::shared_ptr<const Shape> shape; ///< shared by its instances
+  Affine to_render;                   ///< shape's own space -> render space
+  bool visible = true;                ///< to the camera
+};
+
+/// Where a ray meets a surface.
+struct SurfaceHit {
+  double t = 0;   ///< distance along the ray
+  Vec3d position; ///< render space
+  Vec3f normal;   ///< unit, geometric, towards the front
+  int surface = 0;
+
+  /// Where a ray along `direction` begins so that it does not meet this point again: off the
+  /// surface by more than rounding may have put the point to the wrong side. In double precision,
+  /// in which this is so little that the ray does not slip through the walls of a corner either.
+  Vec3d leave(const Vec3f& direction) const;
+};
+
+/// A point drawn uniformly by area on a surface.
+struct SurfacePoint {
+  Vec3d position;
+  Vec3f normal;
+  float pdf = 0; ///< per area, render units
+};
+
+/// All surfaces of a scene in render space: what rays meet. The only user of Embree, whose trees
+/// find the primitives near a ray; whether and where it meets one is decided in double precision,
+/// from the ray as it was given, so the answers do not depend on the instruction set. Queries are
+/// const and may run concurrently.
+class SurfaceSet {
+public:
+  /// `reach`: how far from the surfaces rays may begin, render units. Throws FrameError where
+  /// memory is short.
+  SurfaceSet(std::vector<PlacedShape> surfaces, double reach);
+  ~SurfaceSet();
+  SurfaceSet(const SurfaceSet&) = delete;
+  SurfaceSet& operator=(const SurfaceSet&) = delete;
+
+  /// The first surface strictly between two distances. `camera`: only what the camera sees.
+  std::optional<SurfaceHit> intersect(const Vec3d& origin, const Vec3d& direction, double t_begin,
+                                      double t_end, bool camera = false) const;
+  std::optional<SurfaceHit> intersect(const Segment& segment) const {
+    return intersect(Vec3d(segment.ray.origin), Vec3d(segment.ray.direction),
+                     static_cast<double>(segment.t_begin), static_cast<double>(segment.t_end));
+  }
+  /// Something stands strictly between two distances.
+  bool occluded(const Vec3d& origin, const Vec3d& direction, double t_begin, double t_end) const;
+
+  std::size_t size() const;
+  const Boxd& bounds() const; ///< of all surfaces
+  Boxd bounds(std::size_t surface) const;
+  std::size_t bytes() const;
+  double area(std::size_t surface) const;
+  SurfacePoint sample(std::size_t surface, double u_primitive, double u, double v) const;
+  /// The density per area with which `sample` gives a point where the surface has this normal.
+  float sample_pdf(std::size_t surface, const Vec3f& normal) const;
+
+  /// Embree devices made so far by this process, for tests.
+  static int devices_made();
+
+private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+} // namespace vdbeam

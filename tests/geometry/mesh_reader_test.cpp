@@ -1,0 +1,145 @@
+#include "geometry/mesh_reader.h"
+
+#include "support/temp_folder.h"
+#include "vdbeam/error.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+namespace vdbeam {
+namespace {
+
+using test::TempFolder;
+using test::write_bytes;
+
+std::string failure(const std::string& path) {
+  try {
+    read_mesh(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << path << " was read";
+  return "";
+}
+
+Vec3d corner(const Mesh& mesh, std::size_t triangle, int k) {
+  return mesh.center + Vec3d(mesh.positions[mesh.triangles[triangle][k]]);
+}
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Vec3d a = corner(mesh, i, 0);
+    sum += 0.5 * length(cross(corner(mesh, i, 1) - a, corner(mesh, i, 2) - a));
+  }
+  return sum;
+}
+
+const char* const ply = R"(ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+element face 2
+property list uchar int vertex_indices
+end_header
+0 0 5
+2 0 5
+2 3 5
+0 3 5
+3 0 1 2
+3 0 2 3
+)";
+
+TEST(MeshReader, obj_polygons_without_normals) {
+  const TempFolder folder;
+  const std::string path = folder.file("square.obj");
+  write_bytes(path, "v 0 0 5\nv 2 0 5\nv 2 3 5\nv 0 3 5\nf 1 2 3 4\n");
+  const Mesh mesh = read_mesh(path);
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_NEAR(area(mesh), 6, 1e-6);
+  EXPECT_TRUE(mesh.notes.empty());
+  const Vec3d a = corner(mesh, 0, 0);
+  const Vec3d normal = cross(corner(mesh, 0, 1) - a, corner(mesh, 0, 2) - a);
+  EXPECT_GT(normal.z, 0) << "counter-clockwise is the front";
+}
+
+TEST(MeshReader, ply_and_gltf) {
+  const TempFolder folder;
+  write_bytes(folder.file("square.ply"), ply);
+  EXPECT_NEAR(area(read_mesh(folder.file("square.ply"))), 6, 1e-6);
+  // One triangle (0 0 0), (1 0 0), (0 1 0), scaled by 2 and moved by its node.
+  write_bytes(folder.file("triangle.gltf"), R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0, "scale": [2, 2, 2], "translation": [10, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0}]}],
+    "buffers": [{"byteLength": 44, "uri": "data:application/octet-stream;base64,AAABAAIAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA="}],
+    "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 6, "target": 34963},
+                    {"buffer": 0, "byteOffset": 8, "byteLength": 36, "target": 34962}],
+    "accessors": [{"bufferView": 0, "componentType": 5123, "count": 3, "type": "SCALAR", "max": [2], "min": [0]},
+                  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3", "max": [1, 1, 0], "min": [0, 0, 0]}]})");
+  const Mesh mesh = read_mesh(folder.file("triangle.gltf"));
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_NEAR(area(mesh), 2, 1e-6);
+  EXPECT_NEAR(mesh.center.x, 11, 1e-6);
+}
+
+TEST(MeshReader, far_from_the_origin_keeps_its_shape) {
+  const TempFolder folder;
+  const std::string path = folder.file("far.obj");
+  write_bytes(path, "v 1048576 0 0\nv 1048577 0 0\nv 1048576 1 0\nf 1 2 3\n");
+  const Mesh mesh = read_mesh(path);
+  EXPECT_NEAR(area(mesh), 0.5, 1e-6);
+  EXPECT_NEAR(mesh.center.x, 1048576.5, 1e-9);
+}
+
+TEST(RepairMesh, drops_what_cannot_be_used_and_says_so) {
+  RawMesh raw;
+  raw.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}, {1e300, 0, 0}};
+  raw.triangles = {{0, 1, 2}, {0, 1, 9}, {0, 1, 3}, {0, 1, 4}, {0, 1, 1}};
+  const Mesh mesh = repair_mesh(raw, "label");
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_EQ(mesh.notes[0], "label: triangles left out: 1 with wrong indices, 2 with vertices that "
+                           "are not finite, 1 without area");
+  raw.triangles = {{0, 1, 9}};
+  EXPECT_THROW(repair_mesh(raw, "label"), FrameError);
+}
+
+TEST(MeshReader, one_clear_line_for_what_is_no_mesh) {
+  const TempFolder folder;
+  EXPECT_NE(failure(folder.file("no.obj")).find("No such file"), std::string::npos);
+  write_bytes(folder.file("a.txt"), "hello");
+  EXPECT_NE(failure(folder.file("a.txt")).find("is not a mesh file: give an .obj"),
+            std::string::npos);
+  write_bytes(folder.file("empty.ply"), "");
+  EXPECT_NE(failure(folder.file("empty.ply")).find("is empty"), std::string::npos);
+  write_bytes(folder.file("points.obj"), "v 0 0 0\nv 1 0 0\n");
+  EXPECT_NE(failure(folder.file("points.obj")).find("points.obj"), std::string::npos);
+}
+
+/// Whatever is wrong with a file, reading ends with a mesh or with an error of one line.
+TEST(MeshReader, broken_files_end_in_one_line) {
+  const TempFolder folder;
+  const std::string path = folder.file("broken.ply");
+  const std::string whole = ply;
+  int failures = 0;
+  for (std::size_t cut = 0; cut < whole.size(); cut += 31) {
+    for (const std::string& text :
+         {whole.substr(0, cut + 1), whole.substr(0, cut) + "999999999 " + whole.substr(cut)}) {
+      write_bytes(path, text);
+      try {
+        read_mesh(path, {.seconds = 0.5});
+      } catch (const Error& error) {
+        ++failures;
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      }
+    }
+  }
+  EXPECT_GT(failures, 5);
+}
+
+} // namespace
+} // namespace vdbeam
