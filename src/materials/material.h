@@ -1,0 +1,75 @@
+#pragma once
+
+#include "math/ray.h"
+#include "math/rng.h"
+#include "vdbeam/surface_settings.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbeam {
+
+/// What the light that is followed carries: radiance on paths from the camera, power on paths from
+/// lights. Refraction scales radiance by the square of the relative index, power not.
+enum class Carried { radiance, power };
+
+/// A direction drawn by `Material::sample`.
+struct MaterialSample {
+  Vec3f wi;      ///< unit, away from the surface
+  Rgb weight;    ///< f |cos| / pdf; 0: the path ends
+  float pdf = 0; ///< per solid angle; 0: a direction that only `sample` can find
+};
+
+/// How a surface scatters light, in its own frame: z is the normal on its front. `wo` points the
+/// way the path came from, `wi` the way it goes on; both leave the surface.
+class Material {
+public:
+  virtual ~Material() = default;
+
+  /// f(wo, wi) |cos(wi)|, without what only `sample` finds; the same for both kinds of paths.
+  virtual Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const = 0;
+  /// The density with which `sample` draws wi.
+  virtual float pdf(const Vec3f& wo, const Vec3f& wi) const = 0;
+  virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
+  /// `evaluate` is 0 for all directions: shadow rays are no use.
+  virtual bool is_specular() const { return false; }
+  /// Nothing leaves it but what it emits.
+  virtual bool is_black() const { return false; }
+  /// Radiance that it emits to its front (`front`) or back.
+  virtual Rgb emitted(bool front) const {
+    static_cast<void>(front);
+    return {};
+  }
+  /// Absorption coefficient of what its back encloses, per render unit.
+  virtual Rgb absorption() const { return {}; }
+  /// Light ends here and the picture is transparent.
+  virtual bool is_holdout() const { return false; }
+  MaterialType type() const { return type_; }
+
+protected:
+  explicit Material(MaterialType type) : type_(type) {}
+
+private:
+  MaterialType type_;
+};
+
+/// One kind of material: a line of the table and a file with its factory are all that a new one
+/// needs.
+struct MaterialKind {
+  MaterialType type;
+  const char* name; ///< as scene files call it
+  /// `scale`: render units per world unit.
+  std::unique_ptr<Material> (*make)(const MaterialSettings& settings, double scale);
+};
+
+const std::vector<MaterialKind>& material_table();
+std::unique_ptr<Material> make_material(const MaterialSettings& settings, double scale);
+
+std::unique_ptr<Material> make_diffuse(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_mirror(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_conductor(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_dielectric(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_emissive(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_holdout(const MaterialSettings&, double scale);
+
+} // namespace vdbeam

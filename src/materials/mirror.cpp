@@ -1,0 +1,30 @@
+#include "materials/material.h"
+
+namespace vdbeam {
+namespace {
+
+/// Reflects on both sides, the same share at every angle.
+class Mirror final : public Material {
+public:
+  explicit Mirror(const MaterialSettings& settings)
+      : Material(MaterialType::mirror), reflectance_(settings.reflectance) {}
+
+  Rgb evaluate(const Vec3f&, const Vec3f&) const override { return {}; }
+  float pdf(const Vec3f&, const Vec3f&) const override { return 0; }
+  MaterialSample sample(const Vec3f& wo, Carried, Rng&) const override {
+    return {{-wo.x, -wo.y, wo.z}, reflectance_, 0};
+  }
+  bool is_specular() const override { return true; }
+  bool is_black() const override { return max_component(reflectance_) <= 0; }
+
+private:
+  Rgb reflectance_;
+};
+
+} // namespace
+
+std::unique_ptr<Material> make_mirror(const MaterialSettings& settings, double) {
+  return std::make_unique<Mirror>(settings);
+}
+
+} // namespace vdbeam

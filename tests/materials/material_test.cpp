@@ -1,0 +1,166 @@
+#include "materials/material.h"
+
+#include "materials/fresnel.h"
+#include "math/sampling.h"
+#include "support/chi_squared.h"
+#include "support/statistics.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+std::unique_ptr<Material> conductor(double roughness, const Rgb& reflectance = Rgb(1)) {
+  MaterialSettings settings;
+  settings.type = MaterialType::conductor;
+  settings.roughness = roughness;
+  settings.reflectance = reflectance;
+  return make_material(settings, 1);
+}
+std::unique_ptr<Material> diffuse(const Rgb& albedo) {
+  MaterialSettings settings;
+  settings.albedo = albedo;
+  return make_material(settings, 1);
+}
+std::unique_ptr<Material> glass(double ior) {
+  MaterialSettings settings;
+  settings.type = MaterialType::dielectric;
+  settings.ior = ior;
+  return make_material(settings, 1);
+}
+Vec3f at_angle(double degrees, float side = 1) {
+  const auto radians = static_cast<float>(degrees * M_PI / 180);
+  return {std::sin(radians), 0, side * std::cos(radians)};
+}
+/// Reflectance of a light that is the same all around, by sampling.
+test::Samples furnace(const Material& material, const Vec3f& wo, Carried carried) {
+  test::Samples samples;
+  Rng rng({}, RngStage::test, 0);
+  for (int i = 0; i < 200000; ++i)
+    samples.add(static_cast<double>(material.sample(wo, carried, rng).weight.x));
+  return samples;
+}
+/// The same by uniform directions and `evaluate`.
+test::Samples uniform_furnace(const Material& material, const Vec3f& wo) {
+  test::Samples samples;
+  Rng rng({}, RngStage::test, 1);
+  for (int i = 0; i < 400000; ++i) {
+    const float u = rng.uniform(), v = rng.uniform();
+    samples.add(static_cast<double>(material.evaluate(wo, sample_sphere(u, v)).x) * 4 * M_PI);
+  }
+  return samples;
+}
+
+TEST(Materials, sampled_and_evaluated_reflectance_agree) {
+  for (const float side : {1.0f, -1.0f})
+    for (const double angle : {0.0, 40.0, 75.0}) {
+      const Vec3f wo = at_angle(angle, side);
+      for (const double roughness : {0.5, 0.8, 1.0})
+        test::expect_same_mean(furnace(*conductor(roughness, Rgb(0.6f)), wo, Carried::radiance),
+                               uniform_furnace(*conductor(roughness, Rgb(0.6f)), wo));
+      test::expect_same_mean(furnace(*diffuse(Rgb(0.7f)), wo, Carried::power),
+                             uniform_furnace(*diffuse(Rgb(0.7f)), wo));
+    }
+}
+
+TEST(Materials, nothing_gives_more_light_than_it_gets) {
+  for (const double angle : {0.0, 30.0, 60.0, 85.0, 89.9}) {
+    for (const double roughness : {0.0, 0.01, 0.3, 1.0}) {
+      const test::Samples metal = furnace(*conductor(roughness), at_angle(angle), Carried::power);
+      EXPECT_LE(metal.mean(), 1 + 1e-5) << roughness << " " << angle;
+      // Light that facets would reflect a second time is lost: little on smooth ones.
+      EXPECT_GT(metal.mean(), roughness <= 0.3 ? 0.85 : 0.3) << roughness << " " << angle;
+    }
+    EXPECT_NEAR(furnace(*diffuse(Rgb(1)), at_angle(angle), Carried::power).mean(), 1, 1e-6);
+    for (const double ior : {0.5, 1.5, 4.0})
+      for (const float side : {1.0f, -1.0f})
+        EXPECT_NEAR(furnace(*glass(ior), at_angle(angle, side), Carried::power).mean(), 1, 1e-6);
+  }
+}
+
+TEST(Materials, directions_can_be_exchanged) {
+  Rng rng({}, RngStage::test, 2);
+  for (int i = 0; i < 1000; ++i) {
+    const float u1 = rng.uniform(), v1 = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
+    const Vec3f a = sample_sphere(u1, v1), b = sample_sphere(u2, v2);
+    for (const double roughness : {0.3, 0.9}) {
+      const auto metal = conductor(roughness, {0.9f, 0.5f, 0.2f});
+      const float ab = metal->evaluate(a, b).y / std::abs(b.z);
+      const float ba = metal->evaluate(b, a).y / std::abs(a.z);
+      EXPECT_NEAR(ab, ba, 1e-3f * (ab + ba));
+    }
+  }
+}
+
+/// Bins of equal solid angle: directions drawn against the integral of the stated density.
+double sampling_p_value(const Material& material, const Vec3f& wo) {
+  constexpr int rows = 20, columns = 20, draws = 200000, fine = 12;
+  std::vector<double> counts(rows * columns + 1), expected(rows * columns + 1);
+  Rng rng({}, RngStage::test, 3);
+  for (int i = 0; i < draws; ++i) {
+    const MaterialSample sample = material.sample(wo, Carried::radiance, rng);
+    if (!(sample.pdf > 0)) {
+      ++counts.back();
+      continue;
+    }
+    const double turn = std::atan2(sample.wi.y, sample.wi.x) / (2 * M_PI) + 0.5;
+    const int row = std::min(rows - 1, static_cast<int>((sample.wi.z + 1) / 2 * rows));
+    const int column = std::min(columns - 1, static_cast<int>(turn * columns));
+    ++counts[static_cast<std::size_t>(row * columns + column)];
+  }
+  double total = 0;
+  for (int row = 0; row < rows * fine; ++row)
+    for (int column = 0; column < columns * fine; ++column) {
+      const double z = 2 * (row + 0.5) / (rows * fine) - 1;
+      const double phi = 2 * M_PI * ((column + 0.5) / (columns * fine) - 0.5);
+      const double r = std::sqrt(1 - z * z);
+      const Vec3f wi(Vec3d{r * std::cos(phi), r * std::sin(phi), z});
+      const double share = static_cast<double>(material.pdf(wo, wi)) * 4 * M_PI /
+                           (rows * columns * fine * fine) * draws;
+      expected[static_cast<std::size_t>(row / fine * columns + column / fine)] += share;
+      total += share;
+    }
+  expected.back() = draws - total; // facets that reflect downwards
+  return test::chi_squared_test(counts, expected);
+}
+
+TEST(Materials, directions_are_drawn_by_the_stated_density) {
+  for (const double angle : {10.0, 60.0}) {
+    EXPECT_GT(sampling_p_value(*diffuse(Rgb(1)), at_angle(angle)), 1e-4);
+    EXPECT_GT(sampling_p_value(*conductor(0.7), at_angle(angle)), 1e-4) << angle;
+    EXPECT_GT(sampling_p_value(*conductor(1), at_angle(angle, -1)), 1e-4) << angle;
+  }
+}
+
+TEST(Fresnel, known_values) {
+  float cos_t = 0;
+  EXPECT_NEAR(fresnel_dielectric(1, 1.5f, cos_t), 0.04f, 1e-6f);
+  EXPECT_NEAR(cos_t, 1, 1e-6f);
+  EXPECT_NEAR(fresnel_dielectric(0.5f, 1.5f, cos_t), 0.0891867f, 1e-6f);
+  // At Brewster's angle only light polarised across is reflected, cos^2(2 theta) of it.
+  const float brewster = std::atan(1.5f);
+  const float across = std::cos(2 * brewster);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(brewster), 1.5f, cos_t), 0.5f * across * across, 1e-6f);
+  EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f, cos_t), 1) << "total reflection";
+  EXPECT_NEAR(fresnel_dielectric(0.3f, 1, cos_t), 0, 1e-12f) << "no interface";
+  EXPECT_NEAR(fresnel_dielectric(1e-4f, 1.5f, cos_t), 1, 1e-3f);
+}
+
+TEST(Dielectric, obeys_snell_and_scales_radiance) {
+  Rng rng({}, RngStage::test, 4);
+  const auto ball = glass(1.5);
+  const Vec3f wo = at_angle(50);
+  for (int i = 0; i < 100; ++i) {
+    const MaterialSample sample = ball->sample(wo, Carried::radiance, rng);
+    if (sample.wi.z > 0) {
+      EXPECT_NEAR(sample.wi.z, wo.z, 1e-6f);
+      EXPECT_EQ(sample.weight.x, 1);
+      continue;
+    }
+    EXPECT_NEAR(-sample.wi.x * 1.5f, wo.x, 1e-5f);
+    EXPECT_NEAR(sample.weight.x, 1 / (1.5f * 1.5f), 1e-6f);
+  }
+}
+
+} // namespace
+} // namespace vdbeam
