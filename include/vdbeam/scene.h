@@ -3,6 +3,7 @@
 #include "vdbeam/emission_settings.h"
 #include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
+#include "vdbeam/surface_settings.h"
 #include "vdbeam/vec.h"
 
 #include <array>
@@ -127,6 +128,7 @@ struct Scene {
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;
+  std::vector<SurfaceSettings> surfaces;
   std::vector<LightSettings> lights;
   RenderSettings render;
   bool black = false;             ///< a volume's file is missing and the frame is to be black

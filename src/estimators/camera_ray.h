@@ -9,10 +9,14 @@ namespace vdbeam {
 struct CameraRay {
   Segment segment;  ///< the part inside the medium's bounds; empty where the ray misses them
   double shift = 0; ///< distance from the camera to segment.ray.origin
+  std::optional<SurfaceHit> hit; ///< the surface at which it ends; t from the camera
 
   const Ray& ray() const { return segment.ray; }
-  /// From the camera to where the ray leaves the scene.
-  Segment whole() const { return {segment.ray, static_cast<float>(-shift), infinity}; }
+  /// From the camera to where the ray meets a surface or leaves the scene.
+  Segment whole() const {
+    return {segment.ray, static_cast<float>(-shift),
+            hit ? static_cast<float>(hit->t - shift) : infinity};
+  }
 };
 
 inline CameraRay camera_ray(const World& world, const Camera& camera, double px, double py) {
@@ -25,6 +29,11 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, double px,
     result.segment = world.medium.clip(result.segment);
   else
     result.segment.t_end = 0;
+  if (world.surfaces) {
+    result.hit = world.surfaces->set->intersect(camera.origin(), direction, 0,
+                                                static_cast<double>(infinity), true);
+    result.segment.t_end = std::min(result.segment.t_end, result.whole().t_end);
+  }
   return result;
 }
 

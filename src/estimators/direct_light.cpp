@@ -48,7 +48,7 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
   if (max_component(sample.value) > 0) {
     const float cosine = dot(direction, sample.wi), p = phase.evaluate(cosine);
     const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    if (p * mis > 0) {
+    if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
       ++shadow_rays;
       sum += sample.value * (single.weight(surrounds, p, cosine) * mis) *
              exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance});
@@ -59,7 +59,7 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
   const float u_lobe = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
   const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
   const LightHit hit = light.emitted_radiance({{point, wi}});
-  if (max_component(hit.radiance) > 0) {
+  if (max_component(hit.radiance) > 0 && unoccluded(world, Vec3d(point), wi, hit.distance)) {
     const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
     const Rgb mis = single.weight(surrounds, p, cosine) / (p + light.incident_pdf(point, wi));
     ++shadow_rays;

@@ -42,6 +42,8 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
     : input_(input), shadow_rays_(input.shadow_ray_lights()),
       tracer_(input.world, shadow_rays_, input.settings.max_bounces),
       scatters_(input.plan.needs(Stage::paths)) {
+  if (input.world.surfaces)
+    scene_tracer_.emplace(input.world, shadow_rays_, input.settings.max_bounces);
   if (!scatters_)
     return;
   walks_per_ray_ = choose_walks_per_ray(input);
@@ -60,7 +62,7 @@ struct PathEstimator::Scratch {
 /// The walk of a path that scatters first at a point that was drawn from the camera ray's profile.
 void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& point,
                                std::size_t target, Rng& rng, const Rng& walk_rng,
-                               std::vector<PathWalk>& walks) const {
+                               Scratch& scratch, PassImage& image) const {
   const Medium& medium = input_.world.medium;
   // Which volume scatters, in proportion to its share.
   float total = 0;
@@ -73,10 +75,33 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   while (left >= 0 && volume + 1 < medium.volumes.size())
     left -= mean_component((*point.weights)[++volume]);
   const Rgb& weight = (*point.weights)[volume];
-  if (mean_component(weight) > 0)
-    walks.push_back(tracer_.start(target, walk_rng, {point.position, camera.ray().direction},
-                                  weight * (total / mean_component(weight)),
-                                  medium.phases[medium.volumes[volume].phase_index]));
+  if (!(mean_component(weight) > 0))
+    return;
+  const Ray ray{point.position, camera.ray().direction};
+  const Rgb throughput = weight * (total / mean_component(weight));
+  const PhaseFunction& phase = medium.phases[medium.volumes[volume].phase_index];
+  if (!scene_tracer_) {
+    scratch.walks.push_back(tracer_.start(target, walk_rng, ray, throughput, phase));
+    return;
+  }
+  Rng numbers = walk_rng;
+  const ScatteredLight light = scene_tracer_->from_medium(ray, throughput, phase, numbers);
+  image.direct[target] += light.direct / static_cast<float>(walks_per_ray_);
+  image.indirect[target] += light.indirect / static_cast<float>(walks_per_ray_);
+}
+
+/// What leaves the surface at which a camera ray ends, the mean over a few paths.
+Rgb PathEstimator::surface_radiance(const CameraRay& camera, const RngKey& key,
+                                    std::size_t pixel) const {
+  if (!camera.hit)
+    return {};
+  constexpr int paths = 4;
+  Rgb sum;
+  for (int i = 0; i < paths; ++i) {
+    Rng rng(key, RngStage::surface, pixel * paths + static_cast<std::size_t>(i));
+    sum += scene_tracer_->from_surface(*camera.hit, camera.ray().direction, rng);
+  }
+  return sum / static_cast<float>(paths);
 }
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
@@ -87,7 +112,8 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   Rng rng(key, RngStage::path, pixel);
   DepthProfile& profile = scratch.profile;
   profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff));
-  shade_profile(input_, camera, profile, target, image, scratch.counts.emission_rays);
+  shade_profile(input_, camera, profile, target, image, scratch.counts.emission_rays,
+                surface_radiance(camera, key, pixel));
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
@@ -99,7 +125,7 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
     const int c = world.medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
     const Rng walk_rng(key, RngStage::walk, pixel * static_cast<std::size_t>(walks_per_ray_) + i);
     if (distances.opacity(c) > 0)
-      begin_walk(camera, distances.sample(u, c), target, rng, walk_rng, scratch.walks);
+      begin_walk(camera, distances.sample(u, c), target, rng, walk_rng, scratch, image);
   }
   scratch.counts.camera_walks += static_cast<std::uint64_t>(walks_per_ray_);
 }

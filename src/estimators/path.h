@@ -3,6 +3,7 @@
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
 #include "estimators/path_walk.h"
+#include "estimators/scene_tracer.h"
 #include "transport/distance_sampling.h"
 
 namespace vdbeam {
@@ -32,12 +33,14 @@ private:
   void trace(const CameraRay& camera, const RngKey& key, std::size_t pixel, Scratch& scratch,
              std::size_t target, PassImage& image) const;
   void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
-                  const Rng& walk_rng, std::vector<PathWalk>& walks) const;
+                  const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
+  Rgb surface_radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
   void take_turns(std::vector<PathWalk>& walks, std::size_t most, PassImage& image) const;
 
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   WalkTracer tracer_;
+  std::optional<SceneTracer> scene_tracer_; ///< in its place where there are surfaces
   bool scatters_ = false;                   ///< light is scattered towards the camera
   int direct_samples_ = 1;                  ///< shadow-ray samples per camera ray
   int walks_per_ray_ = 1;                   ///< walks per camera ray

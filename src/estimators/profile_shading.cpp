@@ -24,7 +24,7 @@ Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfi
                    const Rgb& tr) {
   Rgb beyond, sum;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    if (!world.lights.traits(i).visible)
+    if (!world.lights.traits(i).visible || world.lights[i].surface() >= 0)
       continue;
     const LightHit hit = world.lights[i].emitted_radiance(camera.whole());
     if (hit.distance == infinity)
@@ -35,11 +35,21 @@ Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfi
   return sum + tr * beyond;
 }
 
+/// A surface is opaque, but for one that stands for what is composited later.
+void end_at_surface(const World& world, const CameraRay& camera, std::size_t pixel,
+                    PassImage& image) {
+  if (world.surfaces->material(*camera.hit).is_holdout())
+    return;
+  image.depth[pixel] +=
+      (1 - image.opacity[pixel]) * static_cast<float>(camera.hit->t / world.space.scale);
+  image.opacity[pixel] = 1;
+}
+
 } // namespace
 
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   std::uint64_t& emission_rays) {
+                   std::uint64_t& emission_rays, const Rgb& surface) {
   const World& world = input.world;
   Rgb tr(1);
   if (!profile.empty()) {
@@ -53,6 +63,10 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
         (profile.opacity_depth(world.medium) + camera.shift * opacity) / world.space.scale);
   }
   image.background[pixel] = lights_through(world, camera, profile, tr);
+  if (camera.hit) {
+    image.background[pixel] += tr * surface;
+    end_at_surface(world, camera, pixel, image);
+  }
   if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;
     image.emission[pixel] = emission_along(world.medium, camera.segment, profile,

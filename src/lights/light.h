@@ -6,6 +6,8 @@
 
 namespace vdbeam {
 
+struct SurfaceHit;
+
 /// Light arriving at a point, drawn by `Light::sample_incident`.
 struct IncidentSample {
   Vec3f wi;           ///< unit, from the point towards the light
@@ -56,6 +58,11 @@ public:
   virtual const Vec3d* position() const { return nullptr; }
   /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.
   virtual const Vec3f* narrow_direction() const { return nullptr; }
+  /// The surface that shines; -1 for lights that are none. Rays meet it as they meet any surface.
+  virtual int surface() const { return -1; }
+  /// Density per solid angle with which sample_incident, asked at the origin of a ray of direction
+  /// `wi`, draws the point of the light's surface that the ray meets.
+  virtual float surface_pdf(const SurfaceHit&, const Vec3f&) const { return 0; }
 };
 
 } // namespace vdbeam

@@ -39,7 +39,7 @@ public:
     const Rgb weight = fresnel_schlick(reflectance_, dot(wo, h)) * masked;
     const float density = pdf(wo, wi);
     wi.z = std::copysign(wi.z, wo_.z);
-    return {wi, weight, density};
+    return {wi, weight, density, 1};
   }
   bool is_black() const override { return max_component(reflectance_) <= 0; }
 
@@ -58,8 +58,7 @@ private:
   Vec3f visible_normal(const Vec3f& wo, float u, float v) const {
     const Vec3f w = normalize(Vec3f{alpha_ * wo.x, alpha_ * wo.y, wo.z});
     const float across = w.x * w.x + w.y * w.y;
-    const Vec3f t1 =
-        across > 0 ? Vec3f{-w.y, w.x, 0} / std::sqrt(across) : Vec3f{1, 0, 0};
+    const Vec3f t1 = across > 0 ? Vec3f{-w.y, w.x, 0} / std::sqrt(across) : Vec3f{1, 0, 0};
     const Vec3f t2 = cross(w, t1);
     const float r = std::sqrt(u), phi = 2 * pi * v, s = 0.5f * (1 + w.z);
     const float p1 = r * std::cos(phi);

@@ -18,10 +18,11 @@ public:
     float cos_t = 0;
     const float reflected = fresnel_dielectric(cos_o, eta, cos_t);
     if (rng.uniform() < reflected)
-      return {{-wo.x, -wo.y, wo.z}, Rgb(1), 0};
+      return {{-wo.x, -wo.y, wo.z}, Rgb(1), 0, 1};
     const Vec3f wi{-wo.x / eta, -wo.y / eta, std::copysign(cos_t, -wo.z)};
     // Radiance over the square of the index is what stays constant along a refracted ray.
-    return {normalize(wi), Rgb(carried == Carried::radiance ? 1 / (eta * eta) : 1), 0};
+    const float factor = carried == Carried::radiance ? 1 / (eta * eta) : 1;
+    return {normalize(wi), Rgb(factor), 0, factor};
   }
   bool is_specular() const override { return true; }
   Rgb absorption() const override { return absorption_; }

@@ -21,7 +21,7 @@ public:
     const float u = rng.uniform_positive(), phi = 2 * pi * rng.uniform();
     const float cosine = std::sqrt(u), sine = std::sqrt(std::max(0.0f, 1 - u));
     const Vec3f wi{sine * std::cos(phi), sine * std::sin(phi), std::copysign(cosine, wo.z)};
-    return {wi, albedo_, cosine / pi};
+    return {wi, albedo_, cosine / pi, 1};
   }
   bool is_black() const override { return max_component(albedo_) <= 0; }
 

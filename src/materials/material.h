@@ -18,6 +18,8 @@ struct MaterialSample {
   Vec3f wi;      ///< unit, away from the surface
   Rgb weight;    ///< f |cos| / pdf; 0: the path ends
   float pdf = 0; ///< per solid angle; 0: a direction that only `sample` can find
+  /// Factor of the weight that refraction will take back where the path leaves again.
+  float refraction = 1;
 };
 
 /// How a surface scatters light, in its own frame: z is the normal on its front. `wo` points the

@@ -21,7 +21,8 @@ enum class RngStage : std::uint64_t {
   light,
   test,
   walk,
-  split
+  split,
+  surface
 };
 
 /// Everything that identifies a stream, except the index within its stage.

@@ -1,7 +1,9 @@
 #include "transport/world.h"
 
+#include "lights/surface_light.h"
 #include "lights/volume_light.h"
 #include "math/color.h"
+#include "transport/build_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -143,6 +145,21 @@ void add_volume_lights(World& world) {
       world.lights.add(std::make_unique<VolumeLight>(emitter));
 }
 
+/// Adds every surface that shines as a light.
+void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& world) {
+  auto surfaces = std::make_shared<Surfaces>(*world.surfaces);
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const MaterialSettings& material = settings[i].material;
+    if (material.type != MaterialType::emissive || !(max_component(material.radiance) > 0))
+      continue;
+    surfaces->lights[i] = static_cast<int>(world.lights.size());
+    world.lights.add(std::make_unique<SurfaceLight>(surfaces->set, static_cast<int>(i),
+                                                    material.radiance, material.two_sided),
+                     DirectLight::automatic, settings[i].visible);
+  }
+  world.surfaces = std::move(surfaces);
+}
+
 void bound_region(World& world, const Boxd& bounds) {
   world.medium.bounds = {Vec3f(world.space.point(bounds.lower)),
                          Vec3f(world.space.point(bounds.upper))};
@@ -174,7 +191,8 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
           mapped_bounds(local_to_world(glow.field->origin(), glow.index_to_world, settings),
                         glow.field->occupied()));
   }
-  world.space = choose_space(bounds);
+  const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, found.notes);
+  world.space = choose_space(bounds.empty() ? world_bounds(shapes) : bounds);
   for (std::size_t i = 0; i < grids.size(); ++i)
     if (!emissions[i].empty())
       world.medium.emitters.push_back(make_emitter(emissions[i], scene.volumes[i], world.space));
@@ -192,7 +210,13 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   }
   if (world.medium.visible())
     bound_region(world, bounds);
-  world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &found.notes);
+  world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region);
+  // What stands about the medium throws light into it.
+  const OccupiedRegion lit =
+      world.surfaces ? lit_region(world.region, *world.surfaces->set) : world.region;
+  world.lights = LightSet(scene.lights, scene.camera.up, world.space, lit, &found.notes);
+  if (world.surfaces)
+    add_surface_lights(scene.surfaces, world);
   add_volume_lights(world);
   if (facts)
     *facts = std::move(found);

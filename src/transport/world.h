@@ -3,6 +3,7 @@
 #include "lights/light_set.h"
 #include "transport/camera.h"
 #include "transport/medium.h"
+#include "transport/surfaces.h"
 #include "volume/emission_grid.h"
 #include "volume/vdb_reader.h"
 
@@ -15,8 +16,18 @@ struct World {
   RenderSpace space;
   Medium medium;
   LightSet lights;
-  OccupiedRegion region;
+  OccupiedRegion region;                    ///< of the medium
+  std::shared_ptr<const Surfaces> surfaces; ///< null: there are none
 };
+
+/// No surface stands between a point and a light, or another point, at a distance along
+/// `direction`. What lies within 1e-4 of the distance before its end does not count: it is the end.
+inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& direction,
+                       float distance) {
+  return !world.surfaces ||
+         !world.surfaces->set->occluded(origin, Vec3d(direction), 0,
+                                        static_cast<double>(distance) * (1 - 1e-4));
+}
 
 /// What the plan and the user are told about the volumes that a world was built from.
 struct WorldFacts {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "transport/flight.h"
+#include "transport/world.h"
+
+namespace vdbeam {
+
+/// Radiance by what the light did in the medium.
+struct ScatteredLight {
+  Rgb direct;   ///< was scattered once there
+  Rgb indirect; ///< was scattered more often
+};
+
+/// Unbiased path tracing among surfaces and media: flights by delta tracking end at surfaces, which
+/// scatter by their materials; next-event estimation at every vertex that is not specular, through
+/// the medium's transmittance, combined with the directions drawn by multiple importance sampling
+/// (balance heuristic, Veach and Guibas 1995); Russian roulette. Light of point lights, or of a
+/// parallel sun, that only mirrors or glass bring to a point is not found: no path meets them.
+///
+/// Scenes without surfaces are traced by WalkTracer. Requires a world with surfaces.
+class SceneTracer {
+public:
+  /// `shadow_rays`: per light, whether next-event estimation samples it.
+  /// `max_bounces`: scattering events in the medium.
+  SceneTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
+      : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces) {}
+
+  /// Radiance that leaves a surface against `direction`, along which a camera ray meets it.
+  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng) const;
+
+  /// Light of a path that scatters first at ray.origin, coming along ray.direction, but for what
+  /// comes there straight from lights with shadow rays (direct_light).
+  ScatteredLight from_medium(const Ray& ray, const Rgb& throughput, const PhaseFunction& phase,
+                             Rng& rng) const;
+
+private:
+  struct Path;
+
+  void follow(Path& path) const;
+  bool fly(Path& path, float t_end, Collision& hit) const;
+  bool collide(Path& path, const Collision& hit) const;
+  bool bounce(Path& path, const SurfaceVertex& vertex) const;
+  Rgb lights_at_collision(const Path& path, const Vec3f& point, const PhaseFunction& phase,
+                          Rng& rng) const;
+  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;
+  Rgb lights_met(const Path& path, float t_end) const;
+
+  const World& world_;
+  std::vector<bool> shadow_rays_;
+  std::optional<int> max_bounces_;
+};
+
+} // namespace vdbeam

@@ -1,0 +1,84 @@
+#include "lights/surface_light.h"
+
+#include "math/sampling.h"
+
+#include <bit>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// A second number from a first: the same for the same, else unrelated to it.
+double another(float u) {
+  return static_cast<double>(mix64(std::bit_cast<std::uint32_t>(u)) >> 11) * 0x1p-53;
+}
+
+} // namespace
+
+SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface,
+                           const Rgb& radiance, bool two_sided)
+    : surfaces_(std::move(surfaces)), surface_(surface), radiance_(radiance),
+      two_sided_(two_sided) {
+  const auto index = static_cast<std::size_t>(surface);
+  center_ = surfaces_->bounds(index).center();
+  power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) *
+                                  (two_sided ? 2 : 1)));
+}
+
+IncidentSample SurfaceLight::sample_incident(const Vec3f& point, float u, float v) const {
+  const SurfacePoint on = surfaces_->sample(static_cast<std::size_t>(surface_),
+                                            static_cast<double>(u), another(u),
+                                            static_cast<double>(v));
+  const Vec3d to = on.position - Vec3d(point);
+  const double distance = length(to);
+  if (!(distance > 0))
+    return {{0, 0, 1}, 0, {}, 0};
+  const Vec3f wi(to / distance);
+  const float cosine = std::abs(dot(on.normal, wi));
+  if (!shines(on.normal, -wi) || !(cosine > 0))
+    return {wi, static_cast<float>(distance), {}, 0};
+  const auto d = static_cast<float>(distance);
+  const float pdf = on.pdf * d * d / cosine;
+  return {wi, d, radiance_ / pdf, pdf};
+}
+
+float SurfaceLight::surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const {
+  const float cosine = std::abs(dot(hit.normal, wi)), t = static_cast<float>(hit.t);
+  if (!(cosine > 0) || !shines(hit.normal, -wi))
+    return 0;
+  return surfaces_->sample_pdf(static_cast<std::size_t>(surface_), hit.normal) * t * t / cosine;
+}
+
+float SurfaceLight::incident_pdf(const Vec3f& point, const Vec3f& wi) const {
+  const auto hit = surfaces_->intersect({{point, wi}});
+  return hit && hit->surface == surface_ ? surface_pdf(*hit, wi) : 0;
+}
+
+LightHit SurfaceLight::emitted_radiance(const Segment& segment) const {
+  const auto hit = surfaces_->intersect(segment);
+  if (!hit || hit->surface != surface_ || !shines(hit->normal, -segment.ray.direction))
+    return {};
+  return {radiance_, static_cast<float>(hit->t)};
+}
+
+EmittedPhoton SurfaceLight::emit(double place, Rng& rng) const {
+  const double u = rng.uniform(), v = rng.uniform();
+  const SurfacePoint on = surfaces_->sample(static_cast<std::size_t>(surface_), place, u, v);
+  const float cosine2 = rng.uniform_positive(), phi = 2 * pi * rng.uniform();
+  const bool front = !two_sided_ || rng.uniform() < 0.5f;
+  SurfaceHit from;
+  from.position = on.position;
+  from.normal = on.normal;
+  const Vec3f direction =
+      direction_about(front ? on.normal : -on.normal, std::sqrt(cosine2), phi);
+  const float weight = pi / on.pdf * (two_sided_ ? 2.0f : 1.0f);
+  // Moved off the surface by several roundings to single precision.
+  Vec3d start = from.leave(direction);
+  const double largest =
+      max_component(Vec3d{std::abs(start.x), std::abs(start.y), std::abs(start.z)});
+  start += Vec3d(front ? on.normal : -on.normal) * (4e-7 * largest + 1e-12);
+  return {{Vec3f(start), direction}, radiance_ * weight};
+}
+
+} // namespace vdbeam

@@ -1,0 +1,114 @@
+#include "transport/build_surfaces.h"
+
+#include "geometry/mesh_reader.h"
+
+#include <map>
+
+namespace vdbeam {
+namespace {
+
+Affine to_affine(const std::array<double, 12>& m) {
+  Affine a;
+  a.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
+  a.translation = {m[3], m[7], m[11]};
+  return a;
+}
+
+Affine moved(const Vec3d& by) {
+  Affine map;
+  map.translation = by;
+  return map;
+}
+
+/// A flat box has no inside at which photons can be aimed.
+Parallelepiped thick_box(const Boxd& box) {
+  const Vec3d margin = Vec3d(1e-3 * max_component(box.size()) + 1e-9);
+  const Vec3d lower = box.lower - margin, size = box.size() + margin * 2.0;
+  return {Vec3f(lower),
+          {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
+}
+
+} // namespace
+
+std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
+                                    std::vector<std::string>& notes) {
+  struct Known {
+    std::shared_ptr<const Shape> shape;
+    Vec3d center;
+  };
+  std::map<std::string, Known> files;
+  std::map<SurfaceShape, std::shared_ptr<const Shape>> simple;
+  std::vector<WorldShape> shapes;
+  for (const SurfaceSettings& surface : settings) {
+    const Affine placed = to_affine(surface.transform);
+    if (surface.shape != SurfaceShape::file) {
+      std::shared_ptr<const Shape>& shape = simple[surface.shape];
+      if (!shape)
+        shape = make_simple_shape(surface.shape);
+      shapes.push_back({shape, placed});
+      continue;
+    }
+    Known& known = files[surface.file];
+    if (!known.shape) {
+      Mesh mesh = read_mesh(surface.file);
+      notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+      known.center = mesh.center;
+      known.shape = make_mesh_shape(std::move(mesh));
+    }
+    shapes.push_back({known.shape, placed.after(moved(known.center))});
+  }
+  return shapes;
+}
+
+Boxd world_bounds(const std::vector<WorldShape>& shapes) {
+  Boxd bounds;
+  for (const WorldShape& entry : shapes) {
+    const Boxd box = entry.shape->bounds();
+    for (int corner = 0; corner < 8; ++corner)
+      bounds.extend(entry.to_world.point({corner & 1 ? box.upper.x : box.lower.x,
+                                          corner & 2 ? box.upper.y : box.lower.y,
+                                          corner & 4 ? box.upper.z : box.lower.z}));
+  }
+  return bounds;
+}
+
+std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings>& settings,
+                                               const std::vector<WorldShape>& shapes,
+                                               const RenderSpace& space,
+                                               const OccupiedRegion& medium) {
+  if (settings.empty())
+    return nullptr;
+  auto surfaces = std::make_shared<Surfaces>();
+  std::vector<PlacedShape> placed;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible});
+    surfaces->materials.push_back(make_material(settings[i].material, space.scale));
+    surfaces->lights.push_back(-1);
+  }
+  const double reach = static_cast<double>(length(medium.center) + medium.radius);
+  surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach);
+  return surfaces;
+}
+
+OccupiedRegion lit_region(const OccupiedRegion& medium, const SurfaceSet& surfaces) {
+  OccupiedRegion region = medium;
+  Boxd bounds = surfaces.bounds();
+  if (!medium.boxes.empty())
+    for (const Parallelepiped& box : medium.boxes)
+      for (int corner = 0; corner < 8; ++corner) {
+        Vec3f point = box.corner;
+        for (int i = 0; i < 3; ++i)
+          if (corner >> i & 1)
+            point += box.edges[i];
+        bounds.extend(Vec3d(point));
+      }
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    region.boxes.push_back(thick_box(surfaces.bounds(i)));
+    region.cells.push_back(region.boxes.back());
+  }
+  region.center = Vec3f(bounds.center());
+  region.radius = static_cast<float>(0.5 * length(bounds.size()) * 1.01);
+  return region;
+}
+
+} // namespace vdbeam

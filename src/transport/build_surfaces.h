@@ -1,0 +1,35 @@
+#pragma once
+
+#include "lights/occupied_region.h"
+#include "transport/surfaces.h"
+#include "vdbeam/surface_settings.h"
+#include "volume/render_space.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// A shape in the world.
+struct WorldShape {
+  std::shared_ptr<const Shape> shape;
+  Affine to_world;
+};
+
+/// The shapes of all surfaces; those of the same file, or of the same kind, share one. Reads mesh
+/// files: throws InputError and FrameError.
+std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
+                                    std::vector<std::string>& notes);
+
+Boxd world_bounds(const std::vector<WorldShape>& shapes);
+
+/// The surfaces in render space; null where there are none, and then nothing of Embree is started.
+std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings>& settings,
+                                               const std::vector<WorldShape>& shapes,
+                                               const RenderSpace& space,
+                                               const OccupiedRegion& medium);
+
+/// The region of the medium and of the surfaces, which throw light into it.
+OccupiedRegion lit_region(const OccupiedRegion& medium, const SurfaceSet& surfaces);
+
+} // namespace vdbeam

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "geometry/surface_set.h"
+#include "materials/material.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbeam {
+
+/// What stands in a scene: surfaces in render space and what they are made of.
+struct Surfaces {
+  std::shared_ptr<const SurfaceSet> set;
+  std::vector<std::shared_ptr<const Material>> materials; ///< per surface
+  std::vector<int> lights; ///< per surface: its index among the lights, -1 where it does not shine
+
+  const Material& material(const SurfaceHit& hit) const {
+    return *materials[static_cast<std::size_t>(hit.surface)];
+  }
+};
+
+/// A path at a surface: where it came along `direction`.
+class SurfaceVertex {
+public:
+  SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit, const Vec3f& direction);
+
+  const SurfaceHit& hit() const { return hit_; }
+  const Material& material() const { return material_; }
+  /// The path came to the side to which the normal points.
+  bool front() const { return wo_.z > 0; }
+  /// Index of the light that the surface is, or -1.
+  int light() const { return light_; }
+  Rgb emitted() const { return material_.emitted(front()); }
+  /// What absorption inside left of the light on its way from the path's last event to here.
+  Rgb absorbed() const;
+  /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
+  Rgb evaluate(const Vec3f& wi) const { return material_.evaluate(wo_, to_local(wi)); }
+  float pdf(const Vec3f& wi) const { return material_.pdf(wo_, to_local(wi)); }
+  /// Where the path goes on; the direction is in render space.
+  MaterialSample sample(Carried carried, Rng& rng) const;
+
+private:
+  Vec3f to_local(const Vec3f& v) const {
+    return {dot(v, tangent_), dot(v, bitangent_), dot(v, hit_.normal)};
+  }
+
+  SurfaceHit hit_;
+  const Material& material_;
+  int light_;
+  Vec3f tangent_, bitangent_;
+  Vec3f wo_; ///< back along the path, in the surface's frame
+};
+
+/// Ends long paths among surfaces: from the 64th on a path goes on with the chance 0.9, its weight
+/// divided by that, so that mirrors that face each other keep no path for ever.
+class SurfaceRoulette {
+public:
+  bool survive(Rgb& weight, Rng& rng) {
+    if (++count_ < first)
+      return true;
+    if (rng.uniform() >= chance)
+      return false;
+    weight *= 1 / chance;
+    return true;
+  }
+
+private:
+  static constexpr int first = 64;
+  static constexpr float chance = 0.9f;
+  int count_ = 0;
+};
+
+} // namespace vdbeam
