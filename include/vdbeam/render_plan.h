@@ -13,6 +13,7 @@ namespace vdbeam {
 enum class Stage {
   read,
   majorants,
+  surfaces,
   photons,
   photon_importance,
   kernel_pilot,
@@ -30,19 +31,29 @@ enum class Stage {
   bias,
   environment
 };
-inline constexpr std::size_t stage_count = 18;
+inline constexpr std::size_t stage_count = 19;
 
 /// A stage as plans and reports call it, e.g. "photon importance".
 constexpr std::string_view stage_name(Stage stage) {
-  constexpr std::array<std::string_view, stage_count> names{"read",           "majorants",
-                                                            "photons",        "photon importance",
-                                                            "kernel pilot",   "map",
-                                                            "neighbours",     "photon directions",
-                                                            "photon colour",  "spectral tracking",
-                                                            "depth profiles", "emission",
-                                                            "shadow rays",    "beam query",
-                                                            "march",          "paths",
-                                                            "bias",           "environment"};
+  constexpr std::array<std::string_view, stage_count> names{"read",
+                                                            "majorants",
+                                                            "surfaces",
+                                                            "photons",
+                                                            "photon importance",
+                                                            "kernel pilot",
+                                                            "map",
+                                                            "neighbours",
+                                                            "photon directions",
+                                                            "photon colour",
+                                                            "spectral tracking",
+                                                            "depth profiles",
+                                                            "emission",
+                                                            "shadow rays",
+                                                            "beam query",
+                                                            "march",
+                                                            "paths",
+                                                            "bias",
+                                                            "environment"};
   return names[static_cast<std::size_t>(stage)];
 }
 

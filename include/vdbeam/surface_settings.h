@@ -21,6 +21,10 @@ struct MaterialSettings {
   bool two_sided = false;       ///< emissive: shines from the back as well
 };
 
+inline bool shines(const MaterialSettings& material) {
+  return material.type == MaterialType::emissive && max_component(material.radiance) > 0;
+}
+
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the
 /// origin, the square from -1 to 1 in x and y, and the disk of radius 1 in that plane; the front of
 /// the latter two faces +z.

@@ -61,8 +61,8 @@ struct PathEstimator::Scratch {
 
 /// The walk of a path that scatters first at a point that was drawn from the camera ray's profile.
 void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& point,
-                               std::size_t target, Rng& rng, const Rng& walk_rng,
-                               Scratch& scratch, PassImage& image) const {
+                               std::size_t target, Rng& rng, const Rng& walk_rng, Scratch& scratch,
+                               PassImage& image) const {
   const Medium& medium = input_.world.medium;
   // Which volume scatters, in proportion to its share.
   float total = 0;
@@ -224,8 +224,8 @@ const EstimatorKind path_estimator{
     .name = "path",
     .help = "volumetric path tracing, without bias: the reference",
     .unbiased = true,
-    .stages = {Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
-               Stage::paths},
+    .stages = {Stage::surfaces, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
+               Stage::spectral_tracking, Stage::paths},
     .keys = {},
     .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
       return std::make_unique<PathEstimator>(input);

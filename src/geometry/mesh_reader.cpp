@@ -24,16 +24,24 @@ namespace {
 
 constexpr const char* kinds = "an .obj, .ply, .gltf or .glb file";
 
+} // namespace
+
+bool is_mesh_file(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".obj" || extension == ".ply" || extension == ".gltf" || extension == ".glb";
+}
+
+namespace {
+
 std::uint64_t check_file(const std::string& path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0)
     throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
   if (!S_ISREG(status.st_mode))
     throw InputError(path + ": is not a regular file");
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension != ".obj" && extension != ".ply" && extension != ".gltf" && extension != ".glb")
+  if (!is_mesh_file(path))
     throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
   if (status.st_size == 0)
     throw FrameError(path + ": is empty (0 bytes): perhaps it is still being copied");
@@ -104,9 +112,8 @@ void parse(const std::string& path, int output) {
                                   aiComponent_COLORS | aiComponent_TEXCOORDS |
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
-                                  aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                                     aiProcess_JoinIdenticalVertices);
   if (!scene)
     throw std::runtime_error(importer.GetErrorString());
   RawMesh raw;

@@ -9,9 +9,12 @@ namespace vdbeam {
 
 /// What reading a mesh file may take.
 struct MeshLimits {
-  double seconds = 120;                             ///< of wall-clock time
-  std::uint64_t bytes = std::uint64_t(16) << 30;    ///< of memory
+  double seconds = 120;                          ///< of wall-clock time
+  std::uint64_t bytes = std::uint64_t(16) << 30; ///< of memory
 };
+
+/// Whether the name of a file says that it is one that read_mesh reads.
+bool is_mesh_file(const std::string& path);
 
 /// Reads the triangles of an OBJ, PLY or glTF file, all of its nodes in their places; polygons are
 /// triangulated, lines and points left out. The file is parsed in a guarded child process

@@ -341,8 +341,7 @@ SurfacePoint SurfaceSet::sample(std::size_t surface, double u_primitive, double 
   SurfacePoint result;
   result.position = entry.surface.to_render.point(point.position);
   result.normal = Vec3f(entry.normal(point.normal));
-  result.pdf =
-      static_cast<float>(1 / (entry.surface.shape->area() * entry.stretch(point.normal)));
+  result.pdf = static_cast<float>(1 / (entry.surface.shape->area() * entry.stretch(point.normal)));
   return result;
 }
 

@@ -22,14 +22,14 @@ SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surfa
       two_sided_(two_sided) {
   const auto index = static_cast<std::size_t>(surface);
   center_ = surfaces_->bounds(index).center();
-  power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) *
-                                  (two_sided ? 2 : 1)));
+  power_ = Rgb(Vec3d(radiance) *
+               (surfaces_->area(index) * static_cast<double>(pi) * (two_sided ? 2 : 1)));
 }
 
 IncidentSample SurfaceLight::sample_incident(const Vec3f& point, float u, float v) const {
-  const SurfacePoint on = surfaces_->sample(static_cast<std::size_t>(surface_),
-                                            static_cast<double>(u), another(u),
-                                            static_cast<double>(v));
+  const SurfacePoint on =
+      surfaces_->sample(static_cast<std::size_t>(surface_), static_cast<double>(u), another(u),
+                        static_cast<double>(v));
   const Vec3d to = on.position - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0))
@@ -70,8 +70,7 @@ EmittedPhoton SurfaceLight::emit(double place, Rng& rng) const {
   SurfaceHit from;
   from.position = on.position;
   from.normal = on.normal;
-  const Vec3f direction =
-      direction_about(front ? on.normal : -on.normal, std::sqrt(cosine2), phi);
+  const Vec3f direction = direction_about(front ? on.normal : -on.normal, std::sqrt(cosine2), phi);
   const float weight = pi / on.pdf * (two_sided_ ? 2.0f : 1.0f);
   // Moved off the surface by several roundings to single precision.
   Vec3d start = from.leave(direction);

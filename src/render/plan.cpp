@@ -62,6 +62,9 @@ private:
         : needs_.glows         ? "density and emission grids only"
                                : "density grids only");
     add(Stage::majorants, needs_.medium, needs_.medium ? "the medium is not empty" : no_medium);
+    const bool surfaces = !scene_.surfaces.empty();
+    add(Stage::surfaces, surfaces,
+        surfaces ? "meshes stand in the scene" : "there is no mesh, nor a device of Embree");
   }
 
   void add_photons() {

@@ -45,6 +45,17 @@ void add_light(const LightSettings& light, const EstimatorKind& estimator, Direc
   needs.shadow_ray_lights.push_back(takes_shadow_rays(light, kind, estimator, direct));
 }
 
+/// Surfaces that shine are lights too, which come after those of the scene.
+void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator, DirectLight direct,
+                 PlanNeeds& needs) {
+  const MaterialSettings& material = surface.material;
+  needs.colored = needs.colored || !is_grey(material.albedo) || !is_grey(material.reflectance) ||
+                  !is_grey(material.absorption) || !is_grey(material.radiance);
+  if (shines(material))
+    needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||
+                                      direct != DirectLight::photons);
+}
+
 } // namespace
 
 bool PlanNeeds::shadow_rays() const {
@@ -59,8 +70,12 @@ PlanNeeds find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes
     add_volume(scene.volumes[i], volumes[i], needs);
   for (const LightSettings& light : scene.lights)
     add_light(light, estimator, scene.render.direct, needs);
+  for (const SurfaceSettings& surface : scene.surfaces)
+    add_surface(surface, estimator, scene.render.direct, needs);
+  // It may be seen in a mirror, or by what it does to the light on surfaces.
+  needs.visible = needs.visible || (needs.medium && !scene.surfaces.empty());
   const int bounces = scene.render.max_bounces.value_or(std::numeric_limits<int>::max());
-  const bool lit = !scene.lights.empty() || needs.glows;
+  const bool lit = !needs.shadow_ray_lights.empty() || needs.glows;
   needs.scatters = needs.scatters && needs.visible && lit && bounces > 0;
   // No shadow ray looks for what glows: its first flight is left to photons.
   const bool first_flight =

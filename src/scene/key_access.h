@@ -23,6 +23,10 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.volumes[index].phase;
   else if constexpr (std::is_same_v<S, EmissionSettings>)
     return scene.volumes[index].emission;
+  else if constexpr (std::is_same_v<S, SurfaceSettings>)
+    return scene.surfaces[index];
+  else if constexpr (std::is_same_v<S, MaterialSettings>)
+    return scene.surfaces[index].material;
   else if constexpr (std::is_same_v<S, LightSettings>)
     return scene.lights[index];
   else

@@ -71,7 +71,7 @@ toml::node& list_element(toml::array& list, const std::string& name, const std::
 
 /// `phase = "mie"` becomes `phase = { type = "mie" }`, so that its keys can be set.
 void expand_shorthand(toml::table& table, const std::string& name) {
-  if (name != "phase" || !table[name].is_string())
+  if ((name != "phase" && name != "material") || !table[name].is_string())
     return;
   toml::table expanded;
   expanded.insert("type", *table[name].as_string());
@@ -86,7 +86,8 @@ toml::node& find_parent(toml::table& root, const std::vector<std::string>& parts
   for (std::size_t i = 0; i + 1 < parts.size();) {
     bool used = true;
     if (auto* table = node->as_table()) {
-      const bool is_list = i == 0 && (parts[0] == "volume" || parts[0] == "light");
+      const bool is_list =
+          i == 0 && (parts[0] == "volume" || parts[0] == "mesh" || parts[0] == "light");
       expand_shorthand(*table, parts[i]);
       if (!table->contains(parts[i])) {
         const std::string child = path + (path.empty() ? "" : ".") + parts[i];

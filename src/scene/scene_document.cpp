@@ -157,7 +157,8 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
 
 std::vector<SceneFile> SceneDocument::files() const {
   std::vector<SceneFile> files;
-  for (const auto& [list_name, key] : {std::pair("volume", "file"), std::pair("light", "image")}) {
+  for (const auto& [list_name, key] :
+       {std::pair("volume", "file"), std::pair("mesh", "file"), std::pair("light", "image")}) {
     const auto* list = root_.get_as<toml::array>(list_name);
     for (std::size_t i = 0; list && i < list->size(); ++i)
       if (const auto* table = (*list)[i].as_table())

@@ -31,6 +31,24 @@ struct EnumNames<EmissionLaw> {
        {EmissionLaw::none, "none"}}};
 };
 template <>
+struct EnumNames<SurfaceShape> {
+  static constexpr std::array<std::pair<SurfaceShape, std::string_view>, 4> table{
+      {{SurfaceShape::file, "file"},
+       {SurfaceShape::sphere, "sphere"},
+       {SurfaceShape::quad, "quad"},
+       {SurfaceShape::disk, "disk"}}};
+};
+template <>
+struct EnumNames<MaterialType> {
+  static constexpr std::array<std::pair<MaterialType, std::string_view>, 6> table{
+      {{MaterialType::diffuse, "diffuse"},
+       {MaterialType::mirror, "mirror"},
+       {MaterialType::conductor, "conductor"},
+       {MaterialType::dielectric, "dielectric"},
+       {MaterialType::emissive, "emissive"},
+       {MaterialType::holdout, "holdout"}}};
+};
+template <>
 struct EnumNames<DirectLight> {
   static constexpr std::array<std::pair<DirectLight, std::string_view>, 3> table{
       {{DirectLight::automatic, "auto"},

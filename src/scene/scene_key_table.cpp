@@ -206,6 +206,51 @@ void add_emission(Table& table) {
       .scales_emission();
 }
 
+void add_mesh(Table& table) {
+  using S = SurfaceSettings;
+  table.section(SceneSection::mesh);
+  table.add("type", &S::shape,
+            "triangles of a file, or a shape: the sphere of radius 1 about the origin, the square "
+            "from -1 to 1 in x and y, the disk of radius 1 in that plane; both face +z");
+  table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
+      .kind(KeyKind::file)
+      .types({"file"});
+  table.add("visible", &S::visible,
+            "whether the camera sees it; hidden, it still stops and reflects light");
+  table.add("transform", &S::transform,
+            "row-major 3x4 matrix from the shape to the world; excludes the next three");
+  table.add_unbound<Vec3d>("translate", "moves the shape, after rotating it").unit("world");
+  table.add_unbound<Vec3d>("rotate", "turns the shape about the world's X, then Y, then Z axis")
+      .unit("degrees");
+  table.add_unbound<Vec3d>("scale", "scales the shape about its origin, before rotating it")
+      .one_for_all();
+
+  using M = MaterialSettings;
+  table.section(SceneSection::material);
+  table.add("type", &M::type, R"(what it is made of; material = "NAME" is short for it)");
+  table.add("albedo", &M::albedo, "share of the light that is reflected, per channel")
+      .within(0, 1)
+      .types({"diffuse"});
+  table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
+      .within(0, 1)
+      .types({"mirror", "conductor"});
+  table.add("roughness", &M::roughness, "0: a mirror; the width of the GGX lobe is its square")
+      .within(0, 1)
+      .types({"conductor"});
+  table.add("ior", &M::ior, "index of refraction inside over that outside")
+      .within(0.1, 10)
+      .types({"dielectric"});
+  table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
+      .unit("1 / world")
+      .at_least(0)
+      .types({"dielectric"});
+  table.add("radiance", &M::radiance, "radiance that it sends out")
+      .unit("W / m^2 / sr")
+      .at_least(0)
+      .types({"emissive"});
+  table.add("two_sided", &M::two_sided, "whether its back shines too").types({"emissive"});
+}
+
 void add_light(Table& table) {
   using L = LightSettings;
   table.section(SceneSection::light);
@@ -331,6 +376,7 @@ std::vector<SceneKey> make_table() {
   add_image_and_camera(table);
   add_volume(table);
   add_emission(table);
+  add_mesh(table);
   add_light(table);
   add_render(table);
   std::vector<SceneKey> keys;

@@ -131,6 +131,7 @@ std::string SceneKey::default_text() const {
     return name == "scale" ? "[1, 1, 1]" : "[0, 0, 0]";
   Scene scene;
   scene.volumes.emplace_back();
+  scene.surfaces.emplace_back();
   scene.lights.emplace_back();
   const KeyValue value = get(scene, 0);
   if (std::holds_alternative<std::monostate>(value) && absent_word.empty())
@@ -178,6 +179,8 @@ std::vector<std::string> key_names(SceneSection section) {
       names.push_back(key.name);
   if (section == SceneSection::volume)
     names.insert(names.end(), {"phase", "emission", "time"});
+  if (section == SceneSection::mesh)
+    names.emplace_back("material");
   return names;
 }
 
@@ -193,6 +196,10 @@ std::string section_name(SceneSection section) {
     return "volume.phase";
   case SceneSection::emission:
     return "volume.emission";
+  case SceneSection::mesh:
+    return "mesh";
+  case SceneSection::material:
+    return "mesh.material";
   case SceneSection::light:
     return "light";
   case SceneSection::render:
@@ -209,6 +216,10 @@ std::string key_path(const SceneKey& key, std::size_t index) {
     return fmt::format("volume.{}.phase.{}", index, key.name);
   case SceneSection::emission:
     return fmt::format("volume.{}.emission.{}", index, key.name);
+  case SceneSection::mesh:
+    return fmt::format("mesh.{}.{}", index, key.name);
+  case SceneSection::material:
+    return fmt::format("mesh.{}.material.{}", index, key.name);
   case SceneSection::light:
     return fmt::format("light.{}.{}", index, key.name);
   default:
@@ -220,6 +231,8 @@ std::size_t section_count(const Scene& scene, SceneSection section) {
   if (section == SceneSection::volume || section == SceneSection::phase ||
       section == SceneSection::emission)
     return scene.volumes.size();
+  if (section == SceneSection::mesh || section == SceneSection::material)
+    return scene.surfaces.size();
   return section == SceneSection::light ? scene.lights.size() : 1;
 }
 

@@ -12,7 +12,7 @@
 namespace vdbeam {
 
 /// The tables of a scene file.
-enum class SceneSection { image, camera, volume, phase, emission, light, render };
+enum class SceneSection { image, camera, volume, phase, emission, mesh, material, light, render };
 
 /// What a key's value is in the file.
 enum class KeyKind {
@@ -74,7 +74,8 @@ struct SceneKey {
 
   bool is_list_item() const {
     return section == SceneSection::volume || section == SceneSection::phase ||
-           section == SceneSection::emission || section == SceneSection::light;
+           section == SceneSection::emission || section == SceneSection::mesh ||
+           section == SceneSection::material || section == SceneSection::light;
   }
   /// What is wrong with a value ("must lie in (-1, 1), got 1.2"), or nothing.
   std::optional<std::string> complaint(const KeyValue& value) const;
@@ -94,7 +95,8 @@ const SceneKey* find_key(SceneSection section, const std::string& name);
 /// Names of the keys of a section.
 std::vector<std::string> key_names(SceneSection section);
 
-/// "image", "camera", "volume", "volume.phase", "volume.emission", "light", "render".
+/// "image", "camera", "volume", "volume.phase", "volume.emission", "mesh", "mesh.material",
+/// "light", "render".
 std::string section_name(SceneSection section);
 /// The path of one key in a scene, e.g. "volume.0.phase.g".
 std::string key_path(const SceneKey& key, std::size_t index);

@@ -33,8 +33,8 @@ std::vector<Child> children_of(const toml::table& table) {
 const std::vector<std::pair<std::string, SceneSection>>& root_sections() {
   static const std::vector<std::pair<std::string, SceneSection>> sections{
       {"image", SceneSection::image},   {"camera", SceneSection::camera},
-      {"volume", SceneSection::volume}, {"light", SceneSection::light},
-      {"render", SceneSection::render},
+      {"volume", SceneSection::volume}, {"mesh", SceneSection::mesh},
+      {"light", SceneSection::light},   {"render", SceneSection::render},
   };
   return sections;
 }
@@ -46,6 +46,10 @@ std::string item_name(SceneSection section, std::size_t index) {
     return fmt::format("volume.{}.phase", index);
   if (section == SceneSection::emission)
     return fmt::format("volume.{}.emission", index);
+  if (section == SceneSection::mesh)
+    return fmt::format("mesh.{}", index);
+  if (section == SceneSection::material)
+    return fmt::format("mesh.{}.material", index);
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
@@ -111,7 +115,8 @@ void SceneReader::note_idle_keys() {
 }
 
 void SceneReader::read_section(SceneSection section, const toml::node& node) {
-  if (section == SceneSection::volume || section == SceneSection::light)
+  if (section == SceneSection::volume || section == SceneSection::mesh ||
+      section == SceneSection::light)
     return read_list(section, node);
   if (const auto* table = node.as_table())
     return read_table(section, 0, *table);
@@ -132,6 +137,8 @@ void SceneReader::read_list(SceneSection section, const toml::node& node) {
                                    name, i, node_text((*list)[i])));
     if (section == SceneSection::volume)
       scene_.volumes.emplace_back();
+    else if (section == SceneSection::mesh)
+      scene_.surfaces.emplace_back();
     else
       scene_.lights.emplace_back();
     read_table(section, i, *table);
@@ -150,7 +157,11 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
     if (key)
       read_key(*key, index, *child.node);
     else if (section == SceneSection::volume && child.name == "phase")
-      read_phase(index, *child.node);
+      read_typed_part(SceneSection::phase, index, *child.node,
+                      R"({ type = "henyey_greenstein", g = 0.6 })");
+    else if (section == SceneSection::mesh && child.name == "material")
+      read_typed_part(SceneSection::material, index, *child.node,
+                      R"({ type = "diffuse", albedo = 0.8 })");
     else if (section == SceneSection::volume && child.name == "emission")
       read_emission(index, *child.node);
     else if (section == SceneSection::volume && child.name == "time")
@@ -160,20 +171,20 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
   }
   check_required(section, index, table);
   check_types(section, index, table);
-  if (section == SceneSection::volume)
-    place_volume(index);
+  if (section == SceneSection::volume || section == SceneSection::mesh)
+    place(section, index);
 }
 
-void SceneReader::read_phase(std::size_t index, const toml::node& node) {
+/// A table that may be written as the name of its type alone.
+void SceneReader::read_typed_part(SceneSection section, std::size_t index, const toml::node& node,
+                                  const char* example) {
   if (node.is_string())
-    return read_key(*find_key(SceneSection::phase, "type"), index, node);
+    return read_key(*find_key(section, "type"), index, node);
   const auto* table = node.as_table();
   if (!table)
-    throw InputError(fmt::format(
-        "{}: volume.{}.phase must be a table, e.g. {{ type = \"henyey_greenstein\", g = 0.6 }}, "
-        "got {}",
-        location_of(node), index, node_text(node)));
-  read_part(SceneSection::phase, index, *table);
+    throw InputError(fmt::format("{}: {} must be a table, e.g. {}, got {}", location_of(node),
+                                 item_name(section, index), example, node_text(node)));
+  read_part(section, index, *table);
 }
 
 void SceneReader::read_emission(std::size_t index, const toml::node& node) {
@@ -293,11 +304,11 @@ void SceneReader::check_types(SceneSection section, std::size_t index,
   }
 }
 
-/// Folds translate, rotate and scale into the volume's transform.
-void SceneReader::place_volume(std::size_t index) {
+/// Folds translate, rotate and scale into the transform of a volume or mesh.
+void SceneReader::place(SceneSection section, std::size_t index) {
   if (placement_.empty())
     return;
-  const std::string path = fmt::format("volume.{}.transform", index);
+  const std::string item = item_name(section, index), path = item + ".transform";
   if (locations_.contains(path))
     throw InputError(fmt::format("{}: {} excludes {}: write one or the other", locate(path), path,
                                  placement_.begin()->first));
@@ -308,7 +319,7 @@ void SceneReader::place_volume(std::size_t index) {
   };
   const Vec3d factors = get("scale", 1);
   if (factors.x * factors.y * factors.z == 0) {
-    const std::string key = fmt::format("volume.{}.scale", index);
+    const std::string key = item + ".scale";
     throw InputError(fmt::format("{}: {} must not be 0 in any direction, got [{}, {}, {}]",
                                  locate(key), key, factors.x, factors.y, factors.z));
   }
@@ -320,7 +331,8 @@ void SceneReader::place_volume(std::size_t index) {
     a = c * old_a - s * b;
     b = s * old_a + c * b;
   };
-  std::array<double, 12>& m = scene_.volumes[index].transform;
+  std::array<double, 12>& m = section == SceneSection::volume ? scene_.volumes[index].transform
+                                                              : scene_.surfaces[index].transform;
   for (int column = 0; column < 3; ++column) {
     Vec3d axis;
     axis[column] = scale[column];
@@ -333,8 +345,7 @@ void SceneReader::place_volume(std::size_t index) {
   for (int row = 0; row < 3; ++row)
     m[4 * row + 3] = translate[row];
   for (const char* name : {"scale", "rotate", "translate"})
-    if (const auto key = locations_.find(fmt::format("volume.{}.{}", index, name));
-        key != locations_.end()) {
+    if (const auto key = locations_.find(item + "." + name); key != locations_.end()) {
       locations_[path] = key->second;
       break;
     }

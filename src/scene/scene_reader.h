@@ -33,13 +33,14 @@ private:
   void read_section(SceneSection section, const toml::node& node);
   void read_list(SceneSection section, const toml::node& node);
   void read_table(SceneSection section, std::size_t index, const toml::table& table);
-  void read_phase(std::size_t index, const toml::node& node);
+  void read_typed_part(SceneSection section, std::size_t index, const toml::node& node,
+                       const char* example);
   void read_emission(std::size_t index, const toml::node& node);
   void read_part(SceneSection section, std::size_t index, const toml::table& table);
   void read_key(const SceneKey& key, std::size_t index, const toml::node& node);
   void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
   void check_types(SceneSection section, std::size_t index, const toml::table& table) const;
-  void place_volume(std::size_t index);
+  void place(SceneSection section, std::size_t index);
   std::string resolve_file(const SceneKey& key, std::size_t index, const std::string& text,
                            const toml::node& node);
   std::string resolve_missing(const std::string& key, const std::string& pattern, int number,

@@ -1,5 +1,6 @@
 #include "scene/validate.h"
 
+#include "estimators/estimator_table.h"
 #include "lights/light_table.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
@@ -28,11 +29,14 @@ public:
   }
 
   void check_volume(std::size_t index) const {
-    const auto& m = scene_.volumes[index].transform;
+    check_transform(fmt::format("volume.{}.transform", index), scene_.volumes[index].transform);
+  }
+
+  void check_transform(const std::string& path, const std::array<double, 12>& m) const {
     const Vec3d a{m[0], m[1], m[2]}, b{m[4], m[5], m[6]}, c{m[8], m[9], m[10]};
     const double size = length(a) * length(b) * length(c);
     if (!(std::abs(dot(a, cross(b, c))) > 1e-12 * size))
-      fail(fmt::format("volume.{}.transform", index), "must be invertible (no scale may be 0)");
+      fail(path, "must be invertible (no scale may be 0)");
   }
 
   void check_emission(std::size_t index) const {
@@ -52,8 +56,21 @@ public:
       fail(fmt::format("light.{}.{}", index, complaint->key), complaint->text);
   }
 
+  void check_mesh(std::size_t index) const {
+    const SurfaceSettings& surface = scene_.surfaces[index];
+    if (surface.shape == SurfaceShape::file && surface.file.empty())
+      fail(fmt::format("mesh.{}", index),
+           "needs a file, or a type that needs none: sphere, quad or disk");
+    check_transform(fmt::format("mesh.{}.transform", index), surface.transform);
+  }
+
   void check_render() const {
     const RenderSettings& render = scene_.render;
+    if (!scene_.surfaces.empty() &&
+        !estimator_kind(render.estimator).stages.contains(Stage::surfaces))
+      fail("render.estimator", fmt::format("is \"{}\", which cannot render a [[mesh]] yet: write "
+                                           "estimator = \"path\"",
+                                           render.estimator.name));
     if (render.kernel == KernelRadius::fixed && render.radius == 0)
       fail("render.kernel", "is \"fixed\": render.radius is needed too");
     if (render.min_radius > 0 && render.max_radius > 0 && render.min_radius > render.max_radius)
@@ -79,6 +96,8 @@ void validate_consistency(const Scene& scene, const KeyLocator& locate) {
     checker.check_volume(i);
   for (std::size_t i = 0; i < scene.volumes.size(); ++i)
     checker.check_emission(i);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    checker.check_mesh(i);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     checker.check_light(i);
   checker.check_render();

@@ -150,12 +150,12 @@ void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& wor
   auto surfaces = std::make_shared<Surfaces>(*world.surfaces);
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const MaterialSettings& material = settings[i].material;
-    if (material.type != MaterialType::emissive || !(max_component(material.radiance) > 0))
+    if (!shines(material))
       continue;
     surfaces->lights[i] = static_cast<int>(world.lights.size());
     world.lights.add(std::make_unique<SurfaceLight>(surfaces->set, static_cast<int>(i),
                                                     material.radiance, material.two_sided),
-                     DirectLight::automatic, settings[i].visible);
+                     {settings[i].visible, false});
   }
   world.surfaces = std::move(surfaces);
 }

@@ -1,8 +1,8 @@
 #include "volume/vdb_parse.h"
 
+#include "machine/mapped_file.h"
 #include "vdbeam/error.h"
 #include "volume/density_kind.h"
-#include "machine/mapped_file.h"
 #include "volume/raw_grid.h"
 #include "volume/vdb_names.h"
 

@@ -1,9 +1,9 @@
 #include "volume/vdb_reader.h"
 
+#include "machine/guarded_process.h"
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
-#include "machine/guarded_process.h"
 #include "volume/raw_grid.h"
 #include "volume/summary_codec.h"
 #include "volume/vdb_parse.h"

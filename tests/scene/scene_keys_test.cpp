@@ -21,6 +21,7 @@ TEST(SceneKeys, NamesAreUniqueAndDocumented) {
 TEST(SceneKeys, DefaultsAreValid) {
   Scene scene;
   scene.volumes.emplace_back();
+  scene.surfaces.emplace_back();
   scene.lights.emplace_back();
   for (const SceneKey& key : scene_keys())
     if (key.get && !key.required) {
@@ -34,7 +35,8 @@ TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
   text << stream.rdbuf();
   for (const SceneSection section :
        {SceneSection::image, SceneSection::camera, SceneSection::volume, SceneSection::phase,
-        SceneSection::emission, SceneSection::light, SceneSection::render})
+        SceneSection::emission, SceneSection::mesh, SceneSection::material, SceneSection::light,
+        SceneSection::render})
     EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
         << "docs/scene.md lacks this table of " << section_name(section) << ":\n"
         << key_table_markdown(section);

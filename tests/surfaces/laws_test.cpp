@@ -86,12 +86,11 @@ TEST(SurfaceFormFactor, parallel_squares) {
   scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.5 / 1000) * 180 / M_PI, 16, 16);
   const PassMeans means = render_passes(scene, EstimatorType::path, 64);
   const double x = 1, y = 1; // side over distance
-  const double factor =
-      2 / (M_PI * x * y) *
-      (std::log(std::sqrt((1 + x * x) * (1 + y * y) / (1 + x * x + y * y))) +
-       x * std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)) +
-       y * std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) - x * std::atan(x) -
-       y * std::atan(y));
+  const double factor = 2 / (M_PI * x * y) *
+                        (std::log(std::sqrt((1 + x * x) * (1 + y * y) / (1 + x * x + y * y))) +
+                         x * std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)) +
+                         y * std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) -
+                         x * std::atan(x) - y * std::atan(y));
   EXPECT_NEAR(factor, 0.1998, 1e-4);
   test::expect_mean(means.total[0], factor);
 }
@@ -163,10 +162,9 @@ TEST(SurfaceKirchhoff, emissive_wall_and_absorbing_medium) {
   VolumeSettings& box = scene.add_box(Vec3d(-1), Vec3d(1));
   box.extinction = 1.5;
   box.albedo = Rgb(0.4f);
-  scene.glow(test::uniform_field({1, 1, 1}, 1), test::box_map({1, 1, 1}, Vec3d(-1), Vec3d(1))).scale =
-      1.5 * 0.6;
-  SurfaceSettings& wall =
-      add_surface(scene, SurfaceShape::sphere, scaled(2), shining(1));
+  scene.glow(test::uniform_field({1, 1, 1}, 1), test::box_map({1, 1, 1}, Vec3d(-1), Vec3d(1)))
+      .scale = 1.5 * 0.6;
+  SurfaceSettings& wall = add_surface(scene, SurfaceShape::sphere, scaled(2), shining(1));
   wall.material.two_sided = true;
   add_surface(scene, SurfaceShape::sphere, scaled(0.5), white());
   scene.look({0, 0, 1.8}, {0, 0, 0}, 60, 6, 6);
@@ -200,8 +198,8 @@ TEST(Surfaces, holdouts_are_black_and_transparent) {
   scene.scene.surfaces[0].material = white();
   const PassMeans solid = render_passes(scene, EstimatorType::path, 4);
   EXPECT_NEAR(solid.opacity.mean(), 1, 1e-6);
-  EXPECT_NEAR(solid.depth.mean(), (1 - std::exp(-0.5)) * (3 + 1 / 0.5 - 1 / (std::exp(0.5) - 1)) +
-                                      std::exp(-0.5) * 4,
+  EXPECT_NEAR(solid.depth.mean(),
+              (1 - std::exp(-0.5)) * (3 + 1 / 0.5 - 1 / (std::exp(0.5) - 1)) + std::exp(-0.5) * 4,
               0.02);
 }
 

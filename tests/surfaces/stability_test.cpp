@@ -1,0 +1,89 @@
+#include "support/render_passes.h"
+#include "support/surface_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using test::expect_mean;
+using test::MemoryScene;
+using test::PassMeans;
+using test::render_passes;
+using namespace test::surfaces;
+
+MaterialSettings glass() {
+  return of_type(MaterialType::dielectric);
+}
+MaterialSettings white() {
+  MaterialSettings material;
+  material.albedo = Rgb(1);
+  return material;
+}
+
+/// Radiance over the square of the index is the same inside.
+TEST(SurfaceStability, camera_inside_glass) {
+  MemoryScene scene;
+  scene.add_light(LightType::environment).radiance = Rgb(1);
+  add_surface(scene, SurfaceShape::sphere, scaled(1), glass());
+  scene.look({0, 0, 0}, {0, 0, -1}, 60, 4, 4);
+  expect_mean(render_passes(scene, EstimatorType::path, 64).total[0], 2.25, 1e-3);
+}
+
+TEST(SurfaceStability, camera_inside_a_solid_sees_nothing) {
+  MemoryScene scene;
+  scene.add_light(LightType::environment).radiance = Rgb(1);
+  scene.add_light(LightType::distant);
+  add_surface(scene, SurfaceShape::sphere, scaled(1), white());
+  scene.look({0, 0, 0}, {0, 0, -1}, 60, 4, 4);
+  const PassMeans means = render_passes(scene, EstimatorType::path, 4);
+  EXPECT_EQ(means.total[0].mean(), 0);
+}
+
+TEST(SurfaceStability, a_medium_half_inside_glass_is_a_furnace) {
+  MemoryScene scene;
+  scene.add_box(Vec3d(-1), Vec3d(1)).extinction = 2;
+  scene.add_light(LightType::environment).radiance = Rgb(1);
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.7), {1, 0, 0}), glass());
+  scene.look({0, 0.5, 5}, {0.5, 0, 0}, 40, 8, 8);
+  expect_mean(render_passes(scene, EstimatorType::path, 100).total[0], 1);
+}
+
+/// A lamp that lies in the plane of a wall lights as one just before it.
+TEST(SurfaceStability, a_lamp_on_a_wall) {
+  const auto floor_with_lamp_at = [](double height) {
+    MemoryScene scene;
+    add_surface(scene, SurfaceShape::disk, moved(scaled(0.4), {0, 0, height}), shining(1));
+    add_surface(scene, SurfaceShape::quad, scaled(1), white());
+    add_surface(scene, SurfaceShape::quad, moved(scaled(1), {0, 0, 1}, true), white());
+    scene.look({0, 0, 0.5}, {0.2, 0, 1}, 60, 6, 6);
+    return render_passes(scene, EstimatorType::path, 256).total[0];
+  };
+  test::expect_same_mean(floor_with_lamp_at(0), floor_with_lamp_at(1e-4), 1e-3);
+}
+
+/// The same scene at any scale and place gives the same picture.
+TEST(SurfaceStability, scale_and_place_do_not_matter) {
+  const auto render_at = [](double scale, const Vec3d& at) {
+    MemoryScene scene;
+    scene.add_box(at - Vec3d(scale), at + Vec3d(scale)).extinction = 1 / scale;
+    LightSettings& sun = scene.add_light(LightType::distant);
+    sun.direction = {0.3, -1, 0.2};
+    sun.angular_radius = 2;
+    MaterialSettings ground;
+    ground.albedo = Rgb(0.5f);
+    SurfaceSettings& plane = add_surface(scene, SurfaceShape::quad, scaled(1), ground);
+    plane.transform = {3 * scale,          0, 0,          at.x, 0,   0, scale,
+                       at.y - 0.9 * scale, 0, -3 * scale, 0,    at.z};
+    add_surface(scene, SurfaceShape::sphere, moved(scaled(0.4 * scale), at), glass());
+    scene.look(at + Vec3d{0, 1, 5} * scale, at, 40, 16, 12);
+    return render_passes(scene, EstimatorType::path, 48).total[0];
+  };
+  const test::Samples reference = render_at(1, {0, 0, 0});
+  test::expect_same_mean(render_at(1e-3, {0, 0, 0}), reference);
+  test::expect_same_mean(render_at(1e4, {0, 0, 0}), reference);
+  test::expect_same_mean(render_at(1, {1e6, 2e6, -1e6}), reference);
+}
+
+} // namespace
+} // namespace vdbeam
