@@ -146,6 +146,17 @@ void add_image_and_camera(Table& table) {
       .keeps_world();
 }
 
+/// Where a volume or mesh stands.
+template <class S>
+void add_placement(Table& table, std::array<double, 12> S::*transform) {
+  table.add("transform", transform,
+            "row-major 3x4 matrix applied after its own transform; excludes the next three");
+  table.add_unbound<Vec3d>("translate", "moves it, after rotating it").unit("world");
+  table.add_unbound<Vec3d>("rotate", "turns it about the world's X, then Y, then Z axis")
+      .unit("degrees");
+  table.add_unbound<Vec3d>("scale", "scales it about the origin, before rotating it").one_for_all();
+}
+
 void add_volume(Table& table) {
   using V = VolumeSettings;
   table.section(SceneSection::volume);
@@ -162,13 +173,7 @@ void add_volume(Table& table) {
   table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
       .within(0, 1)
       .always_written();
-  table.add("transform", &V::transform,
-            "row-major 3x4 matrix applied after the grid's own transform; excludes the next three");
-  table.add_unbound<Vec3d>("translate", "moves the volume, after rotating it").unit("world");
-  table.add_unbound<Vec3d>("rotate", "turns the volume about the world's X, then Y, then Z axis")
-      .unit("degrees");
-  table.add_unbound<Vec3d>("scale", "scales the volume about the origin, before rotating it")
-      .one_for_all();
+  add_placement(table, &V::transform);
 
   using P = PhaseSettings;
   table.section(SceneSection::phase);
@@ -211,19 +216,13 @@ void add_mesh(Table& table) {
   table.section(SceneSection::mesh);
   table.add("type", &S::shape,
             "triangles of a file, or a shape: the sphere of radius 1 about the origin, the square "
-            "from -1 to 1 in x and y, the disk of radius 1 in that plane; both face +z");
+            "from -1 to 1 in x and y, the disk of radius 1 in that plane; the latter two face +z");
   table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
       .kind(KeyKind::file)
       .types({"file"});
   table.add("visible", &S::visible,
             "whether the camera sees it; hidden, it still stops and reflects light");
-  table.add("transform", &S::transform,
-            "row-major 3x4 matrix from the shape to the world; excludes the next three");
-  table.add_unbound<Vec3d>("translate", "moves the shape, after rotating it").unit("world");
-  table.add_unbound<Vec3d>("rotate", "turns the shape about the world's X, then Y, then Z axis")
-      .unit("degrees");
-  table.add_unbound<Vec3d>("scale", "scales the shape about its origin, before rotating it")
-      .one_for_all();
+  add_placement(table, &S::transform);
 
   using M = MaterialSettings;
   table.section(SceneSection::material);

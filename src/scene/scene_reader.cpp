@@ -293,6 +293,8 @@ void SceneReader::check_types(SceneSection section, std::size_t index,
   const bool type_replaced = type_node && is_override(*type_node);
   for (const Child& child : children_of(table)) {
     const SceneKey* key = find_key(section, child.name);
+    if (!key) // a table of its own
+      continue;
     const bool fits = key->types.empty() ||
                       std::find(key->types.begin(), key->types.end(), type) != key->types.end();
     // The command line may change the type; what the file says for the old type is then moot.

@@ -7,13 +7,6 @@
 namespace vdbeam {
 namespace {
 
-Affine to_affine(const std::array<double, 12>& m) {
-  Affine a;
-  a.rows = {Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}};
-  a.translation = {m[3], m[7], m[11]};
-  return a;
-}
-
 Affine moved(const Vec3d& by) {
   Affine map;
   map.translation = by;
@@ -40,7 +33,7 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
   std::map<SurfaceShape, std::shared_ptr<const Shape>> simple;
   std::vector<WorldShape> shapes;
   for (const SurfaceSettings& surface : settings) {
-    const Affine placed = to_affine(surface.transform);
+    const Affine placed = Affine::from_matrix(surface.transform);
     if (surface.shape != SurfaceShape::file) {
       std::shared_ptr<const Shape>& shape = simple[surface.shape];
       if (!shape)

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
                  "s.toml:2: unknown key image.zzz; its keys are width, height and fps"},
-        BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
+        BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, mesh, "
                               "light and render"}));
 
 INSTANTIATE_TEST_SUITE_P(
