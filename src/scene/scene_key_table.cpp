@@ -220,25 +220,20 @@ void add_mesh(Table& table) {
   table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
       .kind(KeyKind::file)
       .types({"file"});
-  table.add("visible", &S::visible,
-            "whether the camera sees it; hidden, it still stops and reflects light");
+  table.add("visible", &S::visible, "whether the camera sees it; it stops light in any case");
   add_placement(table, &S::transform);
 
   using M = MaterialSettings;
   table.section(SceneSection::material);
   table.add("type", &M::type, R"(what it is made of; material = "NAME" is short for it)");
-  table.add("albedo", &M::albedo, "share of the light that is reflected, per channel")
-      .within(0, 1)
-      .types({"diffuse"});
+  table.add("albedo", &M::albedo, "share of light reflected").within(0, 1).types({"diffuse"});
   table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
       .within(0, 1)
       .types({"mirror", "conductor"});
   table.add("roughness", &M::roughness, "0: a mirror; the width of the GGX lobe is its square")
       .within(0, 1)
       .types({"conductor"});
-  table.add("ior", &M::ior, "index of refraction inside over that outside")
-      .within(0.1, 10)
-      .types({"dielectric"});
+  table.add("ior", &M::ior, "index inside over that outside").within(0.1, 10).types({"dielectric"});
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")
       .at_least(0)
