@@ -9,7 +9,8 @@ namespace {
 
 using SceneHash = test::SceneTest;
 
-const char* const text = "[[volume]]\nfile = 'cloud.vdb'\n[[light]]\ntype = 'environment'\n";
+const char* const text = "[[volume]]\nfile = 'cloud.vdb'\n[[light]]\ntype = 'environment'\n"
+                         "[[mesh]]\ntype = 'quad'\n[render]\nestimator = 'path'\n";
 
 TEST_F(SceneHash, IsSixteenHexDigitsAndStable) {
   const std::string hash = scene_hash(load(text));
@@ -61,6 +62,14 @@ TEST_F(SceneHash, ContentsOfTheVolumeChangeIt) {
   const std::string hash = scene_hash(load(text));
   write("cloud.vdb", "First");
   EXPECT_NE(scene_hash(load(text)), hash);
+}
+
+TEST_F(SceneHash, ContentsOfAMeshChangeIt) {
+  const std::string mesh = "[[mesh]]\nfile = 'rock.obj'\n[render]\nestimator = 'path'\n";
+  write("rock.obj", "first");
+  const std::string hash = scene_hash(load(mesh));
+  write("rock.obj", "other");
+  EXPECT_NE(scene_hash(load(mesh)), hash);
 }
 
 TEST_F(SceneHash, OrderOfVolumesCounts) {
