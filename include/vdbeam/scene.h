@@ -1,10 +1,13 @@
 #pragma once
 
+#include "vdbeam/camera_settings.h"
 #include "vdbeam/emission_settings.h"
 #include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
+#include "vdbeam/layer_settings.h"
 #include "vdbeam/surface_settings.h"
 #include "vdbeam/vec.h"
+#include "vdbeam/volume_edits.h"
 
 #include <array>
 #include <cstdint>
@@ -16,20 +19,6 @@ namespace vdbeam {
 
 /// What the user asked for, as plain values in world units; docs/scene.md gives every key, its
 /// unit, range and default. `load_scene` fills it from a file, programs may fill it by hand.
-
-struct ImageSettings {
-  int width = 640;  ///< pixels
-  int height = 360; ///< pixels
-  std::optional<double> fps =
-      std::nullopt; ///< frames per second of the shot, for the image's attributes alone
-};
-
-struct CameraSettings {
-  Vec3d position{0, 0, 5};
-  Vec3d look_at{0, 0, 0};
-  Vec3d up{0, 1, 0};
-  double fov = 30; ///< vertical, degrees
-};
 
 enum class PhaseType { isotropic, henyey_greenstein, rayleigh, two_lobe, mie };
 
@@ -50,6 +39,11 @@ struct VolumeSettings {
   Rgb albedo{1, 1, 1};             ///< sigma_s / sigma_t per channel, in [0, 1]
   PhaseSettings phase;
   EmissionSettings emission;
+  VelocitySettings velocity;
+  DensityRemap remap;
+  std::string color;              ///< name of a vec3 grid that scales the albedo; empty: none
+  std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]
+  std::optional<Vec3d> box_upper;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
@@ -78,6 +72,7 @@ struct LightSettings {
   std::string image;                 ///< environment: lat-long EXR or HDR, empty for constant
   double rotation = 0;               ///< environment: about the up axis, degrees
   bool visible = true;               ///< to the camera; a hidden light still lights the medium
+  std::string group;                 ///< of lights that share a layer; empty: none
   std::optional<DirectLight> direct; ///< overrides render.direct for this light
 };
 
@@ -124,6 +119,9 @@ struct RenderSettings {
 
 struct Scene {
   std::string path; ///< where it came from, for messages
+  /// The scene at moments between the shutter's opening and closing, in their order; empty where
+  /// nothing moves or the shutter is open for no time. Passes see one of them each.
+  std::vector<Scene> moments;
   FrameTime frame;  ///< which frame of a sequence it is
   ImageSettings image;
   CameraSettings camera;
@@ -131,6 +129,7 @@ struct Scene {
   std::vector<SurfaceSettings> surfaces;
   std::vector<LightSettings> lights;
   RenderSettings render;
+  std::vector<LayerSettings> layers; ///< empty: those that every picture has
   bool black = false;             ///< a volume's file is missing and the frame is to be black
   std::vector<std::string> notes; ///< for the user: what load_scene chose or found odd
 

@@ -26,6 +26,8 @@ namespace {
 
 /// The reference, which must have the picture's size, before any time goes into rendering.
 Image read_reference(const std::string& path, const ImageSettings& size) {
+  if (size.overscan > 0)
+    throw InputError("--reference: excludes image.overscan");
   Image reference = read_image(path);
   if (reference.width != size.width || reference.height != size.height)
     throw InputError(fmt::format("--reference {}: is {}x{}, but the picture is {}x{}; use "
@@ -232,8 +234,14 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
 void FrameRenderer::write_black(const LoadedFrame& loaded) const {
   RenderResult result;
   result.stopped_by = "missing";
-  Film film(loaded.scene.image.width, loaded.scene.image.height);
+  const ImageSettings& size = loaded.scene.image;
+  Film film(size.raster_width(), size.raster_height());
   result.image = film.develop();
+  if (size.overscan > 0) {
+    result.image.x = result.image.y = -size.overscan;
+    result.image.full_width = size.width;
+    result.image.full_height = size.height;
+  }
   add_metadata(result.image, loaded, result);
   write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
   if (!options_.files.preview.empty())

@@ -8,19 +8,27 @@ namespace {
 
 /// Frame and directions. The reference lies on the central ray, beside the medium's centre.
 void fill_frame(const World& world, const Camera& camera, const TileRays& rays, BeamTile& tile) {
-  const Vec3d w = camera.direction(rays.x0() + 0.5 * 16, rays.y0() + 0.5 * 16);
+  const EyeRay middle = camera.ray(rays.x0() + 0.5 * 16, rays.y0() + 0.5 * 16);
+  const Vec3d& w = middle.direction;
   Vec3d u, v;
   orthonormal_frame(w, u, v);
-  const double distance = std::max(0.0, dot(Vec3d(world.region.center) - camera.origin(), w));
-  tile.reference = Vec3f(camera.origin() + w * distance);
+  const double distance = std::max(0.0, dot(Vec3d(world.region.center) - middle.origin, w));
+  tile.reference = Vec3f(middle.origin + w * distance);
   tile.axis_u = Vec3f(u);
   tile.axis_v = Vec3f(v);
   tile.axis_w = Vec3f(w);
   tile.camera_distance = distance;
   for (int i = 0; i < TileRays::count; ++i) {
-    tile.du[i] = static_cast<float>(dot(rays[i].direction, u));
-    tile.dv[i] = static_cast<float>(dot(rays[i].direction, v));
-    tile.dw[i] = static_cast<float>(dot(rays[i].direction, w));
+    tile.du[i] = static_cast<float>(dot(rays[i].eye.direction, u));
+    tile.dv[i] = static_cast<float>(dot(rays[i].eye.direction, v));
+    tile.dw[i] = static_cast<float>(dot(rays[i].eye.direction, w));
+  }
+  tile.own_origins = camera.has_own_origins();
+  for (int i = 0; i < TileRays::count && tile.own_origins; ++i) {
+    const Vec3d start = rays[i].eye.origin - middle.origin;
+    tile.ou[i] = static_cast<float>(dot(start, u));
+    tile.ov[i] = static_cast<float>(dot(start, v));
+    tile.ow[i] = static_cast<float>(dot(start, w));
   }
 }
 

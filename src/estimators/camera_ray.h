@@ -19,19 +19,26 @@ struct CameraRay {
   }
 };
 
-inline CameraRay camera_ray(const World& world, const Camera& camera, double px, double py) {
+inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeRay& eye) {
   CameraRay result;
-  const Vec3d direction = camera.direction(px, py);
-  const Vec3d to_center = Vec3d(world.region.center) - camera.origin();
-  result.shift = std::max(0.0, dot(to_center, direction) - 1.001 * world.region.radius);
-  result.segment.ray = {Vec3f(camera.origin() + direction * result.shift), Vec3f(direction)};
+  const Vec3d to_center = Vec3d(world.region.center) - eye.origin;
+  result.shift = std::max(0.0, dot(to_center, eye.direction) - 1.001 * world.region.radius);
+  result.segment.ray = {Vec3f(eye.origin + eye.direction * result.shift), Vec3f(eye.direction)};
   if (world.medium.visible())
     result.segment = world.medium.clip(result.segment);
   else
     result.segment.t_end = 0;
+  double nearest = 0, farthest = static_cast<double>(infinity);
+  if (camera.clips()) {
+    nearest = camera.nearest(eye.direction);
+    farthest = camera.farthest(eye.direction);
+    Segment& s = result.segment;
+    s.t_begin = std::max(s.t_begin, static_cast<float>(nearest - result.shift));
+    s.t_end = std::min(s.t_end, static_cast<float>(farthest - result.shift));
+  }
   if (world.surfaces) {
-    result.hit = world.surfaces->set->intersect(camera.origin(), direction, 0,
-                                                static_cast<double>(infinity), true);
+    result.hit =
+        world.surfaces->set->intersect(eye.origin, eye.direction, nearest, farthest, true);
     result.segment.t_end = std::min(result.segment.t_end, result.whole().t_end);
   }
   return result;

@@ -140,9 +140,9 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   const Camera& camera = input_.camera;
   const std::size_t width = static_cast<std::size_t>(camera.width());
   Rng jitter(key, RngStage::camera, pixel);
-  const double x = static_cast<double>(pixel % width) + static_cast<double>(jitter.uniform());
-  const double y = static_cast<double>(pixel / width) + static_cast<double>(jitter.uniform());
-  trace(camera_ray(input_.world, camera, x, y), key, pixel, scratch, target, image);
+  const EyeRay eye =
+      camera.sample(static_cast<int>(pixel % width), static_cast<int>(pixel / width), jitter);
+  trace(camera_ray(input_.world, camera, eye), key, pixel, scratch, target, image);
   take_turns(scratch.walks, walks_under_way, image);
 }
 

@@ -40,8 +40,9 @@ double count_hits(const EstimatorInput& input) {
   int hits = 0;
   for (int y = 0; y < samples && !input.stopped(); ++y)
     for (int x = 0; x < samples; ++x) {
-      const CameraRay ray = camera_ray(input.world, camera, (x + 0.5) * camera.width() / samples,
-                                       (y + 0.5) * camera.height() / samples);
+      const CameraRay ray = camera_ray(
+          input.world, camera,
+          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
       profile.build(input.world.medium, ray.segment, 0.5f);
       hits += !profile.empty();
     }

@@ -15,9 +15,8 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
     const int px = std::min(x, camera.width() - 1), py = std::min(y, camera.height() - 1);
     out.pixel = static_cast<std::size_t>(py) * camera.width() + px;
     Rng rng(key, RngStage::camera, out.pixel);
-    const double jitter_x = rng.uniform(), jitter_y = rng.uniform();
-    out.direction = camera.direction(px + jitter_x, py + jitter_y);
-    out.camera = camera_ray(world, camera, px + jitter_x, py + jitter_y);
+    out.eye = camera.sample(px, py, rng);
+    out.camera = camera_ray(world, camera, out.eye);
     Segment segment = out.camera.segment;
     if (!out.inside)
       segment.t_end = segment.t_begin;

@@ -21,7 +21,7 @@ public:
 
   struct PixelRay {
     CameraRay camera;
-    Vec3d direction; ///< of the ray, double precision
+    EyeRay eye; ///< the ray in double precision
     DepthProfile profile;
     std::size_t pixel = 0;
     bool inside = false; ///< the pixel exists

@@ -104,8 +104,9 @@ CellTables view_importance(const World& world, const Camera& camera, float reach
   tbb::parallel_for(0, rows, [&](int row) {
     DepthProfile& profile = profiles.local();
     for (int column = 0; column < columns; ++column) {
-      const CameraRay ray = camera_ray(world, camera, (column + 0.5) * camera.width() / columns,
-                                       (row + 0.5) * camera.height() / rows);
+      const EyeRay eye = camera.ray((column + 0.5) * camera.width() / columns,
+                                    (row + 0.5) * camera.height() / rows);
+      const CameraRay ray = camera_ray(world, camera, eye);
       profile.build(medium, ray.segment, floor);
       for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
         mark_cells(medium, v, hidden, ray.segment.ray, profile, tables[v]);

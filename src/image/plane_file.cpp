@@ -37,9 +37,12 @@ void visit_slices(const ImagePlane& plane, const Imath::Box2i& window, const Vis
 
 /// A picture's windows, or those of a part of one that begins at (0, 0).
 bool are_windows(const Imath::Box2i& data, const Imath::Box2i& display) {
-  return !data.isEmpty() && display.min == Imath::V2i(0, 0) && display.intersects(data.min) &&
-         display.intersects(data.max) && display.max.x < largest_side &&
-         display.max.y < largest_side;
+  // Overscan reaches beyond the display window.
+  const auto within = [](const Imath::V2i& p) {
+    return std::abs(p.x) < largest_side && std::abs(p.y) < largest_side;
+  };
+  return !data.isEmpty() && display.min == Imath::V2i(0, 0) && within(data.min) &&
+         within(data.max) && within(display.max) && display.intersects(data);
 }
 
 void write_file(const Image& picture, const std::vector<ImagePlane>& planes, AtomicFile& file) {

@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// 16 x 16 camera rays with one origin, as the beam query takes them: 16 sub-tiles of 4 x 4 rays.
-/// Ray r of sub-tile s has index 16 s + r everywhere below.
+/// 16 x 16 camera rays, as the beam query takes them: 16 sub-tiles of 4 x 4 rays. Ray r of sub-tile
+/// s has index 16 s + r everywhere below. All start at one point, unless `own_origins` is set.
 ///
 /// All positions are relative to `reference`, a point of the tile's central ray near the medium, in
 /// the tile's frame (axis_u, axis_v, axis_w), so a camera far away costs no precision: a ray starts
@@ -23,6 +23,10 @@ struct BeamTile {
   alignas(64) float du[ray_count]{}; ///< unit directions in the tile's frame
   alignas(64) float dv[ray_count]{};
   alignas(64) float dw[ray_count]{};
+  bool own_origins = false; ///< a ray starts at (ou, ov, ow) from that point, in the tile's frame
+  alignas(64) float ou[ray_count]{};
+  alignas(64) float ov[ray_count]{};
+  alignas(64) float ow[ray_count]{};
 
   /// What the medium makes of a photon at distance t on each ray, per sub-tile at uniform knots
   /// t_k = t_begin + k * step, linear in between, 0 before the first and after the last knot:

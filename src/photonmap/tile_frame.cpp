@@ -1,6 +1,7 @@
 #include "photonmap/tile_frame.h"
 
 #include "math/sampling.h"
+#include "photonmap/tile_bounds.h"
 
 #include <bit>
 
@@ -11,61 +12,6 @@ constexpr int rays = BeamTile::rays_per_subtile;
 
 /// Tangent of the widest cone whose rays share knots and measure distances across its axis.
 constexpr double widest_shared_spread = 0.05;
-
-struct TangentBox {
-  double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
-  double cos0 = 1, cos1 = 0; ///< least and greatest dw
-  bool wide = false;         ///< some ray is nearly square to the axis: no bound in tangents
-
-  void extend(const TangentBox& box) {
-    a0 = std::min(a0, box.a0);
-    a1 = std::max(a1, box.a1);
-    b0 = std::min(b0, box.b0);
-    b1 = std::max(b1, box.b1);
-    cos0 = std::min(cos0, box.cos0);
-    cos1 = std::max(cos1, box.cos1);
-    wide = wide || box.wide;
-  }
-};
-
-Vec3d ray_direction(const BeamTile& tile, int ray) {
-  return {tile.du[ray], tile.dv[ray], tile.dw[ray]};
-}
-
-/// Rays of a tile's unused part may be left without a direction.
-bool is_live(const Vec3d& d) {
-  const double square = dot(d, d);
-  return square > 0.25 && square < 4;
-}
-
-TangentBox bound_tangents(const BeamTile& tile, int subtile) {
-  TangentBox box;
-  for (int r = 0; r < rays; ++r) {
-    const Vec3d d = ray_direction(tile, subtile * rays + r);
-    if (!is_live(d))
-      continue;
-    if (d.z < 0.05) {
-      box.wide = true;
-      box.cos0 = -1;
-      box.cos1 = 1;
-      return box;
-    }
-    const double a = d.x / d.z, b = d.y / d.z;
-    box.a0 = std::min(box.a0, a);
-    box.a1 = std::max(box.a1, a);
-    box.b0 = std::min(box.b0, b);
-    box.b1 = std::max(box.b1, b);
-    box.cos0 = std::min(box.cos0, d.z);
-    box.cos1 = std::max(box.cos1, d.z);
-  }
-  const double margin_a = 1e-4 * (box.a1 - box.a0) + 1e-6;
-  const double margin_b = 1e-4 * (box.b1 - box.b0) + 1e-6;
-  box.a0 -= margin_a;
-  box.a1 += margin_a;
-  box.b0 -= margin_b;
-  box.b1 += margin_b;
-  return box;
-}
 
 bool row_is_zero(const float* weights, std::size_t rows, int knots, int knot) {
   for (std::size_t row = 0; row < rows; ++row) {
@@ -89,6 +35,16 @@ bool trim_knots(std::size_t rows, SubtileFrame& s) {
   s.first_knot = static_cast<float>(std::max(0, first - 1));
   s.last_knot = static_cast<float>(std::min(s.knots - 1, last + 1));
   return first < s.knots;
+}
+
+/// A vector of the tile's frame in the sub-tile's.
+Vec3d in_subtile(const Vec3d& v, const BeamTile& tile, const SubtileFrame& s) {
+  const Vec3d world =
+      Vec3d(tile.axis_u) * v.x + Vec3d(tile.axis_v) * v.y + Vec3d(tile.axis_w) * v.z;
+  Vec3d result;
+  for (int i = 0; i < 3; ++i)
+    result[i] = dot(Vec3d{s.axes[i][0], s.axes[i][1], s.axes[i][2]}, world);
+  return result;
 }
 
 /// Fills axes and the rays' coordinates; returns the cone's tangent, negative without any ray.
@@ -152,6 +108,50 @@ PhaseMode phase_mode(const std::vector<PhaseFunction>& phases, double spread, bo
   return error < 1e-3 && phases.size() == 1 ? PhaseMode::linear : PhaseMode::exact;
 }
 
+/// The rest of a sub-tile whose rays have origins of their own: where they start, and the cone that
+/// holds them where they have weights.
+void finish_own_origins(const BeamTile& tile, int index, float reach, bool has_directions,
+                        SubtileFrame& s) {
+  const BeamTile::Profile& profile = tile.profiles[index];
+  const double t0 = profile.t_begin + static_cast<double>(s.first_knot) * profile.step;
+  const double t1 = profile.t_begin + static_cast<double>(s.last_knot) * profile.step;
+  double w0 = 1e30, w1 = -1e30, largest_shift = 0, largest_stretch = 0;
+  for (int r = 0; r < rays; ++r) {
+    const Vec3d o = in_subtile(ray_start(tile, index * rays + r), tile, s);
+    s.ou[r] = static_cast<float>(o.x - s.a[r] * o.z);
+    s.ov[r] = static_cast<float>(o.y - s.b[r] * o.z);
+    const double shift = o.z / s.dw[r] / profile.step;
+    s.knot_shift[r] = static_cast<float>(shift);
+    if (s.scale[r] == 0)
+      continue;
+    w0 = std::min(w0, o.z + t0 * s.dw[r]);
+    w1 = std::max(w1, o.z + t1 * s.dw[r]);
+    largest_shift = std::max(largest_shift, std::abs(shift));
+    largest_stretch = std::max(largest_stretch, static_cast<double>(s.stretch[r]));
+  }
+  w1 = std::max(w1, w0 + 1e-9 * (std::abs(w0) + 1e-9));
+  // The greatest distance from the axis is convex in w: a chord bounds it where weights are.
+  double off0 = 0, off1 = 0;
+  for (int r = 0; r < rays; ++r)
+    if (s.scale[r] != 0) {
+      off0 = std::max(off0, std::hypot(s.ou[r] + s.a[r] * w0, s.ov[r] + s.b[r] * w0));
+      off1 = std::max(off1, std::hypot(s.ou[r] + s.a[r] * w1, s.ov[r] + s.b[r] * w1));
+    }
+  const double slope = (off1 - off0) / (w1 - w0), cosine = 1 / std::sqrt(1 + slope * slope);
+  const double margin = 1e-5 * (off0 + off1) + 1e-7 * reach;
+  s.cos_spread = static_cast<float>(cosine);
+  s.sin_spread = static_cast<float>(slope * cosine);
+  s.cone_width = static_cast<float>((off0 - slope * w0 + margin) * cosine);
+  s.per_ray = true;
+  const double farthest = tile.camera_distance + reach;
+  s.knot_margin = static_cast<float>(largest_stretch * farthest / profile.step + largest_shift + 1);
+  s.phase = phase_mode(*tile.phases, 1, has_directions);
+  if (s.phase == PhaseMode::linear)
+    s.phase = PhaseMode::exact;
+  for (int r = 0; r < rays && s.phase == PhaseMode::isotropic; ++r)
+    s.scale[r] /= 4 * pi;
+}
+
 void make_subtile(const BeamTile& tile, int index, float mean_radius, float reach,
                   bool has_directions, SubtileFrame& s) {
   const BeamTile::Profile& profile = tile.profiles[index];
@@ -167,6 +167,10 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
     return;
   s.active = true;
   s.inverse_step = 1 / profile.step;
+  s.cone_width = 0;
+  s.own_origins = tile.own_origins;
+  if (tile.own_origins)
+    return finish_own_origins(tile, index, reach, has_directions, s);
   const double cosine = 1 / std::sqrt(1 + spread * spread);
   s.cos_spread = static_cast<float>(cosine);
   s.sin_spread = static_cast<float>(std::min(1.0, spread * cosine * (1 + 1e-5) + 1e-7));
@@ -199,7 +203,7 @@ void set_plane(float* plane, const TileFrame& frame, double cu, double cv, doubl
   plane[4] = static_cast<float>(reach);
 }
 
-void make_planes(const TangentBox& box, double w0, double w1, TileFrame& frame) {
+void make_planes(const RayBounds& box, double w0, double w1, TileFrame& frame) {
   const double distance = frame.camera_distance;
   const double tangent =
       std::max({std::abs(box.a0), std::abs(box.a1), std::abs(box.b0), std::abs(box.b1)});
@@ -210,31 +214,37 @@ void make_planes(const TangentBox& box, double w0, double w1, TileFrame& frame) 
   for (int i = 0; i < 4; ++i)
     set_plane(frame.planes[i], frame, 0, 0, 0, 1, 0);
   if (!box.wide) {
-    set_plane(frame.planes[0], frame, 1, 0, -box.a0, -box.a0 * distance, side);
-    set_plane(frame.planes[1], frame, -1, 0, box.a1, box.a1 * distance, side);
-    set_plane(frame.planes[2], frame, 0, 1, -box.b0, -box.b0 * distance, side);
-    set_plane(frame.planes[3], frame, 0, -1, box.b1, box.b1 * distance, side);
+    set_plane(frame.planes[0], frame, 1, 0, -box.a0, -box.a0 * distance - box.u0, side);
+    set_plane(frame.planes[1], frame, -1, 0, box.a1, box.a1 * distance + box.u1, side);
+    set_plane(frame.planes[2], frame, 0, 1, -box.b0, -box.b0 * distance - box.v0, side);
+    set_plane(frame.planes[3], frame, 0, -1, box.b1, box.b1 * distance + box.v1, side);
   }
   set_plane(frame.planes[4], frame, 0, 0, 1, distance - w0, depth);
   set_plane(frame.planes[5], frame, 0, 0, -1, w1 - distance, depth);
 }
 
-/// Rectangle and depths of one sub-tile, for culling.
-void bound_subtile(const BeamTile& tile, int index, TileFrame& frame, TangentBox& all) {
-  const TangentBox box = bound_tangents(tile, index);
+/// Bounds and depths of one sub-tile, for culling.
+void bound_subtile(const BeamTile& tile, int index, TileFrame& frame, RayBounds& all) {
+  RayBounds box = bound_directions(tile, index * rays, rays);
   const BeamTile::Profile& profile = tile.profiles[index];
   const SubtileFrame& s = frame.subtiles[index];
   const double t0 = profile.t_begin + static_cast<double>(s.first_knot) * profile.step;
   const double t1 = profile.t_begin + static_cast<double>(s.last_knot) * profile.step;
-  // A ray at t has depth t dw; rounded outwards.
-  const double w0 = std::min(t0 * box.cos0, t0 * box.cos1);
-  const double w1 = std::max(t1 * box.cos0, t1 * box.cos1);
+  // A ray at t has depth t dw from its start; rounded outwards.
+  const double w0 = std::min(t0 * box.cos0, t0 * box.cos1) + box.start0;
+  const double w1 = std::max(t1 * box.cos0, t1 * box.cos1) + box.start1;
+  if (tile.own_origins && !box.wide)
+    bound_between(tile, index * rays, rays, w0, w1, box);
   frame.w0[index] = static_cast<float>(w0 - 1e-6 * std::abs(w0) - frame.margin);
   frame.w1[index] = static_cast<float>(w1 + 1e-6 * std::abs(w1) + frame.margin);
   frame.a0[index] = static_cast<float>(box.a0);
   frame.a1[index] = static_cast<float>(box.a1);
   frame.b0[index] = static_cast<float>(box.b0);
   frame.b1[index] = static_cast<float>(box.b1);
+  frame.u0[index] = static_cast<float>(box.u0);
+  frame.u1[index] = static_cast<float>(box.u1);
+  frame.v0[index] = static_cast<float>(box.v0);
+  frame.v1[index] = static_cast<float>(box.v1);
   frame.active |= 1u << index;
   if (box.wide)
     frame.wide |= 1u << index;
@@ -253,11 +263,12 @@ void make_tile_frame(const BeamTile& tile, float mean_radius, float reach, bool 
     frame.reference[j] = tile.reference[j];
   frame.camera_distance = static_cast<float>(tile.camera_distance);
   frame.margin = 1e-6f * reach;
-  TangentBox all;
+  RayBounds all;
   double nearest = 1e30, farthest = -1e30;
   for (int i = 0; i < BeamTile::subtile_count; ++i) {
     frame.a0[i] = frame.b0[i] = frame.w0[i] = 1e30f;
     frame.a1[i] = frame.b1[i] = frame.w1[i] = -1e30f;
+    frame.u0[i] = frame.u1[i] = frame.v0[i] = frame.v1[i] = 0;
     make_subtile(tile, i, mean_radius, reach, has_directions, frame.subtiles[i]);
     if (!frame.subtiles[i].active)
       continue;
@@ -265,6 +276,8 @@ void make_tile_frame(const BeamTile& tile, float mean_radius, float reach, bool 
     nearest = std::min(nearest, static_cast<double>(frame.w0[i]));
     farthest = std::max(farthest, static_cast<double>(frame.w1[i]));
   }
+  if (tile.own_origins && !all.wide)
+    bound_between(tile, 0, BeamTile::ray_count, nearest, farthest, all);
   make_planes(all, nearest, farthest, frame);
 }
 

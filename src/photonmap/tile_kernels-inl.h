@@ -44,6 +44,7 @@ struct Candidates {
   alignas(64) std::int32_t knot[slots]; ///< shared knots: offset of the knot's row of weights
   alignas(64) float depth[slots];       ///< per ray: w / step in length units
   alignas(64) float reach[slots];       ///< per ray: radius / step
+  alignas(64) float inverse_radius[slots]; ///< rays with origins of their own
   alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
   alignas(64) float power[3][slots];
   alignas(64) float signed_power[slots]; ///< where the map tells first flights apart
@@ -143,7 +144,8 @@ HWY_INLINE hn::Mask<D16> reaches_cone(const PlacedPhotons& p, const SubtileFrame
   // Within the radius of the cone: h cos - w sin < r, squared.
   const auto across =
       hn::Mul(hn::MulAdd(p.u, p.u, hn::Mul(p.v, p.v)), hn::Set(d, s.cos_spread * s.cos_spread));
-  const auto reach = hn::MulAdd(p.w, hn::Set(d, s.sin_spread), p.radius);
+  const auto reach =
+      hn::MulAdd(p.w, hn::Set(d, s.sin_spread), hn::Add(p.radius, hn::Set(d, s.cone_width)));
   const auto margin =
       s.per_ray ? hn::MulAdd(p.radius, hn::Set(d, s.inverse_step), hn::Set(d, s.knot_margin))
                 : hn::Zero(d);
@@ -180,6 +182,8 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
     writer.write(d, p.f, out.fraction + at);
     writer.write(d, hn::Mul(p.w, inverse_step), out.depth + at);
     writer.write(d, hn::Mul(p.radius, inverse_step), out.reach + at);
+    if (s.own_origins)
+      writer.write(d, inverse_radius, out.inverse_radius + at);
   } else {
     const auto inside = hn::IfThenElseZero(hit, p.f);
     const auto knot =

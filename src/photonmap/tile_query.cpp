@@ -78,19 +78,21 @@ HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup&
   const auto v_low = hn::Set(d, middle[1] - extent[1]), v_high = hn::Set(d, middle[1] + extent[1]);
   std::uint32_t mask = 0;
   for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
-    // The depths that the box and the rays share; over them the rays stay within tangents times w.
+    // The depths that the box and the rays share; over them the rays keep to their linear bounds.
     const auto w0 = hn::Max(low, hn::Load(d, frame.w0 + lane));
     const auto w1 = hn::Min(high, hn::Load(d, frame.w1 + lane));
     auto hit = hn::Le(w0, w1);
-    const auto overlap = [&](const float* tangent0, const float* tangent1, hn::Vec<D16> from,
-                             hn::Vec<D16> to) HWY_ATTR {
-      const auto t0 = hn::Load(d, tangent0 + lane), t1 = hn::Load(d, tangent1 + lane);
-      const auto least = hn::Min(hn::Mul(t0, w0), hn::Mul(t0, w1));
-      const auto most = hn::Max(hn::Mul(t1, w0), hn::Mul(t1, w1));
+    const auto overlap = [&](const float* slope0, const float* start0, const float* slope1,
+                             const float* start1, hn::Vec<D16> from, hn::Vec<D16> to) HWY_ATTR {
+      const auto t0 = hn::Load(d, slope0 + lane), t1 = hn::Load(d, slope1 + lane);
+      const auto least =
+          hn::Add(hn::Min(hn::Mul(t0, w0), hn::Mul(t0, w1)), hn::Load(d, start0 + lane));
+      const auto most =
+          hn::Add(hn::Max(hn::Mul(t1, w0), hn::Mul(t1, w1)), hn::Load(d, start1 + lane));
       hit = hn::And(hit, hn::And(hn::Ge(to, least), hn::Le(from, most)));
     };
-    overlap(frame.a0, frame.a1, u_low, u_high);
-    overlap(frame.b0, frame.b1, v_low, v_high);
+    overlap(frame.a0, frame.u0, frame.a1, frame.u1, u_low, u_high);
+    overlap(frame.b0, frame.v0, frame.b1, frame.v1, v_low, v_high);
     mask |= mask_bits(d, hit) << lane;
   }
   return (mask | frame.wide) & frame.active;

@@ -17,9 +17,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using TileSums = float[3][BeamTile::ray_count];
 
 /// What the loop over photons is compiled for; `plain` as in TileQuery.
-template <bool per_ray_, PhaseMode phase_, int power_, int weight_, bool plain_>
+template <bool per_ray_, PhaseMode phase_, int power_, int weight_, bool plain_, bool own_>
 struct ShadeConfig {
-  static constexpr bool per_ray = per_ray_, plain = plain_;
+  static constexpr bool per_ray = per_ray_, plain = plain_, own_origins = own_;
   static constexpr PhaseMode phase = phase_;
   static constexpr int power = power_, weight = weight_;
   static constexpr int channels = std::max(power_, weight_);
@@ -48,18 +48,24 @@ struct KnotLookup {
 
 /// The rays of one vector, in registers.
 struct RayLanes {
-  V16 a, b, dw, stretch, first, last;
+  V16 a, b, dw, stretch, first, last, ou, ov, knot_shift;
   hn::Vec<I16> lane;
 };
 
+template <bool own_origins>
 HWY_INLINE RayLanes load_rays(const SubtileFrame& s, std::size_t lane) {
   const D16 d;
+  const auto own = [&](const float* values)
+                       HWY_ATTR { return own_origins ? hn::Load(d, values + lane) : hn::Zero(d); };
   return {hn::Load(d, s.a + lane),
           hn::Load(d, s.b + lane),
           hn::Load(d, s.dw + lane),
           hn::Load(d, s.stretch + lane),
           hn::Set(d, s.first_knot),
           hn::Set(d, s.last_knot),
+          own(s.ou),
+          own(s.ov),
+          own(s.knot_shift),
           hn::Iota(I16(), static_cast<std::int32_t>(lane))};
 }
 
@@ -70,8 +76,13 @@ HWY_INLINE V16 approach(const Candidates& c, std::size_t i, const SubtileFrame& 
   const D16 d;
   const I16 di;
   const auto w = hn::Set(d, c.w[i]), one = hn::Set(d, 1.0f);
-  const auto x = hn::NegMulAdd(w, ray.a, hn::Set(d, c.u[i]));
-  const auto y = hn::NegMulAdd(w, ray.b, hn::Set(d, c.v[i]));
+  auto x = hn::NegMulAdd(w, ray.a, hn::Set(d, c.u[i]));
+  auto y = hn::NegMulAdd(w, ray.b, hn::Set(d, c.v[i]));
+  if constexpr (Config::own_origins) {
+    const auto inverse_radius = hn::Set(d, c.inverse_radius[i]);
+    x = hn::NegMulAdd(inverse_radius, ray.ou, x);
+    y = hn::NegMulAdd(inverse_radius, ray.ov, y);
+  }
   if constexpr (!Config::per_ray) {
     knots.fraction = hn::Set(d, c.fraction[i]);
     knots.shared_row = c.knot[i];
@@ -83,8 +94,10 @@ HWY_INLINE V16 approach(const Candidates& c, std::size_t i, const SubtileFrame& 
     auto k = hn::NegMulAdd(hn::Mul(square, ray.dw), ray.dw, one);
     // t = w / dw + dw (x a + y b), as a difference from w.
     const auto shift = hn::Mul(ray.dw, hn::MulAdd(x, ray.a, hn::Mul(y, ray.b)));
-    const auto f = hn::MulAdd(hn::Set(d, c.depth[i]), ray.stretch,
-                              hn::MulAdd(hn::Set(d, c.reach[i]), shift, hn::Set(d, c.fraction[i])));
+    auto f = hn::MulAdd(hn::Set(d, c.depth[i]), ray.stretch,
+                        hn::MulAdd(hn::Set(d, c.reach[i]), shift, hn::Set(d, c.fraction[i])));
+    if constexpr (Config::own_origins)
+      f = hn::Sub(f, ray.knot_shift);
     const auto inside = hn::And(hn::Ge(f, ray.first), hn::Le(f, ray.last));
     k = hn::IfThenElseZero(inside, k);
     const auto clamped = hn::Min(hn::Max(f, hn::Zero(d)), ray.last);
@@ -143,7 +156,7 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
   const auto kernel_shift = hn::Set(d, query.kernel_shift);
   auto inside_count = hn::Zero(di);
   for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
-    const RayLanes ray = load_rays(s, lane);
+    const RayLanes ray = load_rays<Config::own_origins>(s, lane);
     const float* weights = s.weights + (Config::per_ray ? 0 : lane);
     float* out = &sums[0][first_ray + lane];
     V16 sum0 = hn::Load(d, out), sum1 = zero, sum2 = zero;
@@ -190,23 +203,25 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
 using Shader = std::uint64_t (*)(const TileQuery&, const SubtileFrame&, const Candidates&,
                                  const Selection&, std::size_t, TileSums&);
 
-template <bool per_ray, PhaseMode phase, bool plain>
+template <bool per_ray, PhaseMode phase, bool plain, bool own_origins = false>
 Shader choose_channels(const TileQuery& query) {
   if (query.weight_channels == 3)
-    return &shade<ShadeConfig<per_ray, phase, 3, 3, plain>>;
+    return &shade<ShadeConfig<per_ray, phase, 3, 3, plain, own_origins>>;
   if (query.power_channels == 3)
-    return &shade<ShadeConfig<per_ray, phase, 3, 1, plain>>;
-  return &shade<ShadeConfig<per_ray, phase, 1, 1, plain>>;
+    return &shade<ShadeConfig<per_ray, phase, 3, 1, plain, own_origins>>;
+  return &shade<ShadeConfig<per_ray, phase, 1, 1, plain, own_origins>>;
 }
 
 /// The loop that fits a sub-tile.
 inline Shader choose_shader(const TileQuery& query, const SubtileFrame& s) {
-  const bool plain = query.plain;
+  const bool plain = query.plain, isotropic = s.phase == PhaseMode::isotropic;
+  if (s.own_origins)
+    return isotropic ? choose_channels<true, PhaseMode::isotropic, false, true>(query)
+                     : choose_channels<true, PhaseMode::exact, false, true>(query);
   if (s.per_ray)
-    return s.phase == PhaseMode::isotropic
-               ? choose_channels<true, PhaseMode::isotropic, false>(query)
-               : choose_channels<true, PhaseMode::exact, false>(query);
-  if (s.phase == PhaseMode::isotropic)
+    return isotropic ? choose_channels<true, PhaseMode::isotropic, false>(query)
+                     : choose_channels<true, PhaseMode::exact, false>(query);
+  if (isotropic)
     return plain ? choose_channels<false, PhaseMode::isotropic, true>(query)
                  : choose_channels<false, PhaseMode::isotropic, false>(query);
   if (s.phase == PhaseMode::linear)

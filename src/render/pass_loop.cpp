@@ -38,7 +38,8 @@ constexpr std::chrono::milliseconds quick_look_time{250};
 PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderHooks& hooks,
                    const PixelRegion& window, RenderResult& result)
     : scene_(scene), frame_(frame), hooks_(hooks), window_(window),
-      whole_(window.width() == scene.image.width && window.height() == scene.image.height),
+      whole_(window.width() == scene.image.raster_width() &&
+             window.height() == scene.image.raster_height()),
       result_(result), film_(window.width(), window.height(), scene.glows()), stop_(hooks.stop) {
   if (frame.pass_range)
     first_pass_ = frame.pass_range->first;
@@ -291,12 +292,16 @@ void PassLoop::write_checkpoint() {
 
 void PassLoop::develop() {
   result_.image = film_.develop();
-  if (whole_)
-    return;
-  result_.image.x = window_.x0;
-  result_.image.y = window_.y0;
-  result_.image.full_width = scene_.image.width;
-  result_.image.full_height = scene_.image.height;
+  if (!whole_ || scene_.image.overscan > 0)
+    place(result_.image);
+}
+
+/// Says where the pixels lie in the picture.
+void PassLoop::place(Image& image) const {
+  image.x = window_.x0 - scene_.image.overscan;
+  image.y = window_.y0 - scene_.image.overscan;
+  image.full_width = scene_.image.width;
+  image.full_height = scene_.image.height;
 }
 
 FilmFileInfo PassLoop::file_info() const {
@@ -304,10 +309,7 @@ FilmFileInfo PassLoop::file_info() const {
   info.arithmetic = arithmetic_fingerprint();
   info.header.width = window_.width();
   info.header.height = window_.height();
-  info.header.x = window_.x0;
-  info.header.y = window_.y0;
-  info.header.full_width = scene_.image.width;
-  info.header.full_height = scene_.image.height;
+  place(info.header);
   add_image_metadata(info.header, scene_, result_, scene_hash(scene_));
   info.pass_hash = pass_hash_;
   info.frame = scene_.frame.number;

@@ -43,6 +43,7 @@ private:
   void attempt(F write);
   void write_checkpoint();
   void develop();
+  void place(Image& image) const;
   FilmFileInfo file_info() const;
   bool time_is_over() const;
   void set_deadline();

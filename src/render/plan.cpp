@@ -175,7 +175,8 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);
-  plan.film_bytes = film_memory(scene.image, scene.image.width, scene.image.height, scene.glows());
+  plan.film_bytes = film_memory(scene.image, scene.image.raster_width(),
+                                scene.image.raster_height(), scene.glows());
   return plan;
 }
 
@@ -197,7 +198,7 @@ std::uint64_t film_memory(const ImageSettings& image, int width, int height, boo
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
-  return PassImage::bytes_per_pixel(glows) * pixels(image.width, image.height) +
+  return PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
          (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows)) *
              pixels(width, height);
 }

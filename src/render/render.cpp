@@ -18,15 +18,19 @@
 namespace vdbeam {
 namespace {
 
+/// The pixels that are wanted, counted from the corner of the overscan. A region counts from that
+/// of the picture.
 PixelRegion choose_window(const ImageSettings& image, const std::optional<PixelRegion>& region) {
-  const PixelRegion window = region.value_or(PixelRegion{0, 0, image.width, image.height});
-  if (window.empty() || window.x0 < 0 || window.y0 < 0 || window.x1 > image.width ||
-      window.y1 > image.height)
+  const int o = image.overscan;
+  const PixelRegion window =
+      region.value_or(PixelRegion{-o, -o, image.width + o, image.height + o});
+  if (window.empty() || window.x0 < -o || window.y0 < -o || window.x1 > image.width + o ||
+      window.y1 > image.height + o)
     throw InputError(fmt::format("the region {},{},{},{} must hold a pixel and lie within the "
-                                 "picture of {} x {}",
+                                 "picture of {} x {}{}",
                                  window.x0, window.y0, window.x1, window.y1, image.width,
-                                 image.height));
-  return window;
+                                 image.height, o > 0 ? " and its overscan" : ""));
+  return {window.x0 + o, window.y0 + o, window.x1 + o, window.y1 + o};
 }
 
 void check_range(const std::optional<PassRange>& range) {

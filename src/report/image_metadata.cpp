@@ -1,6 +1,7 @@
 #include "report/image_metadata.h"
 
 #include "report/versions.h"
+#include "transport/camera.h"
 
 #include <array>
 #include <cmath>
@@ -18,9 +19,8 @@ using Matrix = std::array<std::array<double, 4>, 4>;
 /// OpenEXR's matrices act on row vectors: p' = p M. Camera space is left-handed: x right, y up,
 /// z away from the viewer.
 Matrix world_to_camera(const CameraSettings& camera) {
-  const Vec3d forward = normalize(camera.look_at - camera.position);
-  const Vec3d right = normalize(cross(forward, camera.up));
-  const std::array<Vec3d, 3> axes{right, cross(right, forward), forward};
+  const CameraFrame frame = camera_frame(camera);
+  const std::array<Vec3d, 3> axes{frame.right, frame.up, frame.forward};
   Matrix m{};
   for (std::size_t column = 0; column < 3; ++column) {
     for (int row = 0; row < 3; ++row)
@@ -33,12 +33,16 @@ Matrix world_to_camera(const CameraSettings& camera) {
 
 /// Camera space to x and y in [0, 1] from the top left, after division by the fourth component.
 Matrix camera_to_ndc(const CameraSettings& camera, const ImageSettings& image) {
-  const double scale_y = 0.5 / std::tan(camera.fov * std::numbers::pi / 360);
-  const double scale_x = scale_y * image.height / image.width;
+  const ViewWindow window = view_window(camera, image);
+  const double width = window.x1 - window.x0, height = window.y1 - window.y0;
+  const bool parallel = camera.projection == Projection::orthographic;
   Matrix m{};
-  m[0][0] = scale_x;
-  m[1][1] = -scale_y;
-  m[2] = {0.5, 0.5, 1, 1};
+  m[0][0] = 1 / width;
+  m[1][1] = -1 / height;
+  m[2] = {0, 0, 1, 0};
+  m[parallel ? 3 : 2][0] = -window.x0 / width;
+  m[parallel ? 3 : 2][1] = window.y1 / height;
+  m[parallel ? 3 : 2][3] = 1;
   return m;
 }
 
@@ -131,14 +135,19 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     if (image.numbers.contains(name))
       image.integers.insert(name);
   add_time(image, scene);
-  image.numbers["vdbeam:cameraFov"] = scene.camera.fov;
+  const ViewWindow window = view_window(scene.camera, scene.image);
+  if (scene.camera.projection == Projection::perspective)
+    image.numbers["vdbeam:cameraFov"] =
+        scene.camera.focal_length ? 360 / std::numbers::pi * std::atan((window.y1 - window.y0) / 2)
+                                  : scene.camera.fov;
   const Vec3d& position = scene.camera.position;
   image.matrices["vdbeam:cameraPosition"] = {static_cast<float>(position.x),
                                              static_cast<float>(position.y),
                                              static_cast<float>(position.z)};
   const Matrix view = world_to_camera(scene.camera);
   image.matrices["worldToCamera"] = flatten(view);
-  image.matrices["worldToNDC"] = flatten(product(view, camera_to_ndc(scene.camera, scene.image)));
+  if (scene.camera.projection != Projection::panorama)
+    image.matrices["worldToNDC"] = flatten(product(view, camera_to_ndc(scene.camera, scene.image)));
 }
 
 } // namespace vdbeam

@@ -107,6 +107,7 @@ bool only_camera_moves(const toml::table& root) {
   bool camera = false, others = false;
   for (const auto& [name, section] : root)
     (name == "camera" ? camera : others) |= is_animated(section);
+  camera = camera || root.at_path("camera.file");
   return camera && !others;
 }
 

@@ -15,6 +15,37 @@ template <class E>
 struct EnumNames;
 
 template <>
+struct EnumNames<Projection> {
+  static constexpr std::array<std::pair<Projection, std::string_view>, 3> table{
+      {{Projection::perspective, "perspective"},
+       {Projection::orthographic, "orthographic"},
+       {Projection::panorama, "panorama"}}};
+};
+template <>
+struct EnumNames<CameraAxes> {
+  static constexpr std::array<std::pair<CameraAxes, std::string_view>, 3> table{
+      {{CameraAxes::same, "same"},
+       {CameraAxes::y_up_to_z_up, "y_up_to_z_up"},
+       {CameraAxes::z_up_to_y_up, "z_up_to_y_up"}}};
+};
+template <>
+struct EnumNames<RotationOrder> {
+  static constexpr std::array<std::pair<RotationOrder, std::string_view>, 6> table{
+      {{RotationOrder::zxy, "zxy"},
+       {RotationOrder::xyz, "xyz"},
+       {RotationOrder::xzy, "xzy"},
+       {RotationOrder::yxz, "yxz"},
+       {RotationOrder::yzx, "yzx"},
+       {RotationOrder::zyx, "zyx"}}};
+};
+template <>
+struct EnumNames<PixelFilter> {
+  static constexpr std::array<std::pair<PixelFilter, std::string_view>, 3> table{
+      {{PixelFilter::box, "box"},
+       {PixelFilter::gaussian, "gaussian"},
+       {PixelFilter::blackman_harris, "blackman_harris"}}};
+};
+template <>
 struct EnumNames<PhaseType> {
   static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
       {{PhaseType::isotropic, "isotropic"},

@@ -1,6 +1,7 @@
 #include "scene/scene_reader.h"
 
 #include "scene/animation.h"
+#include "scene/camera_file.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
@@ -118,8 +119,12 @@ void SceneReader::read_section(SceneSection section, const toml::node& node) {
   if (section == SceneSection::volume || section == SceneSection::mesh ||
       section == SceneSection::light)
     return read_list(section, node);
-  if (const auto* table = node.as_table())
-    return read_table(section, 0, *table);
+  if (const auto* table = node.as_table()) {
+    read_table(section, 0, *table);
+    if (section == SceneSection::camera)
+      place_camera(*table);
+    return;
+  }
   throw InputError(fmt::format("{0}: {1} must be a table: write [{1}], got {2}", location_of(node),
                                section_name(section), node_text(node)));
 }
@@ -351,6 +356,25 @@ void SceneReader::place(SceneSection section, std::size_t index) {
       locations_[path] = key->second;
       break;
     }
+}
+
+/// Takes the camera's place and direction, and its field of view where the scene gives none, from
+/// its file.
+void SceneReader::place_camera(const toml::table& table) {
+  CameraSettings& camera = scene_.camera;
+  if (camera.file.empty())
+    return;
+  for (const char* name : {"position", "look_at"})
+    if (table.contains(name))
+      throw InputError(fmt::format("{}: camera.{} excludes camera.file, which says where the "
+                                   "camera is",
+                                   locate(fmt::format("camera.{}", name)), name));
+  const CameraPose pose = read_camera_file(camera, frame_.time);
+  camera.position = pose.position;
+  camera.look_at = pose.position + pose.forward;
+  camera.picture_up = pose.up;
+  if (pose.fov && !table.contains("fov"))
+    camera.fov = *pose.fov;
 }
 
 std::string SceneReader::locate(const std::string& key) const {

@@ -41,6 +41,7 @@ private:
   void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
   void check_types(SceneSection section, std::size_t index, const toml::table& table) const;
   void place(SceneSection section, std::size_t index);
+  void place_camera(const toml::table& table);
   std::string resolve_file(const SceneKey& key, std::size_t index, const std::string& text,
                            const toml::node& node);
   std::string resolve_missing(const std::string& key, const std::string& pattern, int number,

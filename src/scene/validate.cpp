@@ -24,8 +24,29 @@ public:
     if (length(camera.up) == 0)
       fail("camera.up", "must not be [0, 0, 0]");
     // A sine under 1e-6 leaves no digits for the camera's sideways axis.
-    if (length(cross(normalize(view), normalize(camera.up))) < 1e-6)
+    if (const Vec3d up = camera.picture_up.value_or(camera.up);
+        length(cross(normalize(view), normalize(up))) < 1e-6)
       fail("camera.up", "must not be parallel to the direction from position to look_at");
+    check_lens();
+  }
+
+  void check_lens() const {
+    const CameraSettings& camera = scene_.camera;
+    const bool perspective = camera.projection == Projection::perspective;
+    if (camera.projection == Projection::orthographic && !(camera.view_height > 0))
+      fail("camera.projection", "is \"orthographic\": camera.view_height is needed too");
+    if (camera.far && *camera.far <= camera.near)
+      fail("camera.far",
+           fmt::format("must be greater than camera.near ({}), got {}", camera.near, *camera.far));
+    if (camera.f_stop && !camera.focal_length)
+      fail("camera.f_stop", "needs camera.focal_length, or write camera.lens_radius");
+    if (camera.f_stop && camera.lens_radius > 0)
+      fail("camera.f_stop", "excludes camera.lens_radius: write one or the other");
+    if (camera.aperture_radius() > 0 && !perspective)
+      fail(camera.f_stop ? "camera.f_stop" : "camera.lens_radius",
+           "needs camera.projection = \"perspective\"");
+    if (camera.blades == 1 || camera.blades == 2)
+      fail("camera.blades", fmt::format("must be 0 or at least 3, got {}", camera.blades));
   }
 
   void check_volume(std::size_t index) const {

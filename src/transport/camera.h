@@ -1,67 +1,79 @@
 #pragma once
 
-#include "math/ray.h"
+#include "math/affine.h"
+#include "math/rng.h"
+#include "transport/lens.h"
+#include "transport/pixel_filter.h"
 #include "vdbeam/scene.h"
 #include "volume/render_space.h"
 
-#include <algorithm>
-#include <numbers>
-
 namespace vdbeam {
 
-/// A pinhole camera in render space. Pixel (0, 0) is top left; pixel coordinates are continuous,
-/// the centre of the first pixel being (0.5, 0.5).
+/// Unit vectors of a camera: right, up and forward in the picture.
+struct CameraFrame {
+  Vec3d right, up, forward;
+};
+CameraFrame camera_frame(const CameraSettings& settings);
+
+/// The picture without overscan at depth 1 before a perspective camera, in units of that depth; for
+/// parallel rays at any depth, in world units. x to the right, y up.
+struct ViewWindow {
+  double x0 = -1, x1 = 1, y0 = -1, y1 = 1;
+};
+ViewWindow view_window(const CameraSettings& settings, const ImageSettings& image);
+
+/// A ray as it leaves the camera, in render space.
+struct EyeRay {
+  Vec3d origin, direction; ///< the direction has unit length
+};
+
+/// A camera in render space. Pixel (0, 0) is top left, of the overscan where there is one; pixel
+/// coordinates are continuous, the centre of the first pixel being (0.5, 0.5).
 class Camera {
 public:
-  Camera(const CameraSettings& settings, const ImageSettings& image, const RenderSpace& space)
-      : origin_(space.point(settings.position)), width_(image.width), height_(image.height) {
-    forward_ = normalize(settings.look_at - settings.position);
-    right_ = normalize(cross(forward_, settings.up));
-    up_ = cross(right_, forward_);
-    tan_half_ = std::tan(settings.fov * std::numbers::pi / 360);
-  }
+  Camera(const CameraSettings& settings, const ImageSettings& image, const RenderSpace& space);
 
-  /// Unit direction through a pixel position.
-  Vec3d direction(double px, double py) const {
-    const double sx = (2 * px - width_) / height_ * tan_half_;
-    const double sy = (1 - 2 * py / height_) * tan_half_;
-    return normalize(forward_ + right_ * sx + up_ * sy);
-  }
+  /// The ray through a pixel position and the middle of the lens.
+  EyeRay ray(double px, double py) const;
+  /// A random ray of the pixel (x, y), by its filter and through the lens.
+  EyeRay sample(int x, int y, Rng& rng) const;
   /// Unit direction of the ray of the picture that comes nearest to a point.
-  Vec3d direction_towards(const Vec3d& point) const {
-    const Vec3d p = point - origin_;
-    const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
-    const double tan_x = tan_half_ * width_ / height_;
-    if (z > 0 && std::abs(x) <= tan_x * z && std::abs(y) <= tan_half_ * z)
-      return normalize(p);
-    const double depth = std::max(z, 1e-12 * length(p));
-    return normalize(forward_ + right_ * std::clamp(x / depth, -tan_x, tan_x) +
-                     up_ * std::clamp(y / depth, -tan_half_, tan_half_));
-  }
+  Vec3d direction_towards(const Vec3d& point) const;
   /// False only where no ray of the picture can meet the box: it lies beyond one of the planes
   /// around the view.
-  bool may_see(const Boxd& box) const {
-    const double tan_x = tan_half_ * width_ / height_;
-    bool behind = true, right = true, left = true, above = true, below = true;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3d p = box.corner(corner) - origin_;
-      const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
-      behind = behind && z < 0;
-      right = right && x > tan_x * z;
-      left = left && -x > tan_x * z;
-      above = above && y > tan_half_ * z;
-      below = below && -y > tan_half_ * z;
-    }
-    return !(behind || right || left || above || below);
+  bool may_see(const Boxd& box) const;
+  /// Distances along a ray between which the medium is seen.
+  double nearest(const Vec3d& direction) const { return near_ / along_axis(direction); }
+  double farthest(const Vec3d& direction) const { return far_ / along_axis(direction); }
+  bool clips() const { return near_ > 0 || far_ < unlimited; }
+  /// Whether rays of one picture start at different points.
+  bool has_own_origins() const {
+    return projection_ == Projection::orthographic || lens_.radius() > 0;
   }
   const Vec3d& origin() const { return origin_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
 private:
+  static constexpr double unlimited = 1e30;
+
+  double along_axis(const Vec3d& direction) const;
+  Vec3d panorama_direction(double px, double py) const;
+  /// Of a position in the picture, in units of the window.
+  double window_x(double px) const;
+  double window_y(double py) const;
+
+  Projection projection_;
   Vec3d origin_, forward_, right_, up_;
-  double tan_half_;
-  int width_, height_;
+  double tan_half_ = 1, pixel_aspect_, center_x_ = 0, center_y_ = 0; ///< of the window, per depth
+  double overscan_;
+  ViewWindow raster_; ///< with the overscan and what filters reach beyond it
+  double near_, far_;
+  Lens lens_;
+  double focus_;
+  FilterSampler filter_;
+  int width_, height_;                 ///< with the overscan
+  int picture_width_, picture_height_; ///< without
 };
 
 } // namespace vdbeam

@@ -206,7 +206,26 @@ struct TileOptions {
   int knots = 40;
   int weight_channels = 1;
   bool smooth = true; ///< weights vary slowly along the ray, and end at 0
+  /// Rays start on a square of this half width that is tilted against the tile, and meet, pixel by
+  /// pixel, where the pinhole's rays are at the distance `focus` (0: all go along the tile's axis).
+  double lens = 0, focus = 0;
 };
+
+/// Gives a ray an origin of its own.
+inline void add_lens(const TileOptions& options, int ray, const Vec3d& pinhole, Rng& rng,
+                     BeamTile& tile) {
+  const double x = options.lens * (2 * rng.uniform() - 1),
+               y = options.lens * (2 * rng.uniform() - 1);
+  const Vec3d start{x, y, 0.3 * x - 0.2 * y};
+  const Vec3d d = options.focus > 0 ? normalize(pinhole * options.focus - start) : Vec3d{0, 0, 1};
+  tile.own_origins = true;
+  tile.ou[ray] = static_cast<float>(start.x);
+  tile.ov[ray] = static_cast<float>(start.y);
+  tile.ow[ray] = static_cast<float>(start.z);
+  tile.du[ray] = static_cast<float>(d.x);
+  tile.dv[ray] = static_cast<float>(d.y);
+  tile.dw[ray] = static_cast<float>(d.z);
+}
 
 inline BeamTile make_tile(const TileOptions& options, const std::vector<PhaseFunction>& phases) {
   BeamTile tile;
@@ -246,6 +265,8 @@ inline BeamTile make_tile(const TileOptions& options, const std::vector<PhaseFun
       tile.du[s * 16 + r] = static_cast<float>(d.x);
       tile.dv[s * 16 + r] = static_cast<float>(d.y);
       tile.dw[s * 16 + r] = static_cast<float>(d.z);
+      if (options.lens > 0)
+        add_lens(options, s * 16 + r, d, rng, tile);
     }
   }
   return tile;
@@ -291,10 +312,17 @@ inline std::vector<Sum> tile_sums(const TestMap& map, const BeamTile& tile, cons
                  dot(Vec3d(tile.axis_w), Vec3d(p))};
   };
   const Vec3d origin = turn(tile.reference) - Vec3d{0, 0, tile.camera_distance};
-  const PlacedPhotons placed = place(
+  PlacedPhotons placed = place(
       map, [&](const Vec3f& p) { return turn(p) - origin; }, turn);
   std::vector<Sum> sums;
   for (int ray = 0; ray < BeamTile::ray_count; ++ray) {
+    if (tile.own_origins)
+      placed = place(
+          map,
+          [&](const Vec3f& p) {
+            return turn(p) - origin - Vec3d{tile.ou[ray], tile.ov[ray], tile.ow[ray]};
+          },
+          turn);
     const BeamTile::Profile& profile = tile.profiles[ray / 16];
     const auto weight = [&](std::size_t g, int c, int k) -> double {
       const std::size_t row = g * static_cast<std::size_t>(tile.weight_channels) + c;

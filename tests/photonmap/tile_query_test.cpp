@@ -98,6 +98,13 @@ INSTANTIATE_TEST_SUITE_P(
         TileCase{"fisheye", {.distance = 0.5, .pixel = 0.4, .smooth = false}, {}, exact_edges},
         TileCase{"preview", {.pixel = 0.0145}, {}, preview_edges, true},
         TileCase{"fine_knots", {.pixel = 0.02, .knots = 700, .smooth = false}, {}, exact_edges},
+        TileCase{"lens", {.lens = 0.2, .focus = 6}, {}, exact_edges},
+        TileCase{"lens_focused_before", {.pixel = 0.02, .lens = 0.4, .focus = 3}, {}, exact_edges},
+        TileCase{"lens_inside",
+                 {.distance = 0.5, .pixel = 0.03, .smooth = false, .lens = 0.3, .focus = 1},
+                 {},
+                 exact_edges},
+        TileCase{"parallel", {.distance = 3, .lens = 0.5}, {}, exact_edges},
         TileCase{"few_photons", {.pixel = 0.03}, {.count = 3, .greatest_radius = 1}, exact_edges}),
     [](const auto& test) { return test.param.name; });
 

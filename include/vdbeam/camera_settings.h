@@ -1,0 +1,77 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <optional>
+#include <string>
+
+namespace vdbeam {
+
+/// What a camera makes of space.
+enum class Projection {
+  perspective,
+  orthographic, ///< parallel rays
+  panorama      ///< lat-long, all around
+};
+
+/// How the world of a camera file is turned into the volume's.
+enum class CameraAxes { same, y_up_to_z_up, z_up_to_y_up };
+
+/// In which order a camera file's three angles turn: zxy turns about Z first, then X, then Y.
+enum class RotationOrder { zxy, xyz, xzy, yxz, yzx, zyx };
+
+/// Over which part of the picture a pixel averages: how its rays are spread.
+enum class PixelFilter { box, gaussian, blackman_harris };
+
+struct ImageSettings {
+  int width = 640;  ///< pixels
+  int height = 360; ///< pixels
+  std::optional<double> fps =
+      std::nullopt;        ///< frames per second of the shot, for the image's attributes alone
+  double pixel_aspect = 1; ///< a pixel's width over its height
+  int overscan = 0;        ///< pixels that are rendered beyond each edge of the picture
+  PixelFilter filter = PixelFilter::box;
+  double filter_width = 0; ///< pixels; 0: automatic
+
+  /// The picture and its overscan.
+  int raster_width() const { return width + 2 * overscan; }
+  int raster_height() const { return height + 2 * overscan; }
+};
+
+struct CameraSettings {
+  Vec3d position{0, 0, 5};
+  Vec3d look_at{0, 0, 0};
+  Vec3d up{0, 1, 0}; ///< the way up of the world, about which skies turn
+  double fov = 30;   ///< vertical, degrees
+  Projection projection = Projection::perspective;
+  std::optional<double> focal_length; ///< mm; instead of fov
+  double film_width = 36;             ///< mm
+  double view_height = 0;             ///< orthographic: height of the picture [world]
+  double shift_x = 0;                 ///< of the picture on the film, in widths, to the right
+  double shift_y = 0;                 ///< likewise in heights, upwards
+  double near = 0;                    ///< plane before which nothing is seen [world]
+  std::optional<double> far;          ///< plane beyond which no medium is seen [world]
+  double lens_radius = 0;             ///< [world]; 0: everything is sharp
+  std::optional<double> f_stop;       ///< instead of lens_radius, with focal_length
+  double unit_in_mm = 1000;           ///< length of a world unit, for f_stop
+  double focus_distance = 0;          ///< along the axis [world]; 0: that of look_at
+  int blades = 0;                     ///< edges of the aperture; 0: round
+  double blade_angle = 0;             ///< turns the aperture counter-clockwise, degrees
+  std::string file;                   ///< where position, direction and roll come from
+  CameraAxes file_axes = CameraAxes::same;
+  RotationOrder file_rotation = RotationOrder::zxy;
+  /// The direction that is up in the picture, where a camera file gives it; otherwise `up`.
+  std::optional<Vec3d> picture_up;
+  double shutter_open = 0;  ///< when the shutter opens, from the frame on [frames]
+  double shutter_close = 0; ///< when it closes
+  int shutter_times = 0;    ///< moments between the two that passes see; 0: automatic
+
+  /// The shutter is open for some time.
+  bool has_shutter() const { return shutter_close > shutter_open; }
+  /// Radius of the lens [world].
+  double aperture_radius() const {
+    return f_stop && focal_length ? *focal_length / (2 * *f_stop * unit_in_mm) : lens_radius;
+  }
+};
+
+} // namespace vdbeam

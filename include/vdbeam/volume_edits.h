@@ -1,0 +1,36 @@
+#pragma once
+
+#include "vdbeam/vec.h"
+
+#include <optional>
+#include <string>
+
+namespace vdbeam {
+
+/// In what a velocity grid measures lengths: the grid's index space or the world.
+enum class VelocityUnits { world, index };
+
+/// How a volume moves, for motion blur.
+struct VelocitySettings {
+  std::string grid; ///< a vec3 grid, or three of floats ("vx,vy,vz"); "auto": found by its name
+  double fps = 24;  ///< frames per second: velocities are lengths per second
+  double scale = 1; ///< factor of the velocities
+  VelocityUnits units = VelocityUnits::world;
+  double time = 0; ///< by which the volume is moved from the moment that its file shows [seconds]
+};
+
+/// What becomes of a grid's values v: clamp(scale * v + offset, least, most) ^ power, and 0 where
+/// that is negative. Where v is 0 the result is 0.
+struct DensityRemap {
+  double scale = 1;
+  double offset = 0;
+  double least = 0;
+  std::optional<double> most;
+  double power = 1;
+
+  bool changes() const {
+    return scale != 1 || offset != 0 || least != 0 || most || power != 1;
+  }
+};
+
+} // namespace vdbeam

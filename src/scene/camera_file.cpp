@@ -1,0 +1,185 @@
+#include "scene/camera_file.h"
+
+#include "scene/scene_enums.h"
+#include "text/text.h"
+#include "vdbeam/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+namespace vdbeam {
+namespace {
+
+constexpr std::size_t chan_numbers = 7, chan_numbers_with_fov = 8, matrix_numbers = 16;
+
+/// One line: a frame and what the file says of it.
+struct CameraKey {
+  double frame = 0;
+  std::vector<double> values; ///< 6 or 7 of a .chan file, or a matrix
+  int line = 0;
+};
+
+[[noreturn]] void fail(const std::string& path, int line, const std::string& text) {
+  throw InputError(one_line(fmt::format("{}:{}: {}", path, line, text)));
+}
+
+/// The numbers of a line; brackets and commas, as programs print matrices, count as spaces.
+std::vector<double> numbers_of(std::string text, const std::string& path, int line) {
+  for (char& c : text)
+    if (c == ',' || c == ';' || c == '[' || c == ']' || c == '(' || c == ')')
+      c = ' ';
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+      value = std::stod(word, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used != word.size() || !std::isfinite(value))
+      fail(path, line, fmt::format("must hold numbers, got {}", word));
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+CameraKey key_of(const std::vector<double>& numbers, const std::string& path, int line) {
+  const std::size_t n = numbers.size();
+  if (n == matrix_numbers)
+    return {0, numbers, line};
+  if (n == chan_numbers || n == chan_numbers_with_fov || n == matrix_numbers + 1)
+    return {numbers[0], {numbers.begin() + 1, numbers.end()}, line};
+  fail(path, line,
+       fmt::format("must hold frame, translation, rotation and field of view (7 or 8 numbers), or "
+                   "a matrix (16, or 17 with the frame), got {}",
+                   count_text(n, "number")));
+}
+
+std::vector<CameraKey> read_keys(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream)
+    throw InputError(one_line(path + ": cannot be opened: no permission to read it"));
+  std::vector<CameraKey> keys;
+  int line = 0;
+  for (std::string text; std::getline(stream, text);) {
+    ++line;
+    if (const auto comment = text.find('#'); comment != std::string::npos)
+      text.erase(comment);
+    const std::vector<double> numbers = numbers_of(text, path, line);
+    if (numbers.empty())
+      continue;
+    keys.push_back(key_of(numbers, path, line));
+    if (keys.size() == 1)
+      continue;
+    if (keys.back().values.size() != keys.front().values.size())
+      fail(path, line, "must hold as many numbers as the lines before");
+    if (!(keys.back().frame > keys[keys.size() - 2].frame))
+      fail(path, line, "must have a greater frame number than the line before");
+  }
+  if (keys.empty())
+    throw InputError(one_line(path + ": holds no camera"));
+  return keys;
+}
+
+/// Rotation of `v` about an axis (0: X, ...) by an angle in degrees.
+Vec3d rotated(const Vec3d& v, int axis, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  const double c = std::cos(angle), s = std::sin(angle);
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  Vec3d result = v;
+  result[a] = c * v[a] - s * v[b];
+  result[b] = s * v[a] + c * v[b];
+  return result;
+}
+
+CameraPose chan_pose(const std::vector<double>& values, RotationOrder order) {
+  const auto turned = [&](Vec3d v) {
+    for (const char axis : enum_name(order))
+      v = rotated(v, axis - 'x', values[static_cast<std::size_t>(3 + axis - 'x')]);
+    return v;
+  };
+  CameraPose pose{{values[0], values[1], values[2]}, turned({0, 0, -1}), turned({0, 1, 0}), {}};
+  if (values.size() > 6)
+    pose.fov = values[6];
+  return pose;
+}
+
+/// Whether the matrices act on row vectors, with the translation in the last row as Houdini and USD
+/// have it, and not in the last column, as Blender has it.
+bool acts_on_rows(const std::vector<CameraKey>& keys, const std::string& path) {
+  bool rows = false, columns = false;
+  for (const CameraKey& key : keys) {
+    for (const std::size_t i : {12, 13, 14})
+      rows = rows || key.values[i] != 0;
+    for (const std::size_t i : {3, 7, 11})
+      columns = columns || key.values[i] != 0;
+    if (key.values[15] != 1 || (rows && columns))
+      fail(path, key.line,
+           "must be a matrix with a last row, or in all lines a last column, of 0 0 0 1");
+  }
+  return rows;
+}
+
+CameraPose matrix_pose(const CameraKey& key, bool rows, const std::string& path) {
+  const auto column = [&](std::size_t i) {
+    const std::vector<double>& m = key.values;
+    return rows ? Vec3d{m[4 * i], m[4 * i + 1], m[4 * i + 2]} : Vec3d{m[i], m[4 + i], m[8 + i]};
+  };
+  const double determinant = dot(column(0), cross(column(1), column(2)));
+  const double size = length(column(0)) * length(column(1)) * length(column(2));
+  if (!(determinant > 1e-6 * size))
+    fail(path, key.line, "must be a rotation (with scales above 0), neither mirrored nor flat");
+  return {column(3), -normalize(column(2)), normalize(column(1)), {}};
+}
+
+Vec3d turned_world(const Vec3d& v, CameraAxes axes) {
+  if (axes == CameraAxes::y_up_to_z_up)
+    return {v.x, -v.z, v.y};
+  if (axes == CameraAxes::z_up_to_y_up)
+    return {v.x, v.z, -v.y};
+  return v;
+}
+
+} // namespace
+
+CameraPose read_camera_file(const CameraSettings& settings, double time) {
+  const std::string& path = settings.file;
+  const std::vector<CameraKey> keys = read_keys(path);
+  const bool matrices = keys.front().values.size() == matrix_numbers;
+  const bool rows = matrices && acts_on_rows(keys, path);
+  const auto next = std::find_if(keys.begin(), keys.end(),
+                                 [&](const CameraKey& key) { return key.frame >= time; });
+  const CameraKey& after = next == keys.end() ? keys.back() : *next;
+  const CameraKey& before = next == keys.begin() || next == keys.end() ? after : *(next - 1);
+  const double width = after.frame - before.frame;
+  const double share = width > 0 ? (time - before.frame) / width : 1;
+  const auto mix = [&](const Vec3d& a, const Vec3d& b) { return a + (b - a) * share; };
+  CameraPose pose;
+  if (matrices) {
+    const CameraPose a = matrix_pose(before, rows, path), b = matrix_pose(after, rows, path);
+    pose = {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), {}};
+  } else {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < after.values.size(); ++i)
+      values.push_back(before.values[i] + (after.values[i] - before.values[i]) * share);
+    pose = chan_pose(values, settings.file_rotation);
+    if (pose.fov && !(*pose.fov > 0 && *pose.fov < 180))
+      fail(path, after.line,
+           fmt::format("must have a field of view in (0, 180) degrees, got {:g}", *pose.fov));
+  }
+  for (Vec3d* v : {&pose.position, &pose.forward, &pose.up})
+    *v = turned_world(*v, settings.file_axes);
+  pose.forward = normalize(pose.forward);
+  pose.up = normalize(pose.up);
+  return pose;
+}
+
+} // namespace vdbeam
