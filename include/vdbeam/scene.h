@@ -122,7 +122,7 @@ struct Scene {
   /// The scene at moments between the shutter's opening and closing, in their order; empty where
   /// nothing moves or the shutter is open for no time. Passes see one of them each.
   std::vector<Scene> moments;
-  FrameTime frame;  ///< which frame of a sequence it is
+  FrameTime frame; ///< which frame of a sequence it is
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;
@@ -130,8 +130,8 @@ struct Scene {
   std::vector<LightSettings> lights;
   RenderSettings render;
   std::vector<LayerSettings> layers; ///< empty: those that every picture has
-  bool black = false;             ///< a volume's file is missing and the frame is to be black
-  std::vector<std::string> notes; ///< for the user: what load_scene chose or found odd
+  bool black = false;                ///< a volume's file is missing and the frame is to be black
+  std::vector<std::string> notes;    ///< for the user: what load_scene chose or found odd
 
   /// A volume's settings let it glow, in this frame or in another.
   bool glows() const {

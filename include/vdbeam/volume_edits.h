@@ -28,9 +28,7 @@ struct DensityRemap {
   std::optional<double> most;
   double power = 1;
 
-  bool changes() const {
-    return scale != 1 || offset != 0 || least != 0 || most || power != 1;
-  }
+  bool changes() const { return scale != 1 || offset != 0 || least != 0 || most || power != 1; }
 };
 
 } // namespace vdbeam

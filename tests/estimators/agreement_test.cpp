@@ -258,6 +258,61 @@ TEST(AgreementOfDirectLight, PhotonsAndShadowRays) {
   }
 }
 
+/// Cameras whose rays do not start at one point, or go all around: beam queries take them in tiles.
+void expect_cameras_agree(const MemoryScene& scene, double power = 0.02) {
+  const PassMeans truth = truth_of(scene);
+  expect_agreement(scene, truth, EstimatorType::beam, 48, 0.005, power);
+  expect_agreement(scene, truth, EstimatorType::march, 48, 0.005, power);
+}
+
+TEST(AgreementOfCamera, ThinLens) {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.volumes[0].phase = test::henyey_greenstein(0.4);
+  scene.scene.camera.lens_radius = 0.15;
+  scene.scene.camera.blades = 5;
+  expect_cameras_agree(scene);
+  scene.scene.camera.lens_radius = 1; // wider than the medium, focused before it
+  scene.scene.camera.focus_distance = 1.5;
+  expect_cameras_agree(scene);
+}
+
+TEST(AgreementOfCamera, ParallelRays) {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.camera.projection = Projection::orthographic;
+  scene.scene.camera.view_height = 1.2;
+  expect_cameras_agree(scene);
+}
+
+/// Parallel rays are those of a pinhole far away.
+TEST(AgreementOfCamera, ParallelRaysAreAFarPinholes) {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.camera.projection = Projection::orthographic;
+  scene.scene.camera.view_height = 1.2;
+  const PassMeans parallel = test::render_passes(scene, EstimatorType::beam, 24);
+  scene.scene.camera.projection = Projection::perspective;
+  const Vec3d towards = normalize(scene.scene.camera.position);
+  const double distance = 1e5;
+  scene.scene.camera.position = towards * distance;
+  scene.scene.camera.fov = 360 / M_PI * std::atan(0.6 / distance);
+  const PassMeans far = test::render_passes(scene, EstimatorType::beam, 24);
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(parallel.total[c].mean(), far.total[c].mean(), 1e-3 * far.total[c].mean());
+}
+
+TEST(AgreementOfCamera, Panorama) {
+  MemoryScene scene = sun_and_sky();
+  scene.look({0.2, 0.1, 0.4}, {0, 0, 0}, 60, 32, 16);
+  scene.scene.camera.projection = Projection::panorama;
+  expect_cameras_agree(scene, 0.03);
+}
+
+TEST(AgreementOfCamera, ClippedMedium) {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.camera.near = 2.4;
+  scene.scene.camera.far = 2.7;
+  expect_cameras_agree(scene);
+}
+
 TEST(AgreementOfCamera, InsideTheMedium) {
   MemoryScene scene = sun_and_sky();
   scene.look({0.05, -0.1, 0.1}, {0.4, 0.2, -1}, 60, 16, 16);

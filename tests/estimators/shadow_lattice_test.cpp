@@ -65,7 +65,7 @@ Direct measure(const MemoryScene& scene, double rays) {
       double sums[2] = {};
       for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x) {
-          const CameraRay ray = camera_ray(world, camera, x + 0.5, y + 0.5);
+          const CameraRay ray = camera_ray(world, camera, camera.ray(x + 0.5, y + 0.5));
           DepthProfile profile;
           profile.build(world.medium, ray.segment, 1e-6f);
           Rng rng({3, 1, draw + (guided ? 1000 : 0)}, RngStage::direct,

@@ -47,7 +47,8 @@ TEST_F(CameraFile, InterpolatesAndHolds) {
 
 /// At (5, 6, 7), turned by 90 degrees about Y: X to -Z, and -Z, where it looks, to -X.
 TEST_F(CameraFile, MatricesOfBothConventions) {
-  const CameraSettings blender = camera("[[0, 0, 1, 5], [0, 1, 0, 6], [-1, 0, 0, 7], [0, 0, 0, 1]]");
+  const CameraSettings blender =
+      camera("[[0, 0, 1, 5], [0, 1, 0, 6], [-1, 0, 0, 7], [0, 0, 0, 1]]");
   expect_near(blender.position, {5, 6, 7});
   expect_view(blender, {-1, 0, 0}, {0, 1, 0});
   const CameraSettings houdini = camera("1  0 0 -1 0  0 1 0 0  1 0 0 0  5 6 7 1\n");

@@ -213,8 +213,8 @@ TEST(CameraView, NeverDeniesWhatItSees) {
     const Boxd box{{0, 0, 0}, {0.5, 0.7, 0.4}};
     bool met = false;
     for (int r = 0; r < 300; ++r) {
-      const EyeRay ray = camera.sample(static_cast<int>(number(0, 40)),
-                                       static_cast<int>(number(0, 30)), rng);
+      const EyeRay ray =
+          camera.sample(static_cast<int>(number(0, 40)), static_cast<int>(number(0, 30)), rng);
       double t0 = 0, t1 = 1e9;
       for (int a = 0; a < 3; ++a) {
         const double x = (box.lower[a] - ray.origin[a]) / ray.direction[a];

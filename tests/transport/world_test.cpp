@@ -19,12 +19,12 @@ TEST(Camera, MapsPixelsToDirections) {
   const Camera camera(settings, {200, 100}, {{1, 1, 1}, 2});
   const auto near = [](const Vec3d& a, const Vec3d& b) { return length(a - b) < 1e-12; };
   EXPECT_TRUE(near(camera.origin(), {0, 2, 4}));
-  EXPECT_TRUE(near(camera.direction(100, 50), {0, 0, -1}));
+  EXPECT_TRUE(near(camera.ray(100, 50).direction, {0, 0, -1}));
   const double tan_half = std::tan(std::numbers::pi / 6);
   // The upper edge lies half the field of view above; pixels are square.
-  EXPECT_TRUE(near(camera.direction(100, 0), normalize(Vec3d(0, tan_half, -1))));
-  EXPECT_TRUE(near(camera.direction(200, 50), normalize(Vec3d(2 * tan_half, 0, -1))));
-  EXPECT_TRUE(near(camera.direction(0, 100), normalize(Vec3d(-2 * tan_half, -tan_half, -1))));
+  EXPECT_TRUE(near(camera.ray(100, 0).direction, normalize(Vec3d(0, tan_half, -1))));
+  EXPECT_TRUE(near(camera.ray(200, 50).direction, normalize(Vec3d(2 * tan_half, 0, -1))));
+  EXPECT_TRUE(near(camera.ray(0, 100).direction, normalize(Vec3d(-2 * tan_half, -tan_half, -1))));
 }
 
 /// A noisy box lit from a side, seen from another.
