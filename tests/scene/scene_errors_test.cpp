@@ -53,9 +53,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nseed = 1\n",
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
-                 "s.toml:2: unknown key image.zzz; its keys are width, height and fps"},
-        BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, mesh, "
-                              "light and render"}));
+                 "s.toml:2: unknown key image.zzz; its keys are width, height, fps, pixel_aspect, "
+                 "overscan, filter and filter_width"},
+        BadScene {
+          "zzz = 1
+          ", "s.toml : 1 : unknown key zzz;
+          the tables are image, camera, volume, mesh,
+              "
+              "light and render"
+        }));
 
 INSTANTIATE_TEST_SUITE_P(
     Types, BadSceneFile,
