@@ -50,14 +50,14 @@ struct CameraSettings {
   double shift_x = 0;                 ///< of the picture on the film, in widths, to the right
   double shift_y = 0;                 ///< likewise in heights, upwards
   double near = 0;                    ///< plane before which nothing is seen [world]
-  std::optional<double> far;          ///< plane beyond which no medium is seen [world]
-  double lens_radius = 0;             ///< [world]; 0: everything is sharp
-  std::optional<double> f_stop;       ///< instead of lens_radius, with focal_length
-  double unit_in_mm = 1000;           ///< length of a world unit, for f_stop
-  double focus_distance = 0;          ///< along the axis [world]; 0: that of look_at
-  int blades = 0;                     ///< edges of the aperture; 0: round
-  double blade_angle = 0;             ///< turns the aperture counter-clockwise, degrees
-  std::string file;                   ///< where position, direction and roll come from
+  std::optional<double> far;    ///< plane beyond which neither medium nor surface is seen [world]
+  double lens_radius = 0;       ///< [world]; 0: everything is sharp
+  std::optional<double> f_stop; ///< instead of lens_radius, with focal_length
+  double unit_in_mm = 1000;     ///< length of a world unit, for f_stop
+  double focus_distance = 0;    ///< along the axis [world]; 0: that of look_at
+  int blades = 0;               ///< edges of the aperture; 0: round
+  double blade_angle = 0;       ///< turns the aperture counter-clockwise, degrees
+  std::string file;             ///< where position, direction and roll come from
   CameraAxes file_axes = CameraAxes::same;
   RotationOrder file_rotation = RotationOrder::zxy;
   /// The direction that is up in the picture, where a camera file gives it; otherwise `up`.

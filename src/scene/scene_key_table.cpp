@@ -154,8 +154,8 @@ void add_camera_lens(Table& table) {
       .above(0);
   table.add("shift_x", &C::shift_x, "moves the picture on the film to the right, in its widths");
   table.add("shift_y", &C::shift_y, "moves the picture on the film up, in its heights");
-  table.add("near", &C::near, "depth before which no medium is seen").unit("world").at_least(0);
-  table.add("far", &C::far, "depth beyond which no medium is seen")
+  table.add("near", &C::near, "depth before which nothing is seen").unit("world").at_least(0);
+  table.add("far", &C::far, "depth beyond which neither medium nor surface is seen")
       .unit("world")
       .above(0)
       .absent("none");
