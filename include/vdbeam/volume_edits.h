@@ -12,7 +12,9 @@ enum class VelocityUnits { world, index };
 
 /// How a volume moves, for motion blur.
 struct VelocitySettings {
-  std::string grid; ///< a vec3 grid, or three of floats ("vx,vy,vz"); "auto": found by its name
+  /// A vec3 grid, or three of floats ("vx,vy,vz"); "auto": found by its name; "none": it stands
+  /// still.
+  std::string grid = "auto";
   double fps = 24;  ///< frames per second: velocities are lengths per second
   double scale = 1; ///< factor of the velocities
   VelocityUnits units = VelocityUnits::world;
