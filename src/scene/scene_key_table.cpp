@@ -1,215 +1,11 @@
-#include "scene/key_access.h"
-
-#include <limits>
+#include "scene/scene_key_builder.h"
 
 namespace vdbeam {
 namespace {
 
-template <class T>
-struct Unwrapped {
-  using type = T;
-};
-template <class T>
-struct Unwrapped<std::optional<T>> {
-  using type = T;
-};
-
-template <class T>
-constexpr KeyKind kind_of() {
-  if constexpr (is_choice<T>)
-    return KeyKind::choice;
-  else if constexpr (std::is_same_v<T, bool>)
-    return KeyKind::boolean;
-  else if constexpr (std::is_integral_v<T>)
-    return KeyKind::integer;
-  else if constexpr (std::is_same_v<T, double>)
-    return KeyKind::number;
-  else if constexpr (std::is_same_v<T, Vec3d>)
-    return KeyKind::vector;
-  else if constexpr (std::is_same_v<T, Rgb>)
-    return KeyKind::color;
-  else if constexpr (std::is_same_v<T, std::string>)
-    return KeyKind::text;
-  else
-    return KeyKind::matrix;
-}
-
-/// A key under construction; each call below adds one property.
-struct Entry {
-  SceneKey key;
-
-  Entry& unit(std::string text) { return set(key.unit, std::move(text)); }
-  Entry& kind(KeyKind k) { return set(key.kind, k); }
-  Entry& types(std::vector<std::string> t) { return set(key.types, std::move(t)); }
-  Entry& absent(std::string word) { return set(key.absent_word, std::move(word)); }
-  Entry& required() { return set(key.required, true); }
-  Entry& one_for_all() { return set(key.one_for_all, true); }
-  Entry& keeps_picture() { return set(key.changes_picture, false); }
-  Entry& stop_rule() { return set(key.stop_rule, true); }
-  Entry& always_written() { return set(key.always_written, true); }
-  Entry& keeps_world() { return set(key.changes_world, false); }
-  Entry& scales_emission() { return set(key.scales_emission, true); }
-  Entry& at_least(double low) { return set(key.range.lower, low); }
-  Entry& above(double low) { return at_least(low).set(key.range.lower_open, true); }
-  Entry& within(double low, double high) { return set(key.range, {.lower = low, .upper = high}); }
-  Entry& inside(double low, double high) {
-    return set(key.range, {.lower = low, .upper = high, .lower_open = true, .upper_open = true});
-  }
-  Entry& above_up_to(double low, double high) {
-    return set(key.range, {.lower = low, .upper = high, .lower_open = true});
-  }
-
-private:
-  template <class T>
-  Entry& set(T& field, T value) {
-    field = std::move(value);
-    return *this;
-  }
-};
-
-class Table {
-public:
-  explicit Table(std::vector<Entry>& entries) : entries_(entries) { entries_.reserve(64); }
-
-  void section(SceneSection s) { section_ = s; }
-
-  template <class S, class T>
-  Entry& add(const char* name, T S::*member, const char* doc) {
-    Entry& entry = add_unbound<typename Unwrapped<T>::type>(name, doc);
-    bind_member(entry.key, member);
-    return entry;
-  }
-  /// A number whose 0 is written "auto".
-  template <class S, class T>
-  Entry& add_auto(const char* name, T S::*member, const char* doc) {
-    Entry& entry = add_unbound<T>(name, doc);
-    bind_member_zero_is_absent(entry.key, member);
-    return entry.absent("auto");
-  }
-  template <class T>
-  Entry& add_unbound(const char* name, const char* doc) {
-    Entry& entry = entries_.emplace_back();
-    entry.key.section = section_;
-    entry.key.name = name;
-    entry.key.doc = doc;
-    entry.key.kind = kind_of<T>();
-    if constexpr (is_choice<T>)
-      entry.key.choices = choice_names<T>();
-    if constexpr (is_kind<T>)
-      entry.key.choice_docs = kind_docs<T>();
-    entry.key.one_for_all = entry.key.kind == KeyKind::color;
-    if constexpr (std::is_integral_v<T>)
-      entry.key.range.upper = static_cast<double>(std::numeric_limits<T>::max());
-    return entry;
-  }
-
-private:
-  std::vector<Entry>& entries_;
-  SceneSection section_ = SceneSection::image;
-};
-
-void add_image(Table& table) {
-  using I = ImageSettings;
-  table.section(SceneSection::image);
-  table.add("width", &ImageSettings::width, "width of the picture")
-      .unit("pixels")
-      .within(1, 65536)
-      .always_written()
-      .keeps_world();
-  table.add("height", &ImageSettings::height, "height of the picture")
-      .unit("pixels")
-      .within(1, 65536)
-      .always_written()
-      .keeps_world();
-
-  table
-      .add("fps", &ImageSettings::fps,
-           "frames per second, for the attributes framesPerSecond and timeCode of the image")
-      .within(1, 1000)
-      .absent("none")
-      .keeps_picture()
-      .keeps_world();
-  table.add("pixel_aspect", &I::pixel_aspect, "width of a pixel over its height")
-      .within(0.01, 100)
-      .keeps_world();
-  table.add("overscan", &I::overscan, "pixels that are rendered beyond each edge of the picture")
-      .unit("pixels")
-      .within(0, 16384)
-      .keeps_world();
-  table.add("filter", &I::filter, "how a pixel's rays are spread").keeps_world();
-  table.add_auto("filter_width", &I::filter_width, "width of the filter; auto: 1 for a box, else 2")
-      .unit("pixels")
-      .above_up_to(0, 16)
-      .keeps_world();
-}
-
-void add_camera_lens(Table& table) {
-  using C = CameraSettings;
-  table.add("focal_length", &C::focal_length, "instead of fov: focal length for film_width")
-      .unit("mm")
-      .above(0)
-      .absent("none");
-  table.add("film_width", &C::film_width, "width of the film that the picture fills")
-      .unit("mm")
-      .above(0);
-  table.add("shift_x", &C::shift_x, "moves the picture on the film to the right, in its widths");
-  table.add("shift_y", &C::shift_y, "moves the picture on the film up, in its heights");
-  table.add("near", &C::near, "depth before which nothing is seen").unit("world").at_least(0);
-  table.add("far", &C::far, "depth beyond which neither medium nor surface is seen")
-      .unit("world")
-      .above(0)
-      .absent("none");
-  table.add("lens_radius", &C::lens_radius, "radius of a thin lens; 0: everything is sharp")
-      .unit("world")
-      .at_least(0);
-  table.add("f_stop", &C::f_stop, "instead of lens_radius: focal_length over the lens's diameter")
-      .above(0)
-      .absent("none");
-  table.add("unit_in_mm", &C::unit_in_mm, "length of a world unit, for f_stop").unit("mm").above(0);
-  table
-      .add_auto("focus_distance", &C::focus_distance,
-                "depth of the plane that is sharp; auto: that of look_at")
-      .unit("world")
-      .above(0);
-  table.add("blades", &C::blades, "edges of the lens's aperture; 0: it is round").within(0, 64);
-  table.add("blade_angle", &C::blade_angle, "turns the aperture counter-clockwise").unit("degrees");
-}
-
-void add_camera(Table& table) {
-  using C = CameraSettings;
-  table.section(SceneSection::camera);
-  table.add("position", &CameraSettings::position, "where the camera stands")
-      .unit("world")
-      .always_written()
-      .keeps_world();
-  table.add("look_at", &CameraSettings::look_at, "the point in the middle of the picture")
-      .unit("world")
-      .always_written()
-      .keeps_world();
-  table.add("up", &CameraSettings::up, "the direction that is up in the picture").always_written();
-  table.add("fov", &CameraSettings::fov, "vertical field of view")
-      .unit("degrees")
-      .inside(0, 180)
-      .always_written()
-      .keeps_world();
-  table.add("projection", &C::projection,
-            "perspective, parallel rays, or a lat-long picture of all directions");
-  table.add_auto("view_height", &C::view_height, "orthographic: height of what the picture shows")
-      .unit("world")
-      .above(0)
-      .absent("none");
-  add_camera_lens(table);
-  table
-      .add("file", &C::file,
-           "a file with the camera's motion, instead of position and look_at (see below)")
-      .kind(KeyKind::file);
-  table.add("file_axes", &C::file_axes, "how the world of the file is turned into this one");
-  table.add("file_rotation", &C::file_rotation, "which of a .chan file's angles turns first");
-}
-
 /// Where a volume or mesh stands.
 template <class S>
-void add_placement(Table& table, std::array<double, 12> S::*transform) {
+void add_placement(KeyTable& table, std::array<double, 12> S::*transform) {
   table.add("transform", transform,
             "row-major 3x4 matrix applied after its own transform; excludes the next three");
   table.add_unbound<Vec3d>("translate", "moves it, after rotating it").unit("world");
@@ -218,7 +14,7 @@ void add_placement(Table& table, std::array<double, 12> S::*transform) {
   table.add_unbound<Vec3d>("scale", "scales it about the origin, before rotating it").one_for_all();
 }
 
-void add_volume(Table& table) {
+void add_volume(KeyTable& table) {
   using V = VolumeSettings;
   table.section(SceneSection::volume);
   table.add("file", &V::file, "the VDB; ####, %04d or $F4 stands for the frame number")
@@ -250,7 +46,7 @@ void add_volume(Table& table) {
       .types({"mie"});
 }
 
-void add_emission(Table& table) {
+void add_emission(KeyTable& table) {
   using E = EmissionSettings;
   table.section(SceneSection::emission);
   table.add(
@@ -272,7 +68,7 @@ void add_emission(Table& table) {
       .scales_emission();
 }
 
-void add_mesh(Table& table) {
+void add_mesh(KeyTable& table) {
   using S = SurfaceSettings;
   table.section(SceneSection::mesh);
   table.add("type", &S::shape,
@@ -306,7 +102,7 @@ void add_mesh(Table& table) {
   table.add("two_sided", &M::two_sided, "whether its back shines too").types({"emissive"});
 }
 
-void add_light(Table& table) {
+void add_light(KeyTable& table) {
   using L = LightSettings;
   table.section(SceneSection::light);
   table.add("type", &L::type, "kind of light").required();
@@ -345,7 +141,7 @@ void add_light(Table& table) {
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
 }
 
-void add_stop_rule(Table& table) {
+void add_stop_rule(KeyTable& table) {
   using R = RenderSettings;
   table.add("passes", &R::passes, "passes to render; 64 where no limit at all is given")
       .at_least(1)
@@ -364,7 +160,7 @@ void add_stop_rule(Table& table) {
       .stop_rule();
 }
 
-void add_render(Table& table) {
+void add_render(KeyTable& table) {
   using R = RenderSettings;
   table.section(SceneSection::render);
   table.add("estimator", &R::estimator, "how light is found").always_written();
@@ -426,10 +222,10 @@ void add_render(Table& table) {
 }
 
 std::vector<SceneKey> make_table() {
-  std::vector<Entry> entries;
-  Table table(entries);
-  add_image(table);
-  add_camera(table);
+  std::vector<KeyEntry> entries;
+  KeyTable table(entries);
+  add_image_keys(table);
+  add_camera_keys(table);
   add_volume(table);
   add_emission(table);
   add_mesh(table);
@@ -437,7 +233,7 @@ std::vector<SceneKey> make_table() {
   add_render(table);
   std::vector<SceneKey> keys;
   keys.reserve(entries.size());
-  for (Entry& entry : entries)
+  for (KeyEntry& entry : entries)
     keys.push_back(std::move(entry.key));
   for (SceneKey& key : keys) {
     // Skies turn about the camera's way up; nothing else of it is part of the world.

@@ -1,0 +1,108 @@
+#include "scene/scene_key_builder.h"
+
+namespace vdbeam {
+
+void add_image_keys(KeyTable& table) {
+  using I = ImageSettings;
+  table.section(SceneSection::image);
+  table.add("width", &ImageSettings::width, "width of the picture")
+      .unit("pixels")
+      .within(1, 65536)
+      .always_written()
+      .keeps_world();
+  table.add("height", &ImageSettings::height, "height of the picture")
+      .unit("pixels")
+      .within(1, 65536)
+      .always_written()
+      .keeps_world();
+
+  table
+      .add("fps", &ImageSettings::fps,
+           "frames per second, for the attributes framesPerSecond and timeCode of the image")
+      .within(1, 1000)
+      .absent("none")
+      .keeps_picture()
+      .keeps_world();
+  table.add("pixel_aspect", &I::pixel_aspect, "width of a pixel over its height")
+      .within(0.01, 100)
+      .keeps_world();
+  table.add("overscan", &I::overscan, "pixels that are rendered beyond each edge of the picture")
+      .unit("pixels")
+      .within(0, 16384)
+      .keeps_world();
+  table.add("filter", &I::filter, "how a pixel's rays are spread").keeps_world();
+  table.add_auto("filter_width", &I::filter_width, "width of the filter; auto: 1 for a box, else 2")
+      .unit("pixels")
+      .above_up_to(0, 16)
+      .keeps_world();
+}
+
+namespace {
+
+void add_lens_keys(KeyTable& table) {
+  using C = CameraSettings;
+  table.add("focal_length", &C::focal_length, "instead of fov: focal length for film_width")
+      .unit("mm")
+      .above(0)
+      .absent("none");
+  table.add("film_width", &C::film_width, "width of the film that the picture fills")
+      .unit("mm")
+      .above(0);
+  table.add("shift_x", &C::shift_x, "moves the picture on the film to the right, in its widths");
+  table.add("shift_y", &C::shift_y, "moves the picture on the film up, in its heights");
+  table.add("near", &C::near, "depth before which nothing is seen").unit("world").at_least(0);
+  table.add("far", &C::far, "depth beyond which neither medium nor surface is seen")
+      .unit("world")
+      .above(0)
+      .absent("none");
+  table.add("lens_radius", &C::lens_radius, "radius of a thin lens; 0: everything is sharp")
+      .unit("world")
+      .at_least(0);
+  table.add("f_stop", &C::f_stop, "instead of lens_radius: focal_length over the lens's diameter")
+      .above(0)
+      .absent("none");
+  table.add("unit_in_mm", &C::unit_in_mm, "length of a world unit, for f_stop").unit("mm").above(0);
+  table
+      .add_auto("focus_distance", &C::focus_distance,
+                "depth of the plane that is sharp; auto: that of look_at")
+      .unit("world")
+      .above(0);
+  table.add("blades", &C::blades, "edges of the lens's aperture; 0: it is round").within(0, 64);
+  table.add("blade_angle", &C::blade_angle, "turns the aperture counter-clockwise").unit("degrees");
+}
+
+} // namespace
+
+void add_camera_keys(KeyTable& table) {
+  using C = CameraSettings;
+  table.section(SceneSection::camera);
+  table.add("position", &CameraSettings::position, "where the camera stands")
+      .unit("world")
+      .always_written()
+      .keeps_world();
+  table.add("look_at", &CameraSettings::look_at, "the point in the middle of the picture")
+      .unit("world")
+      .always_written()
+      .keeps_world();
+  table.add("up", &CameraSettings::up, "the direction that is up in the picture").always_written();
+  table.add("fov", &CameraSettings::fov, "vertical field of view")
+      .unit("degrees")
+      .inside(0, 180)
+      .always_written()
+      .keeps_world();
+  table.add("projection", &C::projection,
+            "perspective, parallel rays, or a lat-long picture of all directions");
+  table.add_auto("view_height", &C::view_height, "orthographic: height of what the picture shows")
+      .unit("world")
+      .above(0)
+      .absent("none");
+  add_lens_keys(table);
+  table
+      .add("file", &C::file,
+           "a file with the camera's motion, instead of position and look_at (see below)")
+      .kind(KeyKind::file);
+  table.add("file_axes", &C::file_axes, "how the world of the file is turned into this one");
+  table.add("file_rotation", &C::file_rotation, "which of a .chan file's angles turns first");
+}
+
+} // namespace vdbeam
