@@ -55,13 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[image]\nzzz = 1\n",
                  "s.toml:2: unknown key image.zzz; its keys are width, height, fps, pixel_aspect, "
                  "overscan, filter and filter_width"},
-        BadScene {
-          "zzz = 1
-          ", "s.toml : 1 : unknown key zzz;
-          the tables are image, camera, volume, mesh,
-              "
-              "light and render"
-        }));
+        BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
+                              "mesh, light and render"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Types, BadSceneFile,
