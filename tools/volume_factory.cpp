@@ -262,6 +262,32 @@ Grids simulation(const VolumeOptions& options) {
   return grids;
 }
 
+/// The velocity (1, 2, 3) of a ball: one staggered grid, as Mantaflow writes it.
+Grids staggered(const VolumeOptions& options) {
+  const FloatGrid::Ptr ball = sphere(options);
+  const auto velocity = openvdb::Vec3SGrid::create();
+  velocity->setTransform(ball->transformPtr());
+  velocity->setName("velocity");
+  velocity->setGridClass(openvdb::GRID_STAGGERED);
+  auto accessor = velocity->getAccessor();
+  for (auto value = ball->cbeginValueOn(); value; ++value)
+    accessor.setValue(value.getCoord(), openvdb::Vec3s(1, 2, 3));
+  return {ball, velocity};
+}
+
+/// The same as three grids of numbers, as some of Houdini's files have it.
+Grids components(const VolumeOptions& options) {
+  Grids grids{sphere(options)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const FloatGrid::Ptr component = sphere(options);
+    for (auto value = component->beginValueOn(); value; ++value)
+      value.setValue(static_cast<float>(axis + 1));
+    component->setName(std::string("vel.") + "xyz"[axis]);
+    grids.push_back(component);
+  }
+  return grids;
+}
+
 struct Recipe {
   const char* name;
   const char* description;
@@ -304,6 +330,8 @@ const std::vector<Recipe>& recipes() {
       single("integer", "an int32 grid where a density is expected", converted<openvdb::Int32Grid>),
       {"duplicates", "two grids of one name: the noise cloud, and a sphere twice as dense",
        duplicates},
+      {"staggered", "a ball and its staggered velocity (1, 2, 3)", staggered},
+      {"components", "a ball and its velocity (1, 2, 3) in three grids", components},
       {"simulation", "grids density, temperature and velocity", simulation},
   };
   return all;

@@ -35,6 +35,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
           image.move_to_direct(pixel, light_of(scratch.tile.first_flight, i));
       }
   });
+  photons_.release();
 }
 
 namespace {

@@ -21,7 +21,7 @@ bool KernelSupport::inside(const Vec3f& point) const {
 }
 
 float KernelSupport::disc_share(const Vec3f& photon, float radius) const {
-  const Vec3f view(camera_.direction_towards(Vec3d(photon)));
+  const Vec3f view(camera_->direction_towards(Vec3d(photon)));
   Vec3f u, v;
   orthonormal_frame(view, u, v);
   int hits = 0;

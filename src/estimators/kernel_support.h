@@ -12,8 +12,8 @@ namespace vdbeam {
 /// estimate stays consistent.
 class KernelSupport {
 public:
-  /// The medium, in render space, must outlive this.
-  KernelSupport(const Medium& medium, const Camera& camera) : medium_(&medium), camera_(camera) {}
+  /// The medium, in render space, and the camera, which may move in between, must outlive this.
+  KernelSupport(const Medium& medium, const Camera& camera) : medium_(&medium), camera_(&camera) {}
 
   /// Fraction of the disc of radius r around a photon, perpendicular to the ray of the picture that
   /// comes nearest. (Beside the camera a photon is seen by rays that do not lead to it at all.)
@@ -28,14 +28,14 @@ private:
   bool inside(const Vec3f& point) const;
 
   const Medium* medium_;
-  Camera camera_;
+  const Camera* camera_;
 };
 
 /// What a kernel is normalised over: the disc across the camera ray, or the ball.
 enum class KernelDomain { disc, ball };
 
 /// The share that photons' powers of a map are to be divided by for this camera; none where the
-/// estimate gains nothing by it. The input's world must outlive it.
+/// estimate gains nothing by it. The input's world and camera must outlive it.
 KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain);
 
 } // namespace vdbeam

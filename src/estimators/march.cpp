@@ -107,6 +107,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
                   image.move_to_direct(ray.pixel, straight);
                 }
               });
+  photons_.release();
 }
 
 namespace {

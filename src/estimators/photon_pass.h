@@ -19,6 +19,9 @@ public:
   /// Makes the map of a pass. Radii shrink from pass to pass.
   void trace_and_build(int pass, RenderStatistics& statistics);
 
+  /// Drops the map until the next pass: where passes see different worlds, each has its own.
+  void release() { map_ = PhotonMap(); }
+
   const PhotonPlan& plan() const { return plan_; }
   /// Tell where direct light is to be looked for; empty where they cannot.
   const ShadowLattices& shadows() const { return shadows_; }

@@ -52,7 +52,8 @@ std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& i
   const World& world = input.world;
   const RenderPlan& plan = input.plan;
   std::vector<std::string> notes;
-  if (input.world.medium.visible() && !may_see_medium(input.world, input.camera)) {
+  if (scene.moments.empty() && input.world.medium.visible() &&
+      !may_see_medium(input.world, input.camera)) {
     const RenderSpace& space = input.world.space;
     const Vec3d at = space.origin + Vec3d(input.world.medium.bounds.center()) / space.scale;
     notes.push_back(fmt::format("no volume is in the picture: the camera looks past all of them, "

@@ -47,7 +47,8 @@ RenderPlan make_plan(const Scene& scene) {
   }
   const Camera camera(scene.camera, scene.image, {});
   for (VolumeFacts& fact : facts)
-    fact.in_view = (!fact.empty || fact.glowing_voxels > 0) && camera.may_see(bounds);
+    fact.in_view = (!fact.empty || fact.glowing_voxels > 0) &&
+                   (!scene.moments.empty() || camera.may_see(bounds));
   return plan_stages(scene, facts);
 }
 

@@ -74,10 +74,10 @@ void PassLoop::note(const std::string& line) {
     hooks_.on_note(line);
 }
 
-void PassLoop::run(Estimator& estimator, BiasProbe* probe, const EstimatorInput& quick_look) {
+void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
   since_attempt_.restart();
   while (!finished())
-    render_pass(estimator, probe);
+    render_pass(shutter);
   if (result_.stopped_by == "stop")
     write_checkpoint();
   else if (!frame_.partial.empty())
@@ -103,8 +103,9 @@ void PassLoop::run(Estimator& estimator, BiasProbe* probe, const EstimatorInput&
 }
 
 /// Adds the next pass to the film, or nothing where it was stopped.
-void PassLoop::render_pass(Estimator& estimator, BiasProbe* probe) {
+void PassLoop::render_pass(Shutter& shutter) {
   const Stopwatch watch;
+  const auto [estimator, probe] = shutter.at(next_pass(), result_.statistics);
   estimator.render_pass(next_pass(), image_, result_.statistics);
   if (stop_.requested() || !is_finished(image_, window_))
     return;

@@ -3,7 +3,7 @@
 #include "estimators/estimator.h"
 #include "film/film_file.h"
 #include "machine/stopwatch.h"
-#include "render/bias_probe.h"
+#include "render/shutter.h"
 
 #include <chrono>
 
@@ -21,9 +21,8 @@ public:
   /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
   /// plan of the path estimator (plan_paths).
   void show_quick_look(EstimatorInput input);
-  /// `probe` tells the bias; null where the estimator has none or nobody asks. `quick_look` is the
-  /// input of the quick look that stands for a picture without any pass.
-  void run(Estimator& estimator, BiasProbe* probe, const EstimatorInput& quick_look);
+  /// `quick_look` is the input of the quick look that stands for a picture without any pass.
+  void run(Shutter& shutter, const EstimatorInput& quick_look);
 
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
 
@@ -47,7 +46,7 @@ private:
   FilmFileInfo file_info() const;
   bool time_is_over() const;
   void set_deadline();
-  void render_pass(Estimator& estimator, BiasProbe* probe);
+  void render_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
   double limit_seconds() const;
   void note(const std::string& line);

@@ -181,11 +181,12 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
 }
 
 std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
-                                      const Camera& camera) {
+                                      const Camera& camera, bool moves) {
   std::vector<VolumeFacts> volumes;
+  // Where the shutter is open, what is out of view may come into it.
   for (const WorldFacts::Voxels& voxels : facts.volumes)
-    volumes.push_back(
-        {voxels.density == 0, voxels.density, may_see_medium(world, camera), voxels.emission});
+    volumes.push_back({voxels.density == 0, voxels.density, moves || may_see_medium(world, camera),
+                       voxels.emission});
   return volumes;
 }
 

@@ -13,9 +13,10 @@ struct VolumeFacts {
   std::uint64_t glowing_voxels = 0; ///< of its emission grids; 0: it does not glow
 };
 
-/// The same of a world that is built already.
+/// The same of a world that is built already. `moves`: passes see other moments than this one, so
+/// that nothing counts as out of view.
 std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
-                                      const Camera& camera);
+                                      const Camera& camera, bool moves = false);
 
 /// What the path estimator would do about the frame: quick looks are made by it, and the bias of
 /// the other estimators is measured against it.

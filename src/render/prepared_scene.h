@@ -3,6 +3,7 @@
 #include "estimators/photon_cache.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
+#include "volume/velocity_field.h"
 
 #include <memory>
 #include <string>
@@ -18,6 +19,9 @@ struct ReadVolume {
   std::string identity; ///< file, its size and time of change, grid; empty: nothing was read
   DensityGrid facts;    ///< all but the field
   int index = -1;       ///< where the medium holds its field; -1: it is empty
+  /// Its velocity, read where passes see it at several moments; null where it has none.
+  std::shared_ptr<const VelocityField> velocity;
+  std::string velocity_identity; ///< what it was read from; empty: nothing was read
 };
 
 class PreparedScene {
@@ -31,5 +35,9 @@ public:
   std::shared_ptr<PhotonCache> photons;
   double seconds_read = 0, seconds_build = 0;
 };
+
+/// Every value that the world of a scene is made from, as text; of moments of a scene that is
+/// prepared also by how much its volumes are moved.
+std::string moved_world_settings(const Scene& moment, const PreparedScene& prepared);
 
 } // namespace vdbeam

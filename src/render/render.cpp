@@ -9,6 +9,7 @@
 #include "render/pass_loop.h"
 #include "render/plan.h"
 #include "render/prepared_scene.h"
+#include "render/shutter.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
@@ -68,7 +69,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   result.statistics.read = prepared->seconds_read;
   result.statistics.prepare = prepared->seconds_build;
   const Camera camera(scene.camera, scene.image, world.space);
-  const std::vector<VolumeFacts> volumes = volume_facts(prepared->facts, world, camera);
+  const std::vector<VolumeFacts> volumes =
+      volume_facts(prepared->facts, world, camera, !scene.moments.empty());
   result.plan = plan_stages(scene, volumes);
   result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
   check_memory(scene, result.plan, granted_memory());
@@ -83,13 +85,10 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const RenderPlan path_plan = plan_paths(scene, volumes);
   const EstimatorInput path_input = input.with(path_plan);
   loop.show_quick_look(path_input);
-  const Stopwatch watch;
-  const std::unique_ptr<Estimator> estimator = make_estimator(scene.render.estimator, input);
-  std::optional<BiasProbe> probe;
-  if (result.plan.needs(Stage::bias))
-    probe.emplace(path_input, window, loop.probe_pixels());
-  result.statistics.pilot = watch.seconds();
-  loop.run(*estimator, probe ? &*probe : nullptr, path_input);
+  Shutter shutter(scene, prepared, input, path_plan, loop.probe_pixels());
+  if (scene.moments.empty())
+    shutter.at(0, result.statistics); // its pilot does not count as part of a pass
+  loop.run(shutter, path_input);
   return result;
 }
 

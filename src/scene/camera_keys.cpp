@@ -103,6 +103,16 @@ void add_camera_keys(KeyTable& table) {
       .kind(KeyKind::file);
   table.add("file_axes", &C::file_axes, "how the world of the file is turned into this one");
   table.add("file_rotation", &C::file_rotation, "which of a .chan file's angles turns first");
+  table.add("shutter_open", &C::shutter_open, "when the shutter opens, from the frame's time on")
+      .unit("frames")
+      .within(-1000, 1000);
+  table.add("shutter_close", &C::shutter_close, "when it closes; no earlier than it opens")
+      .unit("frames")
+      .within(-1000, 1000);
+  table
+      .add_auto("shutter_times", &C::shutter_times,
+                "moments in between at which volumes and lights are seen; auto: 16")
+      .within(1, 1024);
 }
 
 } // namespace vdbeam

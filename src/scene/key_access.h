@@ -19,6 +19,8 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.camera;
   else if constexpr (std::is_same_v<S, VolumeSettings>)
     return scene.volumes[index];
+  else if constexpr (std::is_same_v<S, VelocitySettings>)
+    return scene.volumes[index].velocity;
   else if constexpr (std::is_same_v<S, PhaseSettings>)
     return scene.volumes[index].phase;
   else if constexpr (std::is_same_v<S, EmissionSettings>)

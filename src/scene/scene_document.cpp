@@ -2,6 +2,7 @@
 
 #include "scene/default_scene.h"
 #include "scene/scene_reader.h"
+#include "scene/shutter.h"
 #include "scene/toml_remedy.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
@@ -142,6 +143,9 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
 
 Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const {
   Scene scene = SceneReader(path_, folder_, frame, missing).read(root_);
+  add_moments(scene, is_animated(root_) || !scene.camera.file.empty(), [&](double time) {
+    return SceneReader(path_, folder_, FrameTime(frame.number, time), missing).read(root_);
+  });
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
   if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
       !has_frame_pattern())
@@ -153,6 +157,8 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
     scene.notes.push_back(path_ + ": there is no [[volume]]: only lights are rendered");
   if (scene.lights.empty() && !scene.glows())
     scene.notes.push_back(path_ + ": there is no [[light]]: the picture will be black");
+  for (Scene& moment : scene.moments)
+    moment.render = scene.render;
   return scene;
 }
 

@@ -46,6 +46,11 @@ struct EnumNames<PixelFilter> {
        {PixelFilter::blackman_harris, "blackman_harris"}}};
 };
 template <>
+struct EnumNames<VelocityUnits> {
+  static constexpr std::array<std::pair<VelocityUnits, std::string_view>, 2> table{
+      {{VelocityUnits::world, "world"}, {VelocityUnits::index, "index"}}};
+};
+template <>
 struct EnumNames<PhaseType> {
   static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
       {{PhaseType::isotropic, "isotropic"},

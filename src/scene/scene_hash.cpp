@@ -27,6 +27,16 @@ void add(ContentHash& hash, const KeyValue& value) {
       hash.add_number(std::bit_cast<std::uint64_t>(x + 0.0)); // -0 is 0
 }
 
+/// What passes see at other moments; the files are those of the scene itself.
+void add_moments(ContentHash& hash, const Scene& scene) {
+  for (const Scene& moment : scene.moments)
+    for (const SceneKey& key : scene_keys())
+      for (std::size_t i = 0; key.get && key.changes_picture && !key.stop_rule &&
+                              key.kind != KeyKind::file && i < section_count(moment, key.section);
+           ++i)
+        add(hash, key.get(moment, i));
+}
+
 std::string hash_scene(const Scene& scene, bool with_stop_rule) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {
@@ -45,6 +55,7 @@ std::string hash_scene(const Scene& scene, bool with_stop_rule) {
         add(hash, value);
     }
   }
+  add_moments(hash, scene);
   return fmt::format("{:016x}", hash.value());
 }
 

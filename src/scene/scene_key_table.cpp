@@ -32,6 +32,13 @@ void add_volume(KeyTable& table) {
       .always_written();
   add_placement(table, &V::transform);
 
+  using W = VelocitySettings;
+  table.add("velocity", &W::grid,
+            R"(grid of the velocity, or three of its components ("vx,vy,vz"); "auto", "none")");
+  table.add("velocity_fps", &W::fps, "frames in a second of the velocity").above(0);
+  table.add("velocity_scale", &W::scale, "factor of the velocity");
+  table.add("velocity_units", &W::units, "what velocities are measured in, per second");
+
   using P = PhaseSettings;
   table.section(SceneSection::phase);
   table.add("type", &P::type, R"(phase function; phase = "NAME" is short for it)");

@@ -45,6 +45,13 @@ public:
     if (camera.aperture_radius() > 0 && !perspective)
       fail(camera.f_stop ? "camera.f_stop" : "camera.lens_radius",
            "needs camera.projection = \"perspective\"");
+    if (camera.shutter_close < camera.shutter_open)
+      fail("camera.shutter_close", fmt::format("must be at least camera.shutter_open ({}), got {}",
+                                               camera.shutter_open, camera.shutter_close));
+    for (const Scene& moment : scene_.moments)
+      if (moment.volumes.size() != scene_.volumes.size() ||
+          moment.lights.size() != scene_.lights.size())
+        fail("camera.shutter_open", "needs moments with as many volumes and lights as the scene");
     if (camera.blades == 1 || camera.blades == 2)
       fail("camera.blades", fmt::format("must be 0 or at least 3, got {}", camera.blades));
   }

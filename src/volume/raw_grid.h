@@ -47,6 +47,7 @@ struct RawGridHeader {
   std::int64_t declared_voxels = -1; ///< as the file's statistics say, below 0 where they do not
   std::array<double, 12> index_to_world{}; ///< row-major 3x4
   std::uint32_t level_set = 0;
+  std::uint32_t staggered = 0; ///< of velocities: each component lies on its faces of the voxel
 };
 
 /// The grid in a file of that layout; it refers to the file's memory. Trusts nothing, since a

@@ -4,6 +4,7 @@
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
+#include "volume/guarded_read.h"
 #include "volume/raw_grid.h"
 #include "volume/summary_codec.h"
 #include "volume/vdb_parse.h"
@@ -85,13 +86,18 @@ std::vector<std::string> notes(const std::string& label, const RawGridHeader& he
 
 } // namespace
 
+MappedFile read_guarded(const std::string& path, const ReadLimits& limits,
+                        const std::function<void(int descriptor)>& write) {
+  const GuardLimits guard = guard_limits(check_file(path), limits);
+  prepare_openvdb();
+  return run_guarded(path, guard, write);
+}
+
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
                               const ReadLimits& limits, Background background) {
   const std::string label = fmt::format("{}: grid \"{}\"", path, grid_name);
-  const GuardLimits guard = guard_limits(check_file(path), limits);
-  prepare_openvdb();
-  MappedFile file = run_guarded(
-      path, guard, [&](int output) { write_raw_grid(path, grid_name, background, output); });
+  MappedFile file = read_guarded(
+      path, limits, [&](int output) { write_raw_grid(path, grid_name, background, output); });
   RawGridHeader header;
   RawGrid raw = view_raw_grid(label, file, header);
   // OpenVDB takes a file that ends just before a tree for an empty tree.
@@ -114,10 +120,8 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
 
 GridSummary read_grid_header(const std::string& path, const std::string& grid_name,
                              const ReadLimits& limits) {
-  const GuardLimits guard = guard_limits(check_file(path), limits);
-  prepare_openvdb();
   const MappedFile header =
-      run_guarded(path, guard, [&](int output) { write_header(path, grid_name, output); });
+      read_guarded(path, limits, [&](int output) { write_header(path, grid_name, output); });
   return decode_summary(path, header.data(), header.size());
 }
 

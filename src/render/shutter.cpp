@@ -1,0 +1,107 @@
+#include "render/shutter.h"
+
+#include "machine/stopwatch.h"
+#include "render/memory_check.h"
+#include "render/prepared_scene.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace vdbeam {
+namespace {
+
+/// The bits of a number behind the point, in reverse (van der Corput 1935): 0, 1/2, 1/4, 3/4, ...
+double radical_inverse(std::uint32_t n) {
+  std::uint32_t reversed = 0;
+  for (int bit = 0; bit < 32; ++bit)
+    reversed |= (n >> bit & 1) << (31 - bit);
+  return static_cast<double>(reversed) * 0x1p-32;
+}
+
+std::uint64_t bytes_of(const World& world) {
+  std::uint64_t bytes = 0;
+  for (const Volume& volume : world.medium.volumes)
+    bytes += volume.field.bytes();
+  for (const Emitter& emitter : world.medium.emitters)
+    bytes += emitter.field->bytes();
+  return bytes;
+}
+
+} // namespace
+
+Shutter::Place::Place(const PreparedScenePtr& prepared_, const Camera& camera_,
+                      const EstimatorInput& from, const RenderPlan& path_plan)
+    : prepared(prepared_),
+      camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
+                             from.frame,       from.window, from.stop,     prepared->photons.get()},
+      path_input(input.with(path_plan)) {}
+
+Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
+                 const RenderPlan& path_plan, const std::vector<std::size_t>& probe_pixels)
+    : scene_(scene), prepared_(prepared), input_(input), path_plan_(path_plan),
+      probe_pixels_(probe_pixels) {}
+
+std::size_t Shutter::moment_of(int pass, std::size_t moments, std::uint64_t seed) {
+  const double shift = static_cast<double>(mix64(seed) >> 11) * 0x1p-53;
+  const double place = radical_inverse(static_cast<std::uint32_t>(pass)) + shift;
+  const double part = (place - std::floor(place)) * static_cast<double>(moments);
+  return std::min(static_cast<std::size_t>(part), moments - 1);
+}
+
+Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
+  const bool still = scene_.moments.empty();
+  const Scene& moment =
+      still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
+  Place& place = place_of(moment);
+  if (!still)
+    place.camera = Camera(moment.camera, scene_.image, place.prepared->world->space);
+  place.last_pass = pass;
+  if (!place.estimator) {
+    const Stopwatch watch;
+    place.estimator = make_estimator(scene_.render.estimator, place.input);
+    if (place.input.plan.needs(Stage::bias))
+      place.probe =
+          std::make_unique<BiasProbe>(place.path_input, place.input.window, probe_pixels_);
+    statistics.pilot += watch.seconds();
+    if (place.prepared->world != prepared_->world) {
+      statistics.read += place.prepared->seconds_read;
+      statistics.prepare += place.prepared->seconds_build;
+    }
+  }
+  return {*place.estimator, place.probe.get()};
+}
+
+Shutter::Place& Shutter::place_of(const Scene& moment) {
+  const std::string key = &moment == &scene_ ? "" : moved_world_settings(moment, *prepared_);
+  std::unique_ptr<Place>& place = places_[key];
+  if (!place) {
+    const PreparedScenePtr prepared =
+        &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
+    place = std::make_unique<Place>(
+        prepared, Camera(moment.camera, scene_.image, prepared->world->space), input_, path_plan_);
+    make_room();
+    return *places_[key];
+  }
+  return *place;
+}
+
+/// Drops the worlds that were used longest ago where all take more than a quarter of the memory.
+void Shutter::make_room() {
+  std::uint64_t bytes = 0;
+  for (const auto& [key, place] : places_)
+    bytes += bytes_of(*place->prepared->world);
+  while (places_.size() > 2 && bytes > granted_memory() / 4) {
+    const auto oldest =
+        std::min_element(places_.begin(), places_.end(), [](const auto& a, const auto& b) {
+          const bool a_used = a.second->estimator != nullptr,
+                     b_used = b.second->estimator != nullptr;
+          return a_used != b_used ? a_used : a.second->last_pass < b.second->last_pass;
+        });
+    if (!oldest->second->estimator)
+      return;
+    bytes -= bytes_of(*oldest->second->prepared->world);
+    places_.erase(oldest);
+  }
+}
+
+} // namespace vdbeam

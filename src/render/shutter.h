@@ -1,0 +1,61 @@
+#pragma once
+
+#include "render/bias_probe.h"
+#include "vdbeam/render.h"
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace vdbeam {
+
+/// Gives each pass what renders it at its own moment of the shutter's time: the moments of the
+/// scene in an order that spreads any number of passes over the shutter (van der Corput's
+/// sequence, shifted by the seed), a pure function of the pass' number. Where the camera alone
+/// moves all passes share one world; else worlds are built when they are first needed, and kept as
+/// far as memory goes.
+class Shutter {
+public:
+  /// What renders a pass, until the next call of `at`.
+  struct Renderer {
+    Estimator& estimator;
+    BiasProbe* probe; ///< tells the bias; null where the estimator has none or nobody asks
+  };
+
+  /// `input` is that of the scene itself; `path_plan` the plan of the path estimator. All must
+  /// outlive this.
+  Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
+          const RenderPlan& path_plan, const std::vector<std::size_t>& probe_pixels);
+
+  /// Adds what the estimator tries out before its first pass to statistics.pilot.
+  Renderer at(int pass, RenderStatistics& statistics);
+
+  /// Which of so many moments a pass sees.
+  static std::size_t moment_of(int pass, std::size_t moments, std::uint64_t seed);
+
+private:
+  /// A world and what renders it.
+  struct Place {
+    Place(const PreparedScenePtr& prepared_, const Camera& camera_, const EstimatorInput& from,
+          const RenderPlan& path_plan);
+
+    PreparedScenePtr prepared;
+    Camera camera;
+    EstimatorInput input, path_input;
+    std::unique_ptr<Estimator> estimator;
+    std::unique_ptr<BiasProbe> probe;
+    int last_pass = 0;
+  };
+
+  Place& place_of(const Scene& moment);
+  void make_room();
+
+  const Scene& scene_;
+  PreparedScenePtr prepared_;
+  const EstimatorInput& input_;
+  const RenderPlan& path_plan_;
+  const std::vector<std::size_t>& probe_pixels_;
+  std::map<std::string, std::unique_ptr<Place>> places_; ///< by what their worlds are made from
+};
+
+} // namespace vdbeam

@@ -1,0 +1,188 @@
+#include "volume/moved_field.h"
+
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace vdbeam {
+namespace {
+
+constexpr int cell_width = DensityField::cell_width;
+constexpr int brick_width = DensityField::brick_width;
+constexpr double most_cells = 1 << 28;
+/// Steps of the fixed point x = p + time v(p): its error falls with (time |grad v|)^n.
+constexpr int fixed_point_steps = 4;
+
+/// By how much points move, in local coordinates of the density.
+class Displacement {
+public:
+  Displacement(const DensityGrid& grid, const Motion& motion) : velocity_(motion.velocity) {
+    Affine shift;
+    shift.translation = Vec3d(grid.field.origin());
+    const Affine to_world = grid.index_to_world.after(shift);
+    to_velocity_ = velocity_.index_to_world().inverse().after(to_world);
+    const Affine to_local = to_world.inverse();
+    turn_ = motion.settings.units == VelocityUnits::index
+                ? to_local.after(velocity_.index_to_world())
+                : to_local;
+    time_ = motion.settings.time * motion.settings.scale;
+  }
+
+  Vec3d at(const Vec3d& local) const {
+    return turn_.vector(velocity_.sample(to_velocity_.point(local))) * time_;
+  }
+  /// The point that comes to `local`.
+  Vec3d source_of(const Vec3d& local) const {
+    Vec3d source = local;
+    for (int step = 0; step < fixed_point_steps; ++step)
+      source = local - at(source);
+    return source;
+  }
+
+private:
+  const VelocityField& velocity_;
+  Affine to_velocity_, turn_;
+  double time_;
+};
+
+/// Where the values of a cell go; a box that is empty where it has none.
+Boxd destination(const DensityField& field, const Displacement& motion, int i, int j, int k) {
+  Boxd box;
+  if (field.cell_maximum(field.cell_offset(i, j, k)) == 0)
+    return box;
+  const Vec3d corner = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
+  // A point of the lattice gives weight to what lies up to a voxel before it.
+  for (int x = -1; x <= cell_width; ++x)
+    for (int y = -1; y <= cell_width; ++y)
+      for (int z = -1; z <= cell_width; ++z) {
+        const Vec3d p = corner + Vec3d(Vec3<int>{x, y, z});
+        box.extend(p + motion.at(p));
+      }
+  return box;
+}
+
+/// Cells of the moved field, from that of the local coordinates 8 * lower on.
+struct CellRange {
+  Vec3<std::int64_t> lower, upper; ///< of cells, upper excluded
+
+  Vec3<int> counts() const { return Vec3<int>(upper - lower); }
+};
+
+CellRange cells_around(const Boxd& box) {
+  CellRange range;
+  for (int a = 0; a < 3; ++a) {
+    range.lower[a] = static_cast<std::int64_t>(std::floor((box.lower[a] - 1) / cell_width));
+    range.upper[a] = static_cast<std::int64_t>(std::floor((box.upper[a] + 1) / cell_width)) + 1;
+  }
+  return range;
+}
+
+template <class Visit>
+void for_each_cell(const Vec3<int>& n, const Visit& visit) {
+  tbb::parallel_for(0, n.x * n.y, [&](int column) {
+    for (int k = 0; k < n.z; ++k)
+      visit(column / n.y, column % n.y, k);
+  });
+}
+
+class FieldMover {
+public:
+  FieldMover(const DensityField& field, const Displacement& motion)
+      : field_(field), motion_(motion) {}
+
+  DensityField move(const std::string& label, std::uint64_t maximum_bytes) {
+    find_targets(label);
+    number_bricks();
+    if (bricks_ * DensityField::brick_size * sizeof(float) > maximum_bytes)
+      throw FrameError(label + ": moved by its velocity it needs more memory than there may be");
+    std::vector<float> values(bricks_ * DensityField::brick_size);
+    for_each_cell(range_.counts(), [&](int i, int j, int k) {
+      if (const std::int32_t brick = table_[offset(i, j, k)]; brick >= 0)
+        fill_brick(i, j, k,
+                   values.data() + static_cast<std::size_t>(brick) * DensityField::brick_size);
+    });
+    return DensityField(field_.origin() + range_.lower * std::int64_t{cell_width}, range_.counts(),
+                        std::move(table_), std::move(values), {});
+  }
+
+private:
+  std::size_t offset(int i, int j, int k) const {
+    const Vec3<int> n = range_.counts();
+    return (static_cast<std::size_t>(i) * n.y + j) * n.z + k;
+  }
+
+  /// Marks the cells that something comes to.
+  void find_targets(const std::string& label) {
+    const Vec3<int>& n = field_.cell_counts();
+    std::vector<Boxd> boxes(static_cast<std::size_t>(n.x) * n.y * n.z);
+    for_each_cell(n, [&](int i, int j, int k) {
+      boxes[field_.cell_offset(i, j, k)] = destination(field_, motion_, i, j, k);
+    });
+    Boxd all;
+    for (const Boxd& box : boxes)
+      if (!box.empty())
+        all.extend(box);
+    range_ = cells_around(all);
+    double cells = 1;
+    for (int a = 0; a < 3; ++a)
+      cells *= static_cast<double>(range_.upper[a] - range_.lower[a]);
+    if (!(cells < most_cells))
+      throw FrameError(label + ": its velocity carries it too far apart");
+    table_.assign(static_cast<std::size_t>(cells), DensityField::empty_cell);
+    for (const Boxd& box : boxes) {
+      if (box.empty())
+        continue;
+      const CellRange target = cells_around(box);
+      for (std::int64_t i = target.lower.x; i < target.upper.x; ++i)
+        for (std::int64_t j = target.lower.y; j < target.upper.y; ++j)
+          for (std::int64_t k = target.lower.z; k < target.upper.z; ++k)
+            table_[offset(static_cast<int>(i - range_.lower.x),
+                          static_cast<int>(j - range_.lower.y),
+                          static_cast<int>(k - range_.lower.z))] = 0;
+    }
+  }
+  void number_bricks() {
+    for (std::int32_t& cell : table_)
+      if (cell != DensityField::empty_cell)
+        cell = static_cast<std::int32_t>(bricks_++);
+  }
+  /// The lattice points of a brick, those that it shares with its neighbours too.
+  void fill_brick(int i, int j, int k, float* values) const {
+    const Vec3d corner =
+        Vec3d(range_.lower + Vec3<std::int64_t>(Vec3<int>{i, j, k})) * double{cell_width};
+    for (int x = 0; x < brick_width; ++x)
+      for (int y = 0; y < brick_width; ++y)
+        for (int z = 0; z < brick_width; ++z)
+          *values++ = field_.sample(Vec3f(motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}))));
+  }
+
+  const DensityField& field_;
+  const Displacement& motion_;
+  CellRange range_;
+  std::vector<std::int32_t> table_;
+  std::size_t bricks_ = 0;
+};
+
+} // namespace
+
+DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
+                       std::uint64_t maximum_bytes) {
+  DensityGrid moved;
+  moved.index_to_world = grid.index_to_world;
+  moved.repairs = grid.repairs;
+  moved.active_voxels = grid.active_voxels;
+  moved.notes = grid.notes;
+  moved.field = grid.field;
+  if (grid.field.empty() || motion.velocity.empty() ||
+      motion.settings.time * motion.settings.scale == 0)
+    return moved;
+  const Displacement displacement(grid, motion);
+  moved.field = FieldMover(grid.field, displacement).move(label, maximum_bytes);
+  return moved;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,165 @@
+#include "render/shutter.h"
+
+#include "support/temp_folder.h"
+#include "vdbeam/scene_file.h"
+#include "volume_factory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <set>
+
+namespace vdbeam {
+namespace {
+
+/// A ball with a velocity of (1, 2, 3), lit by a sky that is hidden.
+class ShutterTest : public ::testing::Test {
+protected:
+  ShutterTest() {
+    VolumeOptions options;
+    options.size = 24;
+    write_volume("staggered", folder_.file("ball.vdb"), options);
+  }
+  Scene load(const std::vector<std::string>& more = {}, const std::string& camera = "") {
+    std::ofstream(folder_.file("s.toml"))
+        << "[image]\nwidth = 24\nheight = 24\n"
+           "[camera]\nposition = [0, 0, 6]\nprojection = \"orthographic\"\nview_height = 6\n"
+        << camera
+        << "\n[[volume]]\nfile = \"ball.vdb\"\nextinction = 0.5\nvelocity_fps = 1\n"
+           "[[light]]\ntype = \"environment\"\nvisible = false\n"
+           "[render]\npasses = 16\nestimator = \"path\"\n";
+    return load_scene(folder_.file("s.toml"), 1, more);
+  }
+  static const std::vector<float>& plane(const Image& image, const char* name) {
+    return image.find(name)->data;
+  }
+  static void expect_same(const Image& a, const Image& b) {
+    for (const char* name : {"R", "A", "depth.Z"})
+      EXPECT_EQ(std::memcmp(plane(a, name).data(), plane(b, name).data(),
+                            plane(a, name).size() * sizeof(float)),
+                0);
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(ShutterTest, PassesVisitEveryMomentOnce) {
+  for (const std::uint64_t seed : {1, 2, 99})
+    for (const int moments : {1, 16, 64}) {
+      std::set<std::size_t> seen;
+      for (int pass = 0; pass < moments; ++pass)
+        seen.insert(Shutter::moment_of(pass, static_cast<std::size_t>(moments), seed));
+      EXPECT_EQ(seen.size(), static_cast<std::size_t>(moments));
+      std::vector<int> halves(2);
+      for (int pass = 0; moments > 1 && pass < 8; ++pass)
+        ++halves[2 * Shutter::moment_of(pass, moments, seed) / moments];
+      if (moments > 1)
+        EXPECT_LE(std::abs(halves[0] - halves[1]), 2);
+    }
+}
+
+/// Without time, nothing is blurred: the bits are those of a camera without a shutter.
+TEST_F(ShutterTest, NoTimeNoBlur) {
+  const Scene still = load({"volume.0.velocity=none"});
+  const Scene closed = load({"camera.shutter_open=0.3", "camera.shutter_close=0.3"});
+  EXPECT_TRUE(closed.moments.empty());
+  expect_same(render(still).image, render(closed).image);
+  const Scene nothing_moves = load({"camera.shutter_close=1", "volume.0.velocity=none"});
+  EXPECT_TRUE(nothing_moves.moments.empty());
+}
+
+/// The blurred picture is the mean of the pictures at the moments: each pass is that of the scene
+/// with the volume moved. Optical depths are small, so opacity adds up to the mass of the ball, and
+/// its centre tells how far it came.
+TEST_F(ShutterTest, MovesABallByItsVelocity) {
+  const auto centre = [](const Image& image, double& mass) {
+    Vec3d sum;
+    mass = 0;
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const double a = plane(image, "A")[static_cast<std::size_t>(y * 24 + x)];
+        // 4 pixels per unit, the first 3 units to the left of and above the middle
+        sum += Vec3d((x + 0.5) / 4 - 3, 3 - (y + 0.5) / 4, 0) * a;
+        mass += a;
+      }
+    return sum / mass;
+  };
+  double still_mass = 0, mass = 0;
+  const std::vector<std::string> thin{"volume.0.extinction=0.01", "render.passes=64"};
+  std::vector<std::string> open = thin;
+  open.insert(open.end(), {"camera.shutter_open=0.2", "camera.shutter_close=0.6"});
+  const Vec3d start = centre(render(load(thin)).image, still_mass);
+  const Vec3d end = centre(render(load(open)).image, mass);
+  EXPECT_NEAR(mass, still_mass, 0.01 * still_mass);
+  EXPECT_NEAR(end.x - start.x, 0.4, 0.01); // the middle of the shutter is at 0.4
+  EXPECT_NEAR(end.y - start.y, 0.8, 0.01);
+}
+
+/// A camera that moves and a ball that moves as it does make a still picture but for the sampling.
+TEST_F(ShutterTest, CamerasMoveToo) {
+  const std::vector<std::string> base{"render.passes=64"};
+  const Image still = render(load(base)).image;
+  std::vector<std::string> follow = base;
+  follow.push_back("camera.shutter_close=0.5");
+  const std::string keys = "shutter_close = 0.5\nup = [0, 1, 0]\n";
+  Scene scene = load(base, keys);
+  for (Scene& moment : scene.moments) {
+    // Where the world is seen at this time: cameras move in finer steps, to the same mean.
+    const double time = moment.volumes[0].velocity.time;
+    moment.camera.position = Vec3d(0, 0, 6) + Vec3d(1, 2, 3) * time;
+    moment.camera.look_at = Vec3d(1, 2, 3) * time;
+  }
+  const Image moving = render(scene).image;
+  double difference = 0, total = 0;
+  for (std::size_t i = 0; i < plane(still, "A").size(); ++i) {
+    difference += std::abs(static_cast<double>(plane(still, "A")[i] - plane(moving, "A")[i]));
+    total += plane(still, "A")[i];
+  }
+  EXPECT_LT(difference, 0.03 * total);
+}
+
+/// All estimators see the same blur.
+TEST_F(ShutterTest, EstimatorsAgree) {
+  const std::vector<std::string> base{"camera.shutter_close=0.5", "render.passes=32",
+                                      "volume.0.extinction=2", "volume.0.albedo=0.8"};
+  const auto mean_of = [&](const char* estimator) {
+    std::vector<std::string> more = base;
+    more.push_back(std::string("render.estimator=") + estimator);
+    const Image image = render(load(more)).image;
+    double sum = 0;
+    for (const float value : plane(image, "R"))
+      sum += static_cast<double>(value);
+    return sum / static_cast<double>(plane(image, "R").size());
+  };
+  const double path = mean_of("path");
+  EXPECT_NEAR(mean_of("beam"), path, 0.02 * path);
+  EXPECT_NEAR(mean_of("march"), path, 0.02 * path);
+}
+
+/// Passes are functions of their number: parts of a blurred frame merge to the bits of the whole.
+TEST_F(ShutterTest, PartsMergeToTheWhole) {
+  const Scene scene = load({"camera.shutter_close=0.5", "render.estimator=beam", "render.passes=6",
+                            "render.photons=2000"});
+  const Image whole = render(scene).image;
+  FrameSettings first, rest;
+  first.pass_range = PassRange{0, 1};
+  first.partial = folder_.file("a.exr");
+  rest.pass_range = PassRange{2, 5};
+  rest.partial = folder_.file("b.exr");
+  render(scene, rest);
+  render(scene, first);
+  expect_same(merge_partials({first.partial, rest.partial}), whole);
+}
+
+TEST_F(ShutterTest, TheHashKnowsWhatMoves) {
+  const std::string a = scene_hash(load({"camera.shutter_close=0.5"}));
+  const std::string keys = "shutter_close = 0.5\n";
+  const std::string b = scene_hash(load({}, keys + "fov = { keys = [[1, 30], [2, 60]] }\n"));
+  const std::string c = scene_hash(load({}, keys + "fov = { keys = [[1, 30], [2, 61]] }\n"));
+  EXPECT_NE(a, b);
+  EXPECT_NE(b, c);
+}
+
+} // namespace
+} // namespace vdbeam
