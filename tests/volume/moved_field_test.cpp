@@ -2,6 +2,7 @@
 
 #include "support/make_field.h"
 #include "support/temp_folder.h"
+#include "vdbeam/error.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>
