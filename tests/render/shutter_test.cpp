@@ -124,8 +124,9 @@ TEST_F(ShutterTest, CamerasMoveToo) {
 /// All estimators see the same blur.
 TEST_F(ShutterTest, SlowEstimatorsAgree) {
   const std::vector<std::string> base{"camera.shutter_close=0.5", "render.passes=32",
-                                      "volume.0.extinction=2", "volume.0.albedo=0.8",
-                                      "render.photons=5000"};
+                                      "volume.0.extinction=2",    "volume.0.albedo=0.8",
+                                      "render.photons=20000",     "render.kernel=fixed",
+                                      "render.radius=0.1"};
   const auto mean_of = [&](const char* estimator) {
     std::vector<std::string> more = base;
     more.push_back(std::string("render.estimator=") + estimator);
