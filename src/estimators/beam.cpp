@@ -1,6 +1,7 @@
 #include "estimators/beam.h"
 
 #include "estimators/beam_weights.h"
+#include "estimators/blur_probe.h"
 #include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
 
@@ -16,6 +17,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   weights.albedo_in_power = photons_.plan().albedo_in_power;
   weights.colored = channels > 1;
   weights.reach = 4 * photons_.map().mean_radius();
+  BlurProbe blur(input_, photons_);
   shade_tiles(input_, photons_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
     scratch.tile.radiance.assign(static_cast<std::size_t>(channels) * BeamTile::ray_count, 0);
@@ -34,7 +36,10 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
         if (first_flights)
           image.move_to_direct(pixel, light_of(scratch.tile.first_flight, i));
       }
+    blur.probe(scratch.rays, scratch.tile,
+               [&](int i) { return light_of(scratch.tile.radiance, i); });
   });
+  image.blur = blur.take();
   photons_.release();
 }
 

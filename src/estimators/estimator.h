@@ -35,14 +35,17 @@ struct EstimatorInput {
   PixelRegion window = {};
   const StopToken* stop = nullptr; ///< tells when the pass is to be abandoned
   PhotonCache* photons = nullptr;  ///< of frames with the same world; null: photons are not kept
+  /// Pixels, in ascending order, where a pass is also to tell how much its kernels blur
+  /// (PassImage::blur); null: nowhere.
+  const std::vector<std::size_t>* blur_pixels = nullptr;
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera, settings, plan, frame, window, stop, photons};
+    return {other, camera, settings, plan, frame, window, stop, photons, blur_pixels};
   }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera, settings, other, frame, window, stop, photons};
+    return {world, camera, settings, other, frame, window, stop, photons, blur_pixels};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a

@@ -30,6 +30,7 @@ void PhotonPass::count_pilot(RenderStatistics& statistics) {
 
 void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   world_ = &worlds_.of(pass);
+  narrow_map_ = {};
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
   if (!input_.plan.needs(Stage::photons)) {
@@ -41,7 +42,9 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   make_map(pass_settings(input_.in(world), plan_, static_cast<std::uint64_t>(pass)), radii,
            statistics);
   const Stopwatch watch;
-  if (boundary_share_)
+  if (input_.blur_pixels)
+    narrow_map_ = map_.divide_power(boundary_share_, PassImage::blur_narrowing);
+  else
     map_.divide_power(boundary_share_);
   statistics.radii += watch.seconds();
   statistics.photons_stored += map_.size();

@@ -20,12 +20,17 @@ public:
   void trace_and_build(int pass, RenderStatistics& statistics);
 
   /// Drops the map until the next pass: where passes see different worlds, each has its own.
-  void release() { map_ = PhotonMap(); }
+  void release() {
+    map_ = {};
+    narrow_map_ = {};
+  }
 
   const PhotonPlan& plan() const { return plan_; }
   /// Tell where direct light is to be looked for; empty where they cannot.
   const ShadowLattices& shadows() const { return shadows_; }
   const PhotonMap& map() const { return map_; }
+  /// The same photons in narrower kernels; empty where nobody asked for the blur.
+  const PhotonMap& narrow_map() const { return narrow_map_; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
   const World& world() const { return *world_; }
 
@@ -41,7 +46,7 @@ private:
   ShadowLattices shadows_;
   KernelShare boundary_share_;
   bool pilot_counted_ = false;
-  PhotonMap map_;
+  PhotonMap map_, narrow_map_;
 };
 
 } // namespace vdbeam

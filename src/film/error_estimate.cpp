@@ -19,6 +19,12 @@ constexpr double neighbour_weight = 0.5;
 constexpr double least_mean = 0.4;
 /// What weights that are themselves estimated leave uncertain.
 constexpr double least_spread = 0.03;
+/// Bias goes as the width of kernels to this power: 2 where they are small against all that they
+/// blur, less where they are as wide (measured, docs/decisions.md).
+constexpr double blur_power = 1.5;
+/// How far, as a fraction, the square of the bias may be from what that power law tells, and how
+/// much of it, as a fraction of the noise, the widths of kernels may not show at all.
+constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 constexpr std::size_t fewest_batches = 3;
 constexpr std::size_t batches_of_interval = 4;
 
@@ -165,14 +171,17 @@ std::pair<double, double> jackknife(std::size_t count, const Value& without) {
   return {whole, std::sqrt(squares * (n - 1) / n)};
 }
 
-/// Differences of a batch to its probes, by followed pixel.
-struct ProbeDifferences {
+/// Differences of a batch to something that is known better, by followed pixel.
+struct Differences {
   std::vector<double> sums, weights; ///< sums are R, G, B
+};
+
+/// Differences to the probes, and of the mean brightness.
+struct ProbeDifferences : Differences {
   double difference = 0, brightness = 0;
 };
 
-ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
-                                const std::vector<float>& means, const std::vector<float>& around) {
+ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch) {
   ProbeDifferences result;
   result.weights.resize(history.pixels().size());
   result.sums.resize(3 * result.weights.size());
@@ -181,19 +190,100 @@ ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch,
     if (probes == 0)
       continue;
     result.weights[i] = probes;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t k = 3 * i + c;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
       const double value = static_cast<double>(history.sums(batch)[k]) / history.passes(batch);
-      const double difference = probes * value - static_cast<double>(history.probe_sums(batch)[k]);
-      const double typical =
-          (static_cast<double>(means[k]) + neighbour_weight * static_cast<double>(around[k])) /
-          (1 + neighbour_weight);
-      result.sums[3 * i + c] = difference / (std::max(typical, 0.0) + offset);
-      result.difference += difference;
+      result.sums[k] = probes * value - static_cast<double>(history.probe_sums(batch)[k]);
+      result.difference += result.sums[k];
       result.brightness += probes * value;
     }
   }
   return result;
+}
+
+/// What the whole blur is to that between the kernels and the narrower ones.
+double whole_blur() {
+  return 1 / (1 - std::pow(static_cast<double>(PassImage::blur_narrowing), blur_power));
+}
+
+Differences compare_kernels(const PassHistory& history, std::size_t batch) {
+  Differences result;
+  result.weights.assign(history.blurs(batch), history.blurs(batch) + history.pixels().size());
+  result.sums.assign(history.blur_sums(batch), history.blur_sums(batch) + 3 * result.weights.size());
+  for (double& sum : result.sums)
+    sum *= whole_blur();
+  return result;
+}
+
+/// 1 / (mean + offset)^2 of a pixel's channel for the product of two batches, which knows nothing of
+/// these two: see Deviations.
+class PairWeights {
+public:
+  PairWeights(const PassHistory& history)
+      : history_(history), passes_(total_passes(history)), means_(mean_of(history, passes_)),
+        around_(smoothed(means_, history.columns(), history.rows())), variances_(means_.size()) {
+    const std::size_t count = history.batches();
+    for (std::size_t k = 0; k < means_.size(); ++k)
+      for (std::size_t b = 0; b < count; ++b) {
+        const double n = history.passes(b);
+        const double d = sum(b, k) / n - static_cast<double>(means_[k]);
+        variances_[k] += n * d * d / static_cast<double>(count - 1);
+      }
+  }
+
+  double operator()(std::size_t i, std::size_t j, std::size_t k) const {
+    const double mean = static_cast<double>(means_[k]);
+    const double others = passes_ - history_.passes(i) - history_.passes(j);
+    const double neighbours = neighbour_weight * passes_ / static_cast<double>(history_.batches());
+    const double expected = (mean * passes_ - sum(i, k) - sum(j, k) +
+                             neighbours * static_cast<double>(around_[k])) /
+                            (others + neighbours);
+    const double m = std::max({0.0, expected, static_cast<double>(around_[k])});
+    const double spread = variances_[k] * others / ((others + neighbours) * (others + neighbours));
+    return 1 / ((m + offset) * (m + offset) + 3 * spread);
+  }
+
+private:
+  double sum(std::size_t batch, std::size_t k) const {
+    return static_cast<double>(history_.sums(batch)[k]);
+  }
+
+  const PassHistory& history_;
+  double passes_;
+  std::vector<float> means_, around_;
+  std::vector<double> variances_; ///< of one pass
+};
+
+/// The mean square, over pixels and channels, of what the differences of all batches have in
+/// common, and its standard error: products of independent batches, pixel by pixel. Noise has none
+/// on average, bias has its square, of whatever sign it is in the next pixel.
+template <class Batch>
+std::pair<double, double> common_square(const std::vector<Batch>& batches,
+                                        const PairWeights& pair_weight) {
+  const std::size_t count = batches.size();
+  std::vector<double> products(count * count), weights(count * count);
+  tbb::parallel_for(std::size_t{0}, count * count, [&](std::size_t at) {
+    const std::size_t i = at / count, j = at % count;
+    for (std::size_t g = 0; j < i && g < batches[i].weights.size(); ++g) {
+      const double a = batches[i].weights[g], b = batches[j].weights[g];
+      if (!(a * b > 0))
+        continue;
+      const double weight = std::sqrt(a * b);
+      for (std::size_t k = 3 * g; k < 3 * g + 3; ++k)
+        products[at] += weight / 3 * pair_weight(i, j, k) * batches[i].sums[k] / a *
+                        batches[j].sums[k] / b;
+      weights[at] += weight;
+    }
+  });
+  return jackknife(count, [&](std::size_t left_out) {
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (i != left_out && j != left_out) {
+          sum += products[i * count + j];
+          weight += weights[i * count + j];
+        }
+    return weight > 0 ? sum / weight : unknown;
+  });
 }
 
 } // namespace
@@ -232,81 +322,79 @@ NoiseStatistics noise_statistics(const PassHistory& history) {
 BiasStatistics bias_statistics(const PassHistory& history) {
   const std::size_t count = history.batches();
   if (count < fewest_batches)
-    return {unknown, unknown, unknown, unknown};
-  const std::vector<float> means = mean_of(history, total_passes(history));
-  const std::vector<float> around = smoothed(means, history.columns(), history.rows());
-  std::vector<ProbeDifferences> batches(count);
+    return {unknown, unknown, unknown, unknown, unknown, unknown};
+  const PairWeights pair_weight(history);
+  std::vector<ProbeDifferences> probes(count);
+  std::vector<Differences> kernels(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
-    batches[batch] = compare_probes(history, batch, means, around);
+    probes[batch] = compare_probes(history, batch);
+    kernels[batch] = compare_kernels(history, batch);
   });
-  // Products of independent batches, pixel by pixel: noise has none on average, bias has its
-  // square, of whatever sign it is in the next pixel.
-  std::vector<double> products(count * count), weights(count * count);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      for (std::size_t g = 0; g < batches[i].weights.size(); ++g) {
-        const double a = batches[i].weights[g], b = batches[j].weights[g];
-        if (!(a * b > 0))
-          continue;
-        const double share = std::sqrt(a * b);
-        for (std::size_t c = 0; c < 3; ++c)
-          products[i * count + j] +=
-              share / 3 * batches[i].sums[3 * g + c] / a * batches[j].sums[3 * g + c] / b;
-        weights[i * count + j] += share;
-      }
-  const auto mrse_without = [&](std::size_t left_out) {
-    double sum = 0, weight = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (i != left_out && j != left_out) {
-          sum += products[i * count + j];
-          weight += weights[i * count + j];
-        }
-    return weight > 0 ? sum / weight : unknown;
-  };
-  const auto bias_without = [&](std::size_t left_out) {
+  const auto [bias, bias_error] = jackknife(count, [&](std::size_t left_out) {
     double difference = 0, brightness = 0;
     for (std::size_t i = 0; i < count; ++i)
       if (i != left_out) {
-        difference += batches[i].difference;
-        brightness += batches[i].brightness;
+        difference += probes[i].difference;
+        brightness += probes[i].brightness;
       }
     return brightness != difference ? difference / (brightness - difference) : unknown;
-  };
-  const auto [mrse, mrse_error] = jackknife(count, mrse_without);
-  const auto [bias, bias_error] = jackknife(count, bias_without);
-  return {mrse, mrse_error, bias, bias_error};
+  });
+  const auto [mrse, mrse_error] = common_square(probes, pair_weight);
+  const auto [blur, blur_error] = common_square(kernels, pair_weight);
+  return {mrse, mrse_error, bias, bias_error, blur, blur_error};
 }
+
+namespace {
+
+/// A squared bias [MRSE] and its standard error.
+struct SquaredBias {
+  double value = 0, error = 0;
+};
+
+/// What the widths of kernels and the probes tell together, each weighted by how well it knows.
+/// Where only probes are, small values are noise more likely than bias: halfway between the
+/// positive part, which comes out too large where there is no bias, and that of James and Stein,
+/// which comes out too small where there is some.
+SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
+  const bool probed = std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error);
+  if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
+    const double square = bias.mrse_error * bias.mrse_error;
+    const bool stands_out = probed && bias.mrse > 0 && bias.mrse * bias.mrse > 2 * square;
+    return {stands_out ? bias.mrse - 2 * square / bias.mrse : 0, probed ? bias.mrse_error : 0};
+  }
+  const double blur = std::max(0.0, bias.blur);
+  const double error = std::hypot(bias.blur_error, blur_uncertainty * blur, unseen_bias * noise);
+  if (!probed || !(error > 0) || !(bias.mrse_error > 0))
+    return {blur, error};
+  const double a = 1 / (error * error), b = 1 / (bias.mrse_error * bias.mrse_error);
+  return {std::max(0.0, (a * blur + b * bias.mrse) / (a + b)), 1 / std::sqrt(a + b)};
+}
+
+} // namespace
 
 ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
                              const BiasStatistics& bias, bool unbiased) {
   ErrorEstimate estimate{};
   estimate.noise = noise * statistics.correction;
   const double batches = statistics.batches;
-  double part = 0, margin = 0;
+  const double t = student(std::max(1.0, batches - 1));
   estimate.bias_mrse = estimate.bias = estimate.bias_margin = unbiased ? 0 : unknown;
-  if (!unbiased && std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error)) {
-    const double t = student(std::max(1.0, batches - 1));
-    estimate.bias_mrse = bias.mrse;
+  SquaredBias part;
+  if (!unbiased) {
+    part = squared_bias(bias, estimate.noise);
+    estimate.bias_mrse = std::isfinite(bias.blur) ? part.value : bias.mrse;
     estimate.bias = bias.bias;
     estimate.bias_margin = t * bias.bias_error;
-    // Small estimates are noise more likely than bias: halfway between the positive part, which
-    // comes out too large where there is no bias, and that of James and Stein, which comes out too
-    // small where there is some.
-    const double squared_error = bias.mrse_error * bias.mrse_error;
-    if (bias.mrse > 0 && bias.mrse * bias.mrse > 2 * squared_error)
-      part = bias.mrse - 2 * squared_error / bias.mrse;
-    margin = t * bias.mrse_error;
   }
-  estimate.mrse = estimate.noise + part;
+  estimate.mrse = estimate.noise + part.value;
   estimate.low = estimate.high = unknown;
   if (statistics.batches < static_cast<int>(batches_of_interval))
     return estimate;
   const double factor = std::exp(student(2 * (batches - 1)) * statistics.spread);
-  const double below = std::hypot(estimate.noise * (1 - 1 / factor), std::min(part, margin));
-  const double above = std::hypot(estimate.noise * (factor - 1), margin);
+  const double margin = t * part.error;
+  const double below = std::hypot(estimate.noise * (1 - 1 / factor), std::min(part.value, margin));
   estimate.low = std::max(0.0, estimate.mrse - below);
-  estimate.high = estimate.mrse + above;
+  estimate.high = estimate.mrse + std::hypot(estimate.noise * (factor - 1), margin);
   return estimate;
 }
 

@@ -25,13 +25,14 @@ struct NoiseStatistics {
 /// Correction and spread of the noise. `batches` 0 where there are fewer than 3.
 NoiseStatistics noise_statistics(const PassHistory& history);
 
-/// Statistics of the bias.
+/// Statistics of the bias; NaN where there are too few probes.
 struct BiasStatistics {
   double mrse, mrse_error; ///< squared bias as MRSE, and its standard error
   double bias, bias_error; ///< of the mean brightness, relative to it
+  double blur, blur_error; ///< what of `mrse` comes from the width of kernels, and its standard error
 };
 
-/// Bias of the picture, from its differences to the probes. NaN where there are too few probes.
+/// Bias of the picture, from its differences to the probes and to narrower kernels.
 BiasStatistics bias_statistics(const PassHistory& history);
 
 /// Combines noise and bias. `noise` is the MRSE from the variance of all pixels over all passes; an

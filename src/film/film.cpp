@@ -112,7 +112,7 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
   return invalid;
 }
 
-void Film::add(const PassImage& pass, const std::vector<ProbeValue>& probes) {
+void Film::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
   check_size(pass.width, pass.height);
   std::vector<std::uint64_t> invalid((pixels() + block_size - 1) / block_size);
   for_each_block(pixels(), [&](std::size_t block, std::size_t begin, std::size_t end) {

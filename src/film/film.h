@@ -39,7 +39,7 @@ private:
 constexpr float empty_depth = 1e10f;
 
 /// The mean of passes. It holds 156 bytes per pixel (1.3 GB at 3840 x 2160; 192 with emission)
-/// whatever the number of passes, at most 2 MB of their history, and developing it needs 60 (72)
+/// whatever the number of passes, at most 3 MB of their history, and developing it needs 60 (72)
 /// more per pixel.
 ///
 /// Pass values that are not finite count as 0, so that one bad path cannot destroy a frame; see
@@ -51,7 +51,7 @@ public:
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
-  void add(const PassImage& pass, const std::vector<ProbeValue>& probes = {});
+  void add(const PassImage& pass, const std::vector<PixelValue>& probes = {});
   /// Adds the passes of another film of the same size (std::invalid_argument).
   void merge(const Film& other);
 

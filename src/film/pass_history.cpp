@@ -78,7 +78,20 @@ void PassHistory::make_room() {
     join(batch);
 }
 
-void PassHistory::add(const PassImage& pass, const std::vector<ProbeValue>& probes) {
+void PassHistory::add_values(const std::vector<PixelValue>& values, std::size_t first,
+                             float* sums) const {
+  const std::size_t samples = pixels_.size();
+  for (const PixelValue& value : values) {
+    const int x = static_cast<int>(value.pixel % width_),
+              y = static_cast<int>(value.pixel / width_);
+    const std::size_t i = static_cast<std::size_t>(y / block_) * columns_ + x / block_;
+    for (std::size_t c = 0; c < 3; ++c)
+      sums[first * samples + 3 * i + c] += finite_or_zero(value.radiance[static_cast<int>(c)]);
+    sums[(first + 3) * samples + i] += 1;
+  }
+}
+
+void PassHistory::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
   std::size_t batch = used();
   const std::uint32_t length = *std::max_element(counts_.begin(), counts_.begin() + most_batches);
   if (batch > 0 && counts_[batch - 1] < length) {
@@ -99,14 +112,8 @@ void PassHistory::add(const PassImage& pass, const std::vector<ProbeValue>& prob
                          finite_or_zero(pass.indirect[pixel][static_cast<int>(c)]) +
                          finite_or_zero(pass.background[pixel][static_cast<int>(c)]);
   }
-  for (const ProbeValue& probe : probes) {
-    const int x = static_cast<int>(probe.pixel % width_),
-              y = static_cast<int>(probe.pixel / width_);
-    const std::size_t i = static_cast<std::size_t>(y / block_) * columns_ + x / block_;
-    for (std::size_t c = 0; c < 3; ++c)
-      sums[3 * (samples + i) + c] += finite_or_zero(probe.radiance[static_cast<int>(c)]);
-    sums[6 * samples + i] += 1;
-  }
+  add_values(probes, 3, sums);
+  add_values(pass.blur, 7, sums);
 }
 
 void PassHistory::merge(const PassHistory& other) {

@@ -7,15 +7,10 @@
 
 namespace vdbeam {
 
-/// Radiance of one pixel by an unbiased estimator, with which a biased one is compared.
-struct ProbeValue {
-  std::size_t pixel; ///< of the film
-  Rgb radiance;
-};
 
 /// History of the passes at some of the pixels: sums over up to 16 batches of successive passes.
-/// They show which noise the pixels share and how a biased picture differs from unbiased probes.
-/// Batches double in length whenever 16 are full, so memory stays below 2 MB.
+/// They show which noise the pixels share, how a biased picture differs from unbiased probes and how
+/// much its kernels blur. Batches double in length whenever 16 are full, so memory stays below 3 MB.
 class PassHistory {
 public:
   static constexpr std::size_t most_batches = 16;
@@ -30,8 +25,9 @@ public:
   /// Fraction of the pixels that is followed.
   double share() const { return share_; }
 
-  /// Every probe must be of a followed pixel.
-  void add(const PassImage& pass, const std::vector<ProbeValue>& probes);
+  /// `probes` are radiances by an unbiased estimator. They and the pass's blur must be of followed
+  /// pixels.
+  void add(const PassImage& pass, const std::vector<PixelValue>& probes);
   /// Adds the batches of another history of the same size.
   void merge(const PassHistory& other);
 
@@ -44,13 +40,18 @@ public:
   const float* probe_sums(std::size_t batch) const { return sums(batch) + 3 * pixels_.size(); }
   /// Number of probes of each followed pixel.
   const float* probes(std::size_t batch) const { return sums(batch) + 6 * pixels_.size(); }
+  /// Likewise of the passes' blur.
+  const float* blur_sums(std::size_t batch) const { return sums(batch) + 7 * pixels_.size(); }
+  const float* blurs(std::size_t batch) const { return sums(batch) + 10 * pixels_.size(); }
 
   /// Everything above, for storing: both as long as a multiple of the film's pixels.
   std::vector<float>& values() { return values_; }
   std::vector<std::uint32_t>& counts() { return counts_; }
 
 private:
-  std::size_t stride() const { return 7 * pixels_.size(); }
+  std::size_t stride() const { return 11 * pixels_.size(); }
+  /// Adds values to sums of R, G, B that begin at `first` values per pixel, and counts them behind.
+  void add_values(const std::vector<PixelValue>& values, std::size_t first, float* sums) const;
   std::size_t used() const;
   void join(std::size_t batch);
   void make_room();

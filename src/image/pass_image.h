@@ -8,6 +8,12 @@
 
 namespace vdbeam {
 
+/// Radiance at one pixel, numbered row by row.
+struct PixelValue {
+  std::size_t pixel;
+  Rgb radiance;
+};
+
 /// What one pass of an estimator gives: one value per pixel and output, row-major from the top
 /// left.
 struct PassImage {
@@ -21,6 +27,10 @@ struct PassImage {
   /// Tr sigma_t t dt (mean over channels). Its sum over the passes divided by the sum of opacity is
   /// the depth of the medium.
   std::vector<float> depth;
+  /// At some pixels: what the kernels of the pass gave less what kernels of the same photons give
+  /// that are `blur_narrowing` times as wide.
+  std::vector<PixelValue> blur;
+  static constexpr float blur_narrowing = 0.5f;
   /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
   /// which all of them are unless the pass was stopped.
   std::vector<std::uint8_t> finished_tiles;

@@ -59,12 +59,9 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedP
   return blocks;
 }
 
-void divide_by_share(PhotonBlocks& blocks, const KernelShare& share_of) {
-  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
-    const float share = share_of(blocks.position(i), blocks.at(i, PhotonBlocks::radius));
-    for (int c = 0; c < blocks.channels(); ++c)
-      blocks.at(i, PhotonBlocks::power + c) /= share;
-  });
+void divide_photon(PhotonBlocks& blocks, std::size_t photon, float divisor) {
+  for (int c = 0; c < blocks.channels(); ++c)
+    blocks.at(photon, PhotonBlocks::power + c) /= divisor;
 }
 
 } // namespace
@@ -115,7 +112,33 @@ PhotonMap PhotonMap::copy() const {
 }
 
 void PhotonMap::divide_power(const KernelShare& share) {
-  divide_by_share(data_->blocks, share);
+  if (!share)
+    return;
+  PhotonBlocks& blocks = data_->blocks;
+  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+    divide_photon(blocks, i, share(blocks.position(i), blocks.at(i, PhotonBlocks::radius)));
+  });
+}
+
+PhotonMap PhotonMap::divide_power(const KernelShare& share, float narrowing) {
+  PhotonMap narrow = copy();
+  PhotonBlocks &wide_blocks = data_->blocks, &blocks = narrow.data_->blocks;
+  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+    const Vec3f position = blocks.position(i);
+    float& radius = blocks.at(i, PhotonBlocks::radius);
+    const float share_of_wide = share ? share(position, radius) : 1;
+    radius *= narrowing;
+    if (share_of_wide < 1) {
+      divide_photon(wide_blocks, i, share_of_wide);
+      divide_photon(blocks, i, share(position, radius));
+    }
+  });
+  for (auto& level : narrow.data_->tree.levels)
+    for (BoxGroup& group : level)
+      for (float& radius : group.radius)
+        radius *= narrowing;
+  narrow.data_->mean_radius *= narrowing;
+  return narrow;
 }
 
 std::size_t PhotonMap::size() const {

@@ -52,8 +52,11 @@ public:
 
   /// The same map once more.
   PhotonMap copy() const;
-  /// Divides every photon's power by its kernel's share.
+  /// Divides every photon's power by its kernel's share; `share` may be empty, for 1 everywhere.
   void divide_power(const KernelShare& share);
+  /// The same, and returns this map with the radius of every kernel multiplied by `narrowing`, in
+  /// (0, 1], and powers divided by the shares of those kernels. A kernel of share 1 keeps it.
+  PhotonMap divide_power(const KernelShare& share, float narrowing);
 
   std::size_t size() const;
   std::size_t bytes() const;

@@ -2,6 +2,7 @@
 
 #include "machine/stopwatch.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdbeam {
@@ -11,6 +12,9 @@ namespace {
 /// The square of the bias is found from products of a pixel's own probes in different passes: few
 /// pixels that are probed often tell more than many that are probed once.
 constexpr double most_passes_between_probes = 4;
+
+/// Of the window's pixels at most one in this many tells its blur, but never fewer than a few.
+constexpr double pixels_per_blur = 8, fewest_blurs = 512;
 
 } // namespace
 
@@ -26,9 +30,9 @@ BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
   period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
 }
 
-std::vector<ProbeValue> BiasProbe::trace(int pass, RenderStatistics& statistics) {
+std::vector<PixelValue> BiasProbe::trace(int pass, RenderStatistics& statistics) {
   const Stopwatch watch;
-  std::vector<ProbeValue> probes;
+  std::vector<PixelValue> probes;
   std::vector<std::size_t> image_pixels;
   // Every period-th pixel in an order that jumps, so that a pass does not probe columns.
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -45,6 +49,23 @@ std::vector<ProbeValue> BiasProbe::trace(int pass, RenderStatistics& statistics)
   statistics.bias_rays += probes.size();
   statistics.bias += watch.seconds();
   return probes;
+}
+
+std::vector<std::size_t> choose_blur_pixels(const PixelRegion& window, int image_width,
+                                            const std::vector<std::size_t>& pixels) {
+  const double area = static_cast<double>(window.width()) * window.height();
+  const double most = std::max(fewest_blurs, area / pixels_per_blur);
+  const double spacing = std::max(1.0, static_cast<double>(pixels.size()) / most);
+  std::vector<std::size_t> chosen;
+  for (double next = 0; next < static_cast<double>(pixels.size()); next += spacing) {
+    const std::size_t pixel = pixels[static_cast<std::size_t>(next)];
+    const auto width = static_cast<std::size_t>(window.width());
+    const std::size_t x = static_cast<std::size_t>(window.x0) + pixel % width;
+    const std::size_t y = static_cast<std::size_t>(window.y0) + pixel / width;
+    chosen.push_back(y * static_cast<std::size_t>(image_width) + x);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 } // namespace vdbeam

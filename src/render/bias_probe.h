@@ -15,7 +15,7 @@ public:
             const std::vector<std::size_t>& pixels);
 
   /// The pixels whose turn it is in this pass. A pure function of scene, seed, frame and pass.
-  std::vector<ProbeValue> trace(int pass, RenderStatistics& statistics);
+  std::vector<PixelValue> trace(int pass, RenderStatistics& statistics);
 
 private:
   PathEstimator path_;
@@ -24,5 +24,10 @@ private:
   std::vector<std::size_t> pixels_; ///< that are probed, spread over the window
   std::size_t period_;              ///< passes until a pixel's next turn
 };
+
+/// The pixels of the picture, in ascending order, where passes are to tell their blur: of the
+/// window's `pixels`, or of some of them where that would take long.
+std::vector<std::size_t> choose_blur_pixels(const PixelRegion& window, int image_width,
+                                            const std::vector<std::size_t>& pixels);
 
 } // namespace vdbeam

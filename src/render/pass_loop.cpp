@@ -109,7 +109,7 @@ void PassLoop::render_pass(Shutter& shutter) {
   estimator.render_pass(next_pass(), image_, result_.statistics);
   if (stop_.requested() || !is_finished(image_, window_))
     return;
-  std::vector<ProbeValue> probes;
+  std::vector<PixelValue> probes;
   if (probe)
     probes = probe->trace(next_pass(), result_.statistics);
   if (stop_.requested())

@@ -30,6 +30,12 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }
+  for (const PixelValue& value : pass.blur) {
+    const int x = static_cast<int>(value.pixel % pass.width) - window.x0;
+    const int y = static_cast<int>(value.pixel / pass.width) - window.y0;
+    if (x >= 0 && x < part.width && y >= 0 && y < part.height)
+      part.blur.push_back({static_cast<std::size_t>(y) * part.width + x, value.radiance});
+  }
   return part;
 }
 

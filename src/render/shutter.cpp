@@ -33,7 +33,8 @@ Shutter::Place::Place(const PreparedScenePtr& prepared_, const Camera& camera_,
                       const EstimatorInput& from, const RenderPlan& path_plan)
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
-                             from.frame,       from.window, from.stop,     prepared->photons.get()},
+                             from.frame,       from.window, from.stop,     prepared->photons.get(),
+                             from.blur_pixels},
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,

@@ -105,7 +105,7 @@ TEST(BiasStatistics, IsTheDifferenceToTheProbes) {
     PassImage pass = noisy_pass(8, 0.1, random);
     for (Rgb& value : pass.indirect)
       value += Rgb(0.1f);
-    std::vector<ProbeValue> probes;
+    std::vector<PixelValue> probes;
     for (std::size_t k = static_cast<std::size_t>(i % 2); k < film.probe_pixels().size(); k += 2)
       probes.push_back({film.probe_pixels()[k], Rgb(mean + noise(random))});
     film.add(pass, probes);
@@ -134,7 +134,7 @@ TEST(BiasStatistics, SeesABiasThatChangesSignFromPixelToPixel) {
     PassImage pass = noisy_pass(8, 0.1, random);
     for (std::size_t k = 0; k < pass.indirect.size(); ++k)
       pass.indirect[k] += Rgb((k + k / width) % 2 == 0 ? 0.1f : -0.1f);
-    std::vector<ProbeValue> probes;
+    std::vector<PixelValue> probes;
     for (std::size_t k = static_cast<std::size_t>(i % 2); k < film.probe_pixels().size(); k += 2)
       probes.push_back({film.probe_pixels()[k], Rgb(mean + noise(random))});
     film.add(pass, probes);
