@@ -1,5 +1,7 @@
 #include "film/error_estimate.h"
 
+#include "film/history_means.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,20 +12,14 @@
 namespace vdbeam {
 namespace {
 
-constexpr double offset = 0.01; ///< of MRSE
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Weight of a pixel's neighbours beside its own batches, in batches.
-constexpr double neighbour_weight = 0.5;
 /// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
 /// that has all of a pixel's light would weigh as if the pixel were black.
 constexpr double least_mean = 0.4;
 /// What weights that are themselves estimated leave uncertain.
 constexpr double least_spread = 0.03;
-/// Bias goes as the width of kernels to this power: 2 where they are small against all that they
-/// blur, less where they are as wide (measured, docs/decisions.md).
-constexpr double blur_power = 1.5;
-/// How far, as a fraction, the square of the bias may be from what that power law tells, and how
-/// much of it, as a fraction of the noise, the widths of kernels may not show at all.
+/// How far, as a fraction, the square of the bias may be from what narrower kernels tell, and how
+/// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 constexpr std::size_t fewest_batches = 3;
 constexpr std::size_t batches_of_interval = 4;
@@ -33,41 +29,6 @@ double student(double degrees) {
   constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
   return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees) +
          (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / (384 * degrees * degrees * degrees);
-}
-
-/// The mean of all batches, R, G, B of each followed pixel.
-std::vector<float> mean_of(const PassHistory& history, double passes) {
-  std::vector<double> sums(3 * history.pixels().size());
-  for (std::size_t batch = 0; batch < history.batches(); ++batch)
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      sums[i] += static_cast<double>(history.sums(batch)[i]);
-  std::vector<float> means(sums.size());
-  std::transform(sums.begin(), sums.end(), means.begin(),
-                 [&](double sum) { return static_cast<float>(sum / passes); });
-  return means;
-}
-
-/// Mean over the 3 x 3 followed pixels around each; the border repeats.
-std::vector<float> smoothed(const std::vector<float>& means, int columns, int rows) {
-  std::vector<float> result(means.size());
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int from =
-              std::clamp(y + dy, 0, rows - 1) * columns + std::clamp(x + dx, 0, columns - 1);
-          for (int c = 0; c < 3; ++c)
-            result[static_cast<std::size_t>(3 * (y * columns + x) + c)] +=
-                means[static_cast<std::size_t>(3 * from + c)] / 9;
-        }
-  return result;
-}
-
-double total_passes(const PassHistory& history) {
-  double passes = 0;
-  for (std::size_t batch = 0; batch < history.batches(); ++batch)
-    passes += history.passes(batch);
-  return passes;
 }
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
@@ -87,13 +48,13 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
 /// Deviations of the batches from the mean, in units of MRSE.
 struct Deviations {
   std::vector<std::vector<float>> batches; ///< sqrt(passes) times the weighted deviation
-  double plain = 0;                        ///< sum of squares with weights 1 / (mean + offset)^2
-  double diagonal = 0;                     ///< sum over pixels of the square of their variance
+  double plain = 0;    ///< sum of squares with weights 1 / (mean + mrse_offset)^2
+  double diagonal = 0; ///< sum over pixels of the square of their variance
 
   /// A weight must know nothing of the deviation that it weighs, or pixels with a rare bright pass
   /// would hide it under the brightness it caused. So a batch is weighed by the mean of the others
-  /// and, where they are few, of the neighbours. The mean of 1 / (m + offset)^2 over a noisy m is
-  /// too large by 3 Var(m) / (m + offset)^4 to first order, which is taken off.
+  /// and, where they are few, of the neighbours. The mean of 1 / (m + mrse_offset)^2 over a noisy m
+  /// is too large by 3 Var(m) / (m + mrse_offset)^4 to first order, which is taken off.
   Deviations(const PassHistory& history, double passes) : batches(history.batches()) {
     const std::vector<float> means = mean_of(history, passes);
     const std::vector<float> around = smoothed(means, history.columns(), history.rows());
@@ -119,7 +80,7 @@ private:
       squares[b] = n * d * d;
       sum += squares[b];
     }
-    plain += sum / ((mean + offset) * (mean + offset));
+    plain += sum / ((mean + mrse_offset) * (mean + mrse_offset));
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const double n = history.passes(b), others = passes - n;
       const double d = static_cast<double>(history.sums(b)[i]) / n - mean;
@@ -129,7 +90,7 @@ private:
           (others_mean * others + neighbours * static_cast<double>(around)) / (others + neighbours);
       const double m = std::max({0.0, expected, least_mean * mean});
       const double weight =
-          1 / ((m + offset) * (m + offset) +
+          1 / ((m + mrse_offset) * (m + mrse_offset) +
                3 * variance * others / ((others + neighbours) * (others + neighbours)));
       weighted += squares[b] * weight;
       batches[b][i] = static_cast<float>(std::sqrt(n * weight) * d);
@@ -159,131 +120,6 @@ double inverse_degrees(const PassHistory& history, const Deviations& deviations,
   const double own = deviations.diagonal / (1 + 2 / static_cast<double>(count - 1));
   const double squares = std::max(all_pairs - (1 - history.share()) * own, history.share() * own);
   return squares / (trace * trace);
-}
-
-/// Value and standard error by leaving out each batch in turn (jackknife).
-template <class Value>
-std::pair<double, double> jackknife(std::size_t count, const Value& without) {
-  const double whole = without(count), n = static_cast<double>(count);
-  double squares = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    squares += (without(i) - whole) * (without(i) - whole);
-  return {whole, std::sqrt(squares * (n - 1) / n)};
-}
-
-/// Differences of a batch to something that is known better, by followed pixel.
-struct Differences {
-  std::vector<double> sums, weights; ///< sums are R, G, B
-};
-
-/// Differences to the probes, and of the mean brightness.
-struct ProbeDifferences : Differences {
-  double difference = 0, brightness = 0;
-};
-
-ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch) {
-  ProbeDifferences result;
-  result.weights.resize(history.pixels().size());
-  result.sums.resize(3 * result.weights.size());
-  for (std::size_t i = 0; i < history.pixels().size(); ++i) {
-    const double probes = static_cast<double>(history.probes(batch)[i]);
-    if (probes == 0)
-      continue;
-    result.weights[i] = probes;
-    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
-      const double value = static_cast<double>(history.sums(batch)[k]) / history.passes(batch);
-      result.sums[k] = probes * value - static_cast<double>(history.probe_sums(batch)[k]);
-      result.difference += result.sums[k];
-      result.brightness += probes * value;
-    }
-  }
-  return result;
-}
-
-/// What the whole blur is to that between the kernels and the narrower ones.
-double whole_blur() {
-  return 1 / (1 - std::pow(static_cast<double>(PassImage::blur_narrowing), blur_power));
-}
-
-Differences compare_kernels(const PassHistory& history, std::size_t batch) {
-  Differences result;
-  result.weights.assign(history.blurs(batch), history.blurs(batch) + history.pixels().size());
-  result.sums.assign(history.blur_sums(batch), history.blur_sums(batch) + 3 * result.weights.size());
-  for (double& sum : result.sums)
-    sum *= whole_blur();
-  return result;
-}
-
-/// 1 / (mean + offset)^2 of a pixel's channel for the product of two batches, which knows nothing of
-/// these two: see Deviations.
-class PairWeights {
-public:
-  PairWeights(const PassHistory& history)
-      : history_(history), passes_(total_passes(history)), means_(mean_of(history, passes_)),
-        around_(smoothed(means_, history.columns(), history.rows())), variances_(means_.size()) {
-    const std::size_t count = history.batches();
-    for (std::size_t k = 0; k < means_.size(); ++k)
-      for (std::size_t b = 0; b < count; ++b) {
-        const double n = history.passes(b);
-        const double d = sum(b, k) / n - static_cast<double>(means_[k]);
-        variances_[k] += n * d * d / static_cast<double>(count - 1);
-      }
-  }
-
-  double operator()(std::size_t i, std::size_t j, std::size_t k) const {
-    const double mean = static_cast<double>(means_[k]);
-    const double others = passes_ - history_.passes(i) - history_.passes(j);
-    const double neighbours = neighbour_weight * passes_ / static_cast<double>(history_.batches());
-    const double expected = (mean * passes_ - sum(i, k) - sum(j, k) +
-                             neighbours * static_cast<double>(around_[k])) /
-                            (others + neighbours);
-    const double m = std::max({0.0, expected, static_cast<double>(around_[k])});
-    const double spread = variances_[k] * others / ((others + neighbours) * (others + neighbours));
-    return 1 / ((m + offset) * (m + offset) + 3 * spread);
-  }
-
-private:
-  double sum(std::size_t batch, std::size_t k) const {
-    return static_cast<double>(history_.sums(batch)[k]);
-  }
-
-  const PassHistory& history_;
-  double passes_;
-  std::vector<float> means_, around_;
-  std::vector<double> variances_; ///< of one pass
-};
-
-/// The mean square, over pixels and channels, of what the differences of all batches have in
-/// common, and its standard error: products of independent batches, pixel by pixel. Noise has none
-/// on average, bias has its square, of whatever sign it is in the next pixel.
-template <class Batch>
-std::pair<double, double> common_square(const std::vector<Batch>& batches,
-                                        const PairWeights& pair_weight) {
-  const std::size_t count = batches.size();
-  std::vector<double> products(count * count), weights(count * count);
-  tbb::parallel_for(std::size_t{0}, count * count, [&](std::size_t at) {
-    const std::size_t i = at / count, j = at % count;
-    for (std::size_t g = 0; j < i && g < batches[i].weights.size(); ++g) {
-      const double a = batches[i].weights[g], b = batches[j].weights[g];
-      if (!(a * b > 0))
-        continue;
-      const double weight = std::sqrt(a * b);
-      for (std::size_t k = 3 * g; k < 3 * g + 3; ++k)
-        products[at] += weight / 3 * pair_weight(i, j, k) * batches[i].sums[k] / a *
-                        batches[j].sums[k] / b;
-      weights[at] += weight;
-    }
-  });
-  return jackknife(count, [&](std::size_t left_out) {
-    double sum = 0, weight = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (i != left_out && j != left_out) {
-          sum += products[i * count + j];
-          weight += weights[i * count + j];
-        }
-    return weight > 0 ? sum / weight : unknown;
-  });
 }
 
 } // namespace
@@ -317,31 +153,6 @@ NoiseStatistics noise_statistics(const PassHistory& history) {
   statistics.spread = std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) +
                                 uneven + least_spread * least_spread);
   return statistics;
-}
-
-BiasStatistics bias_statistics(const PassHistory& history) {
-  const std::size_t count = history.batches();
-  if (count < fewest_batches)
-    return {unknown, unknown, unknown, unknown, unknown, unknown};
-  const PairWeights pair_weight(history);
-  std::vector<ProbeDifferences> probes(count);
-  std::vector<Differences> kernels(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
-    probes[batch] = compare_probes(history, batch);
-    kernels[batch] = compare_kernels(history, batch);
-  });
-  const auto [bias, bias_error] = jackknife(count, [&](std::size_t left_out) {
-    double difference = 0, brightness = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      if (i != left_out) {
-        difference += probes[i].difference;
-        brightness += probes[i].brightness;
-      }
-    return brightness != difference ? difference / (brightness - difference) : unknown;
-  });
-  const auto [mrse, mrse_error] = common_square(probes, pair_weight);
-  const auto [blur, blur_error] = common_square(kernels, pair_weight);
-  return {mrse, mrse_error, bias, bias_error, blur, blur_error};
 }
 
 namespace {

@@ -29,7 +29,8 @@ NoiseStatistics noise_statistics(const PassHistory& history);
 struct BiasStatistics {
   double mrse, mrse_error; ///< squared bias as MRSE, and its standard error
   double bias, bias_error; ///< of the mean brightness, relative to it
-  double blur, blur_error; ///< what of `mrse` comes from the width of kernels, and its standard error
+  double blur,
+      blur_error; ///< what of `mrse` comes from the width of kernels, and its standard error
 };
 
 /// Bias of the picture, from its differences to the probes and to narrower kernels.

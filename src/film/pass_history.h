@@ -7,10 +7,10 @@
 
 namespace vdbeam {
 
-
 /// History of the passes at some of the pixels: sums over up to 16 batches of successive passes.
-/// They show which noise the pixels share, how a biased picture differs from unbiased probes and how
-/// much its kernels blur. Batches double in length whenever 16 are full, so memory stays below 3 MB.
+/// They show which noise the pixels share, how a biased picture differs from unbiased probes and
+/// how much its kernels blur. Batches double in length whenever 16 are full, so memory stays below
+/// 3 MB.
 class PassHistory {
 public:
   static constexpr std::size_t most_batches = 16;

@@ -148,6 +148,36 @@ TEST(BiasStatistics, SeesABiasThatChangesSignFromPixelToPixel) {
   EXPECT_GT(estimate.high, estimate.noise + square);
 }
 
+/// Narrow kernels tell a bias that few, noisy probes do not.
+TEST(BiasStatistics, FollowsFromNarrowerKernels) {
+  std::mt19937 random(13);
+  std::normal_distribution<float> noise(0, 1), little_noise(0, 0.05f);
+  // Kernels half as wide have 0.5^1.5 of the bias of 0.1.
+  const float change = 0.1f * (1 - std::pow(0.5f, 1.5f));
+  Film film(width, height);
+  for (int i = 0; i < 20; ++i) {
+    PassImage pass = noisy_pass(8, 0.1, random);
+    std::vector<PixelValue> probes;
+    for (std::size_t k = 0; k < film.probe_pixels().size(); ++k) {
+      const std::size_t pixel = film.probe_pixels()[k];
+      const float sign = pixel % 2 == 0 ? 1 : -1;
+      pass.indirect[pixel] += Rgb(sign * 0.1f);
+      if (k % 2 == 0)
+        pass.blur.push_back({pixel, Rgb(sign * change + little_noise(random))});
+      if ((k + static_cast<std::size_t>(i)) % 40 == 0)
+        probes.push_back({pixel, Rgb(mean + noise(random))});
+    }
+    film.add(pass, probes);
+  }
+  const ErrorEstimate estimate = film.error_estimate(false);
+  // A pixel that is darker than its neighbours is weighed as they are, and noise takes some more.
+  const double square = (std::pow(0.1 / 1.01, 2) + std::pow(0.1 / 1.11, 2)) / 2;
+  EXPECT_NEAR(estimate.bias_mrse, square, 0.001);
+  EXPECT_LT(estimate.low, estimate.noise + square);
+  EXPECT_GT(estimate.high, estimate.noise + square);
+  EXPECT_LT(estimate.high, estimate.noise + 5 * square);
+}
+
 TEST(ErrorEstimate, IsUnknownBeforeThereIsASpread) {
   std::mt19937 random(5);
   Film film(width, height);

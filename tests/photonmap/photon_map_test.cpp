@@ -67,6 +67,41 @@ TEST(PhotonMap, UniformPhotonsGiveTheirDensity) {
   }
 }
 
+/// Every other photon keeps half of its kernel, the rest all of it.
+TEST(PhotonMap, NarrowKernelsHaveTheirOwnShares) {
+  const PhotonList photons = cube_photons(2000);
+  const auto share = [](const Vec3f& photon, float radius) {
+    return photon.x > 0 ? 1 : 1 - radius;
+  };
+  const auto build = [&](float radius) {
+    RadiusSettings radii;
+    radii.mode = KernelRadius::fixed;
+    radii.fixed_radius = radius;
+    return PhotonMap::build(photons, 1, radii, KernelShape::biweight);
+  };
+  PhotonMap wide = build(0.5f), wide_alone = build(0.5f), narrow_alone = build(0.25f);
+  const PhotonMap narrow = wide.divide_power(share, 0.5f);
+  wide_alone.divide_power(share);
+  narrow_alone.divide_power(share);
+  EXPECT_FLOAT_EQ(narrow.mean_radius(), narrow_alone.mean_radius());
+  const std::vector<float> weights(2, 1);
+  PhotonMap::RayProfile profile;
+  profile.step = 4;
+  profile.knots = 2;
+  profile.weights = weights.data();
+  profile.phases = &isotropic();
+  for (int i = 0; i < 100; ++i) {
+    profile.ray = {{-1 + 0.02f * static_cast<float>(i), 0.1f, -2}, {0, 0, 1}};
+    const auto query = [&](const PhotonMap& map) {
+      Rgb radiance;
+      map.query_ray(profile, radiance);
+      return radiance.x;
+    };
+    EXPECT_EQ(query(wide), query(wide_alone));
+    EXPECT_NEAR(query(narrow), query(narrow_alone), 1e-5f * query(narrow_alone));
+  }
+}
+
 /// One photon's kernel, scanned by parallel rays, integrates to its power times weight and phase.
 TEST(PhotonMap, KernelConservesPower) {
   for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,

@@ -1,0 +1,172 @@
+#include "film/error_estimate.h"
+#include "film/history_means.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t fewest_batches = 3;
+/// Bias goes as the width of kernels to this power: 2 where they are small against all that they
+/// blur, less where they are as wide (measured, docs/decisions.md).
+constexpr double blur_power = 1.5;
+
+/// Value and standard error by leaving out each batch in turn (jackknife).
+template <class Value>
+std::pair<double, double> jackknife(std::size_t count, const Value& without) {
+  const double whole = without(count), n = static_cast<double>(count);
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    squares += (without(i) - whole) * (without(i) - whole);
+  return {whole, std::sqrt(squares * (n - 1) / n)};
+}
+
+/// Differences of a batch to something that is known better, by followed pixel.
+struct Differences {
+  std::vector<double> sums, weights; ///< sums are R, G, B
+};
+
+/// Differences to the probes, and of the mean brightness.
+struct ProbeDifferences : Differences {
+  double difference = 0, brightness = 0;
+};
+
+ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch) {
+  ProbeDifferences result;
+  result.weights.resize(history.pixels().size());
+  result.sums.resize(3 * result.weights.size());
+  for (std::size_t i = 0; i < history.pixels().size(); ++i) {
+    const double probes = static_cast<double>(history.probes(batch)[i]);
+    if (probes == 0)
+      continue;
+    result.weights[i] = probes;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      const double value = static_cast<double>(history.sums(batch)[k]) / history.passes(batch);
+      result.sums[k] = probes * value - static_cast<double>(history.probe_sums(batch)[k]);
+      result.difference += result.sums[k];
+      result.brightness += probes * value;
+    }
+  }
+  return result;
+}
+
+/// What the whole blur is to that between the kernels and the narrower ones.
+double whole_blur() {
+  return 1 / (1 - std::pow(static_cast<double>(PassImage::blur_narrowing), blur_power));
+}
+
+Differences compare_kernels(const PassHistory& history, std::size_t batch) {
+  Differences result;
+  result.weights.assign(history.blurs(batch), history.blurs(batch) + history.pixels().size());
+  result.sums.assign(history.blur_sums(batch),
+                     history.blur_sums(batch) + 3 * result.weights.size());
+  for (double& sum : result.sums)
+    sum *= whole_blur();
+  return result;
+}
+
+/// 1 / (mean + offset)^2 of a pixel's channel for the product of two batches, which knows nothing
+/// of these two: see Deviations.
+class PairWeights {
+public:
+  PairWeights(const PassHistory& history)
+      : history_(history), passes_(total_passes(history)), means_(mean_of(history, passes_)),
+        around_(smoothed(means_, history.columns(), history.rows())), variances_(means_.size()) {
+    const std::size_t count = history.batches();
+    for (std::size_t k = 0; k < means_.size(); ++k)
+      for (std::size_t b = 0; b < count; ++b) {
+        const double n = history.passes(b);
+        const double d = sum(b, k) / n - static_cast<double>(means_[k]);
+        variances_[k] += n * d * d / static_cast<double>(count - 1);
+      }
+  }
+
+  double operator()(std::size_t i, std::size_t j, std::size_t k) const {
+    const double mean = static_cast<double>(means_[k]);
+    const double others = passes_ - history_.passes(i) - history_.passes(j);
+    const double neighbours = neighbour_weight * passes_ / static_cast<double>(history_.batches());
+    const double expected =
+        (mean * passes_ - sum(i, k) - sum(j, k) + neighbours * static_cast<double>(around_[k])) /
+        (others + neighbours);
+    const double m = std::max({0.0, expected, static_cast<double>(around_[k])});
+    const double spread = variances_[k] * others / ((others + neighbours) * (others + neighbours));
+    return 1 / ((m + mrse_offset) * (m + mrse_offset) + 3 * spread);
+  }
+
+private:
+  double sum(std::size_t batch, std::size_t k) const {
+    return static_cast<double>(history_.sums(batch)[k]);
+  }
+
+  const PassHistory& history_;
+  double passes_;
+  std::vector<float> means_, around_;
+  std::vector<double> variances_; ///< of one pass
+};
+
+/// The mean square, over pixels and channels, of what the differences of all batches have in
+/// common, and its standard error: products of independent batches, pixel by pixel. Noise has none
+/// on average, bias has its square, of whatever sign it is in the next pixel.
+template <class Batch>
+std::pair<double, double> common_square(const std::vector<Batch>& batches,
+                                        const PairWeights& pair_weight) {
+  const std::size_t count = batches.size();
+  std::vector<double> products(count * count), weights(count * count);
+  tbb::parallel_for(std::size_t{0}, count * count, [&](std::size_t at) {
+    const std::size_t i = at / count, j = at % count;
+    for (std::size_t g = 0; j < i && g < batches[i].weights.size(); ++g) {
+      const double a = batches[i].weights[g], b = batches[j].weights[g];
+      if (!(a * b > 0))
+        continue;
+      const double weight = std::sqrt(a * b);
+      for (std::size_t k = 3 * g; k < 3 * g + 3; ++k)
+        products[at] +=
+            weight / 3 * pair_weight(i, j, k) * batches[i].sums[k] / a * batches[j].sums[k] / b;
+      weights[at] += weight;
+    }
+  });
+  return jackknife(count, [&](std::size_t left_out) {
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (i != left_out && j != left_out) {
+          sum += products[i * count + j];
+          weight += weights[i * count + j];
+        }
+    return weight > 0 ? sum / weight : unknown;
+  });
+}
+
+} // namespace
+
+BiasStatistics bias_statistics(const PassHistory& history) {
+  const std::size_t count = history.batches();
+  if (count < fewest_batches)
+    return {unknown, unknown, unknown, unknown, unknown, unknown};
+  const PairWeights pair_weight(history);
+  std::vector<ProbeDifferences> probes(count);
+  std::vector<Differences> kernels(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
+    probes[batch] = compare_probes(history, batch);
+    kernels[batch] = compare_kernels(history, batch);
+  });
+  const auto [bias, bias_error] = jackknife(count, [&](std::size_t left_out) {
+    double difference = 0, brightness = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      if (i != left_out) {
+        difference += probes[i].difference;
+        brightness += probes[i].brightness;
+      }
+    return brightness != difference ? difference / (brightness - difference) : unknown;
+  });
+  const auto [mrse, mrse_error] = common_square(probes, pair_weight);
+  const auto [blur, blur_error] = common_square(kernels, pair_weight);
+  return {mrse, mrse_error, bias, bias_error, blur, blur_error};
+}
+
+} // namespace vdbeam
