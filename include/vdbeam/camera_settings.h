@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/layer_settings.h"
 #include "vdbeam/vec.h"
 
 #include <optional>
@@ -32,6 +33,7 @@ struct ImageSettings {
   int overscan = 0;        ///< pixels that are rendered beyond each edge of the picture
   PixelFilter filter = PixelFilter::box;
   double filter_width = 0; ///< pixels; 0: automatic
+  Compression compression = Compression::zip;
 
   /// The picture and its overscan.
   int raster_width() const { return width + 2 * overscan; }

@@ -9,9 +9,6 @@ namespace vdbeam {
 /// How the brightness of a black body follows its temperature.
 enum class EmissionLaw { planck, stefan_boltzmann, none };
 
-/// How emission goes between voxels: along cubes, or by a smooth cubic (B-spline) of 4^3 voxels.
-enum class EmissionInterpolation { linear, cubic };
-
 /// Light that a volume emits: j(x) = scale * color * intensity(x) * blackbody(x) [radiance /
 /// world], where intensity is 1 without an intensity grid and blackbody is 1 without a temperature
 /// grid (docs/physics.md).
@@ -23,7 +20,6 @@ struct EmissionSettings {
   EmissionLaw law = EmissionLaw::planck;
   double reference = 1500; ///< the temperature [K] at which the blackbody's luminance is 1
   Rgb color{1, 1, 1};
-  EmissionInterpolation interpolation = EmissionInterpolation::linear;
   double scale = 1; ///< radiance per world unit where intensity, color and black body are all 1
 
   /// True where the settings can give any emission.

@@ -4,13 +4,17 @@
 
 namespace vdbeam {
 
-/// How numbers of a layer are stored: halves where they can hold the values, or floats.
-enum class LayerPrecision { half, single };
+/// How the numbers of a layer are stored: as docs/output.md says, as halves where they can hold the
+/// values, or as floats.
+enum class LayerPrecision { automatic, half, single };
 
-/// A layer of the picture.
+/// How an EXR is compressed.
+enum class Compression { zip, zips, piz, rle, none, dwaa, dwab };
+
+/// A layer of the picture beside its colours (docs/output.md).
 struct LayerSettings {
   std::string name;
-  LayerPrecision precision = LayerPrecision::half;
+  LayerPrecision precision = LayerPrecision::automatic;
 };
 
 } // namespace vdbeam

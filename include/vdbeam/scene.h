@@ -41,7 +41,7 @@ struct VolumeSettings {
   EmissionSettings emission;
   VelocitySettings velocity;
   DensityRemap remap;
-  std::string color;              ///< name of a vec3 grid that scales the albedo; empty: none
+  std::string mask;               ///< name of a grid whose values multiply the density; empty: none
   std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]
   std::optional<Vec3d> box_upper;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.

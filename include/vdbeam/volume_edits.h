@@ -21,8 +21,8 @@ struct VelocitySettings {
   double time = 0; ///< by which the volume is moved from the moment that its file shows [seconds]
 };
 
-/// What becomes of a grid's values v: clamp(scale * v + offset, least, most) ^ power, and 0 where
-/// that is negative. Where v is 0 the result is 0.
+/// What becomes of a grid's values v > 0: x = scale * v + offset; 0 where x < least or x <= 0,
+/// otherwise min(x, most) ^ power.
 struct DensityRemap {
   double scale = 1;
   double offset = 0;

@@ -80,10 +80,12 @@ inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) 
   low_[i] = static_cast<float>(renormalised.error);
 }
 
-Film::Film(int width, int height, bool glows)
+Film::Film(int width, int height, bool glows, std::vector<std::string> groups)
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
-      depth_(pixels()), squares_(3 * pixels()), history_(width, height) {}
+      depth_(pixels()), group_names_(std::move(groups)),
+      groups_(group_names_.size(), CompensatedSums(3 * pixels())), squares_(3 * pixels()),
+      history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -101,6 +103,8 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
   invalid += add_values(background_, background, 3 * begin, 3 * end);
   if (emission)
     invalid += add_values(emission_, emission, 3 * begin, 3 * end);
+  for (std::size_t g = 0; g < groups_.size() && g < pass.groups.size(); ++g)
+    add_values(groups_[g], components(pass.groups[g]), 3 * begin, 3 * end);
   invalid += add_values(opacity_, pass.opacity.data(), begin, end);
   invalid += add_values(depth_, pass.depth.data(), begin, end);
   for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
@@ -125,14 +129,17 @@ void Film::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
 
 void Film::merge(const Film& other) {
   check_size(other.width_, other.height_);
-  if (glows_ != other.glows_)
-    throw std::invalid_argument("a film with emission and one without cannot be merged");
+  if (glows_ != other.glows_ || group_names_ != other.group_names_)
+    throw std::invalid_argument("a film with emission or groups of lights and one without, or with "
+                                "others, cannot be merged");
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     merge_values(direct_, other.direct_, 3 * begin, 3 * end);
     merge_values(indirect_, other.indirect_, 3 * begin, 3 * end);
     merge_values(background_, other.background_, 3 * begin, 3 * end);
     if (glows_)
       merge_values(emission_, other.emission_, 3 * begin, 3 * end);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      merge_values(groups_[g], other.groups_[g], 3 * begin, 3 * end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
@@ -158,6 +165,8 @@ std::vector<ImagePlane> Film::planes() {
     add("background." + channel, background_, 3, c);
     if (glows_)
       add("emission." + channel, emission_, 3, c);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      add("group." + group_names_[g] + "." + channel, groups_[g], 3, c);
     planes.push_back({"squares." + channel, squares_.data() + c, 3});
   }
   add("opacity", opacity_, 1, 0);
@@ -232,7 +241,38 @@ Image Film::develop() const {
         image.channels[depth].data[i] = empty_depth;
     }
   });
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<float> data(pixels());
+      for (std::size_t i = 0; i < data.size(); ++i)
+        data[i] = static_cast<float>(groups_[g].high(3 * i + c) / passes);
+      image.channels.push_back(
+          {fmt::format("light_{}.{}", group_names_[g], "RGB"[c]), std::move(data)});
+    }
   return image;
+}
+
+void Film::add_layer(const std::string& name, Image& image) const {
+  const double n = std::max(passes_, 1);
+  const auto add = [&](const std::string& channel, bool half, const auto& value) {
+    std::vector<float> data(pixels());
+    for (std::size_t i = 0; i < data.size(); ++i)
+      data[i] = static_cast<float>(value(i));
+    image.channels.push_back({name + "." + channel, std::move(data), half});
+  };
+  if (name == "transmittance")
+    add("Y", true, [&](std::size_t i) { return 1 - opacity_.high(i) / n; });
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string channel(1, "RGB"[c]);
+    if (name == "background")
+      add(channel, true, [&](std::size_t i) { return background_.high(3 * i + c) / n; });
+    if (name == "variance")
+      add(channel, false, [&](std::size_t i) {
+        const double mean = sum(3 * i + c, true) / n;
+        return passes_ < 2 ? 0.0
+                           : std::max(0.0, squares_[3 * i + c] - n * mean * mean) / (n * (n - 1));
+      });
+  }
 }
 
 double Film::mrse_estimate() const {

@@ -46,8 +46,8 @@ constexpr float empty_depth = 1e10f;
 /// invalid_values().
 class Film {
 public:
-  /// `glows`: passes may hold emission.
-  Film(int width, int height, bool glows = false);
+  /// `glows`: passes may hold emission. `groups`: names of the groups of lights of passes.
+  Film(int width, int height, bool glows = false, std::vector<std::string> groups = {});
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
@@ -59,11 +59,16 @@ public:
   int height() const { return height_; }
   int passes() const { return passes_; }
   bool glows() const { return glows_; }
+  const std::vector<std::string>& groups() const { return group_names_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
   /// What a film takes for each pixel, beside its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 14 : 11) * CompensatedSums::bytes_per_value + 3 * sizeof(double);
+  }
+  /// And for each group of lights.
+  static constexpr std::size_t bytes_per_pixel_of_group() {
+    return 3 * (CompensatedSums::bytes_per_value + sizeof(float));
   }
   /// And what develop() gives back.
   static constexpr std::size_t developed_bytes_per_pixel(bool glows = false) {
@@ -82,7 +87,11 @@ public:
   /// glows, volume_emission (half), and depth.Z (float): the mean distance [world] of the medium,
   /// weighted by opacity, or empty_depth where there is none. Everything is black before the first
   /// pass.
+  /// Groups of lights come as light_NAME.
   Image develop() const;
+  /// Adds one of the layers that develop() leaves out, or nothing: background, transmittance, and
+  /// variance, that of the mean of the passes (float).
+  void add_layer(const std::string& name, Image& image) const;
 
   /// The expected MRSE of develop()'s R, G, B, without bias, from the variance of the passes: the
   /// mean over pixels and channels of s^2 / (n (mean + 0.01)^2), s^2 the unbiased sample variance
@@ -109,7 +118,9 @@ private:
   CompensatedSums direct_, indirect_, background_; ///< 3 per pixel
   CompensatedSums emission_;                       ///< 3 per pixel, none without emission
   CompensatedSums opacity_, depth_;
-  std::vector<double> squares_; ///< 3 per pixel: sums of what passes show, squared
+  std::vector<std::string> group_names_;
+  std::vector<CompensatedSums> groups_; ///< 3 per pixel and group of lights
+  std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
   PassHistory history_;
   struct HistoryStatistics {
     std::size_t batches;

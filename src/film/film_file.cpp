@@ -71,6 +71,11 @@ FilmFileInfo parse_info(Image header, const std::string& path) {
   info.frame = static_cast<int>(frame);
   info.unbiased = number("vdbeam:unbiased") == 1;
   info.glows = header.find("film.emission.R.sum.low") != nullptr;
+  const std::string before = "film.group.", after = ".R.sum.low";
+  for (const ImageChannel& channel : header.channels)
+    if (channel.name.starts_with(before) && channel.name.ends_with(after))
+      info.groups.push_back(
+          channel.name.substr(before.size(), channel.name.size() - before.size() - after.size()));
   header.channels.clear();
   info.header = std::move(header);
   return info;
@@ -111,7 +116,7 @@ FilmFileInfo read_film_info(const std::string& path) {
 }
 
 Film read_film(const std::string& path, const FilmFileInfo& info) {
-  Film film(info.header.width, info.header.height, info.glows);
+  Film film(info.header.width, info.header.height, info.glows, info.groups);
   if (!read_planes(path, info.header.width, info.header.height, file_planes(film)))
     fail_damaged(path);
   film.set_counts(static_cast<int>(info.passes.size()), info.invalid_values);

@@ -15,9 +15,10 @@ struct FilmFileInfo {
   int frame = 1;
   std::vector<int> passes; ///< sorted; which passes the film holds
   std::uint64_t invalid_values = 0;
-  double seconds = 0;    ///< spent on rendering them
-  bool glows = false;    ///< the film holds emission
-  bool unbiased = false; ///< as the plan has it (RenderPlan::unbiased)
+  double seconds = 0;              ///< spent on rendering them
+  bool glows = false;              ///< the film holds emission
+  std::vector<std::string> groups; ///< of lights that it tells apart
+  bool unbiased = false;           ///< as the plan has it (RenderPlan::unbiased)
 
   /// Same scene, frame, pixels and arithmetic: the passes may be added.
   bool joins(const FilmFileInfo& other) const;

@@ -129,8 +129,22 @@ Imf::Slice make_slice(const StoredChannel& channel, const Imath::Box2i& window) 
   return Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, data, window, size, size * width);
 }
 
+/// What the scene asks for (image.compression, kept as an attribute); ZIP otherwise.
+Imf::Compression compression_of(const Image& image) {
+  const std::pair<const char*, Imf::Compression> names[] = {
+      {"zips", Imf::ZIPS_COMPRESSION}, {"piz", Imf::PIZ_COMPRESSION},
+      {"rle", Imf::RLE_COMPRESSION},   {"none", Imf::NO_COMPRESSION},
+      {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION}};
+  const auto asked = image.metadata.find("vdbeam:compression");
+  for (const auto& [name, compression] : names)
+    if (asked != image.metadata.end() && asked->second == name)
+      return compression;
+  return Imf::ZIP_COMPRESSION;
+}
+
 void write_channels(const Image& image, AtomicFile& file) {
   Imf::Header header = exr_header(image, file.path());
+  header.compression() = compression_of(image);
   std::vector<StoredChannel> stored(image.channels.size());
   tbb::parallel_for(std::size_t{0}, stored.size(),
                     [&](std::size_t i) { stored[i] = store_channel(image.channels[i]); });

@@ -22,7 +22,9 @@ struct PassImage {
   std::vector<Rgb> indirect;   ///< light that was scattered more often
   std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
   std::vector<Rgb> emission;   ///< the medium's own light, Tr * j; empty where nothing glows
-  std::vector<float> opacity;  ///< 1 - Tr of the whole ray (mean over channels)
+  /// All light of each group of lights (docs/scene.md); empty without groups.
+  std::vector<std::vector<Rgb>> groups;
+  std::vector<float> opacity; ///< 1 - Tr of the whole ray (mean over channels)
   /// Opacity times the mean distance [world] at which light is extinguished: the integral of
   /// Tr sigma_t t dt (mean over channels). Its sum over the passes divided by the sum of opacity is
   /// the depth of the medium.
@@ -45,6 +47,7 @@ struct PassImage {
     indirect.assign(n, {});
     background.assign(n, {});
     emission.assign(glows ? n : 0, {});
+    groups.clear();
     opacity.assign(n, 0);
     depth.assign(n, 0);
     finished_tiles.assign(static_cast<std::size_t>(tile_columns()) *

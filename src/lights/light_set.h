@@ -26,6 +26,9 @@ public:
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
            const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
+  /// Those of the lights that are chosen, one for each.
+  LightSet only(const std::vector<bool>& chosen) const;
+
   void add(std::unique_ptr<Light> light, LightTraits traits = {});
 
   std::size_t size() const { return lights_.size(); }

@@ -1,4 +1,5 @@
 #include "film/film_file.h"
+#include "film/layers.h"
 #include "render/error_record.h"
 #include "report/image_metadata.h"
 #include "text/frame_range.h"
@@ -84,8 +85,11 @@ void check_complete(const std::vector<int>& passes, const MergeSettings& setting
 
 /// The picture with the attributes of the first file, brought up to date.
 Image finish_image(const Film& film, const FilmFileInfo& info) {
-  Image image = film.develop();
   const Image& header = info.header;
+  const auto layers = header.metadata.find("vdbeam:layers");
+  Image image =
+      develop_layers(film, layers == header.metadata.end() ? std::vector<LayerSettings>{}
+                                                           : layers_of_text(layers->second));
   image.x = header.x;
   image.y = header.y;
   image.full_width = header.full_width;

@@ -1,6 +1,8 @@
 #include "render/pass_loop.h"
 
+#include "estimators/light_groups.h"
 #include "film/clamp.h"
+#include "film/layers.h"
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"
 #include "render/error_record.h"
@@ -40,7 +42,7 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
     : scene_(scene), frame_(frame), hooks_(hooks), window_(window),
       whole_(window.width() == scene.image.raster_width() &&
              window.height() == scene.image.raster_height()),
-      result_(result), film_(window.width(), window.height(), scene.glows()), stop_(hooks.stop) {
+      result_(result), film_(make_film()), stop_(hooks.stop) {
   if (frame.pass_range)
     first_pass_ = frame.pass_range->first;
   if (!frame.checkpoint.path.empty() || !frame.partial.empty())
@@ -48,6 +50,10 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
   if (!frame.checkpoint.path.empty() && frame.checkpoint.resume)
     resume();
   set_deadline();
+}
+
+Film PassLoop::make_film() const {
+  return {window_.width(), window_.height(), scene_.glows(), light_group_names(scene_)};
 }
 
 /// Rendering time [s] that the passes may take; infinite without a limit.
@@ -147,7 +153,7 @@ void PassLoop::show_quick_look(EstimatorInput input) {
   result_.quick_look = true;
   take_quick_look(input, soon, image);
   attempt([&] { hooks_.on_quick_look(result_); });
-  film_ = Film(window_.width(), window_.height(), scene_.glows());
+  film_ = make_film();
   result_.statistics = before;
   result_.quick_look = false;
   result_.image = {};
@@ -292,7 +298,7 @@ void PassLoop::write_checkpoint() {
 }
 
 void PassLoop::develop() {
-  result_.image = film_.develop();
+  result_.image = develop_layers(film_, scene_.layers);
   if (!whole_ || scene_.image.overscan > 0)
     place(result_.image);
 }

@@ -41,6 +41,7 @@ private:
   template <class F>
   void attempt(F write);
   void write_checkpoint();
+  Film make_film() const;
   void develop();
   void place(Image& image) const;
   FilmFileInfo file_info() const;

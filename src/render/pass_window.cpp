@@ -16,6 +16,7 @@ bool is_finished(const PassImage& pass, const PixelRegion& window) {
 PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
   PassImage part;
   part.resize(window.width(), window.height(), !pass.emission.empty());
+  part.groups.assign(pass.groups.size(), std::vector<Rgb>(part.direct.size()));
   for (int y = 0; y < window.height(); ++y) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
     const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(y) * part.width;
@@ -27,6 +28,8 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
     copy(pass.background, part.background);
     if (!pass.emission.empty())
       copy(pass.emission, part.emission);
+    for (std::size_t g = 0; g < pass.groups.size(); ++g)
+      copy(pass.groups[g], part.groups[g]);
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }

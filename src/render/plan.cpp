@@ -1,6 +1,7 @@
 #include "render/plan.h"
 
 #include "estimators/camera_ray.h"
+#include "estimators/light_groups.h"
 #include "film/film.h"
 #include "photonmap/photon_map.h"
 #include "render/plan_needs.h"
@@ -175,8 +176,9 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);
-  plan.film_bytes = film_memory(scene.image, scene.image.raster_width(),
-                                scene.image.raster_height(), scene.glows());
+  plan.film_bytes =
+      film_memory(scene.image, scene.image.raster_width(), scene.image.raster_height(),
+                  scene.glows(), light_group_names(scene).size());
   return plan;
 }
 
@@ -195,12 +197,15 @@ RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes) {
   return plan_stages(scene, volumes);
 }
 
-std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows) {
+std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows,
+                          std::size_t groups) {
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
   return PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
-         (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows)) *
+         groups * sizeof(Rgb) * pixels(image.raster_width(), image.raster_height()) +
+         (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows) +
+          groups * Film::bytes_per_pixel_of_group()) *
              pixels(width, height);
 }
 

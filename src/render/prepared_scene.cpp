@@ -2,23 +2,13 @@
 
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
+#include "render/read_volumes.h"
 #include "scene/scene_keys.h"
-#include "volume/moved_field.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 namespace vdbeam {
 namespace {
-
-/// Tells one state of a file from another.
-std::string file_identity(const std::string& path) {
-  struct stat status {};
-  if (path.empty() || stat(path.c_str(), &status) != 0)
-    return path;
-  return fmt::format("{}|{}|{}|{}.{:09}", path, status.st_ino, status.st_size,
-                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
-}
 
 /// The values of all keys that `wanted` names.
 template <class Wanted>
@@ -49,108 +39,6 @@ std::string world_settings(const Scene& scene) {
 std::string photon_settings(const Scene& scene) {
   return settings_text(scene,
                        [](const SceneKey& key) { return key.section == SceneSection::render; });
-}
-
-/// The grid from the last frame, or nothing where it is another one.
-const ReadVolume* find_read(const PreparedScenePtr& previous, const std::string& identity) {
-  if (previous)
-    for (const ReadVolume& volume : previous->volumes)
-      if (!identity.empty() && volume.identity == identity)
-        return &volume;
-  return nullptr;
-}
-
-DensityGrid take_still_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                            ReadVolume& read) {
-  read.identity = file_identity(volume.file) + "|" + volume.density;
-  if (const ReadVolume* known = find_read(previous, read.identity)) {
-    DensityGrid grid = known->facts;
-    if (known->index >= 0)
-      grid.field = previous->world->medium.volumes[static_cast<std::size_t>(known->index)].field;
-    return grid;
-  }
-  return read_density_grid(volume.file, volume.density);
-}
-
-/// Motion of a volume between the moment that its file shows and this one.
-std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& read) {
-  if (!read.velocity || volume.velocity.time == 0)
-    return std::nullopt;
-  return Motion{*read.velocity, volume.velocity};
-}
-
-DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                      ReadVolume& read) {
-  if (!volume.needs_density())
-    return {};
-  DensityGrid grid = take_still_grid(volume, previous, read);
-  const auto motion = motion_of(volume, read);
-  if (!motion)
-    return grid;
-  read.identity.clear(); // other frames have no use for it
-  return moved_grid(grid, *motion, volume.file, granted_memory());
-}
-
-/// Reads the velocities of volumes that passes see at several moments.
-void take_velocities(const Scene& scene, const PreparedScenePtr& previous,
-                     PreparedScene& prepared) {
-  for (std::size_t i = 0; i < scene.volumes.size() && !scene.moments.empty(); ++i) {
-    const VolumeSettings& volume = scene.volumes[i];
-    ReadVolume& read = prepared.volumes[i];
-    if (!volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
-      continue;
-    const std::string identity = fmt::format(
-        "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,
-        volume.velocity.scale, static_cast<int>(volume.velocity.units));
-    if (previous && i < previous->volumes.size() &&
-        previous->volumes[i].velocity_identity == identity)
-      read.velocity = previous->volumes[i].velocity;
-    else
-      read.velocity = read_velocity(volume.file, volume.velocity);
-    read.velocity_identity = identity;
-    if (read.velocity && read.velocity->outliers() > 0)
-      prepared.facts.notes.push_back(fmt::format(
-          "{}: {} voxels have a velocity that is not a number or crosses the whole grid "
-          "within a frame; they move like their neighbours",
-          volume.file, read.velocity->outliers()));
-  }
-}
-
-/// Moves the grids that emission is made from.
-EmissionGrid read_moved_emission(const VolumeSettings& volume, const Motion& motion) {
-  const auto read = [&](const std::string& name) -> DensityGrid {
-    if (name.empty())
-      return {};
-    const DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored);
-    return moved_grid(grid, motion, volume.file, granted_memory());
-  };
-  return make_emission(volume.emission, read(volume.emission.intensity),
-                       read(volume.emission.temperature), volume.file, granted_memory());
-}
-
-/// Everything that decides an emission field but the contents of the file; its strength does not.
-std::string emission_identity(const VolumeSettings& volume) {
-  std::string text = file_identity(volume.file);
-  Scene scene;
-  scene.volumes.push_back(volume);
-  for (const SceneKey& key : scene_keys())
-    if (key.section == SceneSection::emission && !key.scales_emission)
-      text += fmt::format("|{}", key.format(key.get(scene, 0)));
-  return text;
-}
-
-EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                           ReadVolume& read) {
-  if (!volume.glows())
-    return {};
-  if (const auto motion = motion_of(volume, read))
-    return read_moved_emission(volume, *motion);
-  read.emission_identity = emission_identity(volume);
-  if (previous)
-    for (const ReadVolume& known : previous->volumes)
-      if (known.emission_identity == read.emission_identity)
-        return known.emission;
-  return read_emission_grid(volume.file, volume.emission);
 }
 
 /// Bytes for photons that later frames may use: at most an eighth of the memory, which is less than

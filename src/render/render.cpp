@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
+#include "estimators/light_groups.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "render/limit_notes.h"
@@ -72,7 +73,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const std::vector<VolumeFacts> volumes =
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());
   result.plan = plan_stages(scene, volumes);
-  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows());
+  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows(),
+                                       light_group_names(scene).size());
   check_memory(scene, result.plan, granted_memory());
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;

@@ -1,5 +1,6 @@
 #include "render/shutter.h"
 
+#include "estimators/light_groups.h"
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/prepared_scene.h"
@@ -59,7 +60,9 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   place.last_pass = pass;
   if (!place.estimator) {
     const Stopwatch watch;
-    place.estimator = make_estimator(scene_.render.estimator, place.input);
+    place.estimator = light_group_names(scene_).empty()
+                          ? make_estimator(scene_.render.estimator, place.input)
+                          : make_grouped_estimator(scene_, place.input);
     if (place.input.plan.needs(Stage::bias))
       place.probe =
           std::make_unique<BiasProbe>(place.path_input, place.input.window, probe_pixels_);

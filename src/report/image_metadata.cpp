@@ -1,6 +1,8 @@
 #include "report/image_metadata.h"
 
+#include "film/layers.h"
 #include "report/versions.h"
+#include "scene/scene_enums.h"
 #include "transport/camera.h"
 
 #include <array>
@@ -110,6 +112,10 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:sceneHash"] = hash;
   image.metadata["vdbeam:estimator"] = std::string(scene.render.estimator.name);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
+  if (!scene.layers.empty())
+    image.metadata["vdbeam:layers"] = layers_text(scene.layers);
+  if (scene.image.compression != Compression::zip)
+    image.metadata["vdbeam:compression"] = enum_name(scene.image.compression);
   image.numbers["vdbeam:frame"] = scene.frame.number;
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "not one pass was finished";

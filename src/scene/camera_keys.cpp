@@ -23,6 +23,9 @@ void add_image_keys(KeyTable& table) {
       .absent("none")
       .keeps_picture()
       .keeps_world();
+  table.add("compression", &I::compression, "of the EXR; dwaa and dwab lose digits")
+      .keeps_picture()
+      .keeps_world();
   table.add("pixel_aspect", &I::pixel_aspect, "width of a pixel over its height")
       .within(0.01, 100)
       .keeps_world();

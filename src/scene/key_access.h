@@ -31,6 +31,10 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.surfaces[index].material;
   else if constexpr (std::is_same_v<S, LightSettings>)
     return scene.lights[index];
+  else if constexpr (std::is_same_v<S, LayerSettings>)
+    return scene.layers[index];
+  else if constexpr (std::is_same_v<S, DensityRemap>)
+    return scene.volumes[index].remap;
   else
     return scene.render;
 }

@@ -61,9 +61,9 @@ std::string key_table_markdown(SceneSection section) {
 
 std::string key_table_text() {
   constexpr std::array sections{
-      SceneSection::image,    SceneSection::camera,   SceneSection::volume,
-      SceneSection::phase,    SceneSection::emission, SceneSection::mesh,
-      SceneSection::material, SceneSection::light,    SceneSection::render};
+      SceneSection::image,    SceneSection::camera, SceneSection::volume,   SceneSection::phase,
+      SceneSection::emission, SceneSection::mesh,   SceneSection::material, SceneSection::light,
+      SceneSection::layer,    SceneSection::render};
   std::string text;
   for (const SceneSection section : sections) {
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section_name(section));

@@ -51,6 +51,24 @@ struct EnumNames<VelocityUnits> {
       {{VelocityUnits::world, "world"}, {VelocityUnits::index, "index"}}};
 };
 template <>
+struct EnumNames<LayerPrecision> {
+  static constexpr std::array<std::pair<LayerPrecision, std::string_view>, 3> table{
+      {{LayerPrecision::automatic, "auto"},
+       {LayerPrecision::half, "half"},
+       {LayerPrecision::single, "float"}}};
+};
+template <>
+struct EnumNames<Compression> {
+  static constexpr std::array<std::pair<Compression, std::string_view>, 7> table{
+      {{Compression::zip, "zip"},
+       {Compression::zips, "zips"},
+       {Compression::piz, "piz"},
+       {Compression::rle, "rle"},
+       {Compression::none, "none"},
+       {Compression::dwaa, "dwaa"},
+       {Compression::dwab, "dwab"}}};
+};
+template <>
 struct EnumNames<PhaseType> {
   static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
       {{PhaseType::isotropic, "isotropic"},

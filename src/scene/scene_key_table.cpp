@@ -32,6 +32,18 @@ void add_volume(KeyTable& table) {
       .always_written();
   add_placement(table, &V::transform);
 
+  table.add("mask", &V::mask, R"(name of a grid whose values multiply the density; "": none)");
+  using D = DensityRemap;
+  table.add("density_scale", &D::scale, "factor of the density's values, before all that follows");
+  table.add("density_offset", &D::offset, "added to the values that are above 0");
+  table.add("density_min", &D::least, "what is less after that becomes 0").at_least(0);
+  table.add("density_max", &D::most, "what is more becomes this").above(0).absent("none");
+  table.add("density_power", &D::power, "what is left is raised to this power").above(0);
+  table.add("box_lower", &V::box_lower, "lower corner of a box outside of which nothing is seen")
+      .unit("world")
+      .absent("none");
+  table.add("box_upper", &V::box_upper, "its upper corner").unit("world").absent("none");
+
   using W = VelocitySettings;
   table.add("velocity", &W::grid,
             R"(grid of the velocity, or three of its components ("vx,vy,vz"); "auto", "none")");
@@ -145,7 +157,15 @@ void add_light(KeyTable& table) {
   table.add("rotation", &L::rotation, "turns the sky about the camera's up axis").unit("degrees");
   table.add("visible", &L::visible,
             "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
+  table.add("group", &L::group, "lights of one group share the layer light_NAME").keeps_world();
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
+}
+
+void add_layer(KeyTable& table) {
+  using L = LayerSettings;
+  table.section(SceneSection::layer);
+  table.add("name", &L::name, "which layer the image is to have").required();
+  table.add("precision", &L::precision, "how it is stored: as halves or floats");
 }
 
 void add_stop_rule(KeyTable& table) {
@@ -237,6 +257,7 @@ std::vector<SceneKey> make_table() {
   add_emission(table);
   add_mesh(table);
   add_light(table);
+  add_layer(table);
   add_render(table);
   std::vector<SceneKey> keys;
   keys.reserve(entries.size());
@@ -248,6 +269,11 @@ std::vector<SceneKey> make_table() {
       key.changes_world = false;
     if (key.section == SceneSection::light)
       key.types = kinds_with_key<LightType>(key.name);
+    // No pass depends on which layers are wanted.
+    if (key.section == SceneSection::layer) {
+      key.changes_world = false;
+      key.stop_rule = true;
+    }
     if (key.section == SceneSection::render) {
       key.estimators = kinds_with_key<EstimatorType>(key.name);
       key.changes_world = false;

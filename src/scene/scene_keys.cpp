@@ -202,6 +202,8 @@ std::string section_name(SceneSection section) {
     return "mesh.material";
   case SceneSection::light:
     return "light";
+  case SceneSection::layer:
+    return "layer";
   case SceneSection::render:
     return "render";
   }
@@ -222,6 +224,8 @@ std::string key_path(const SceneKey& key, std::size_t index) {
     return fmt::format("mesh.{}.material.{}", index, key.name);
   case SceneSection::light:
     return fmt::format("light.{}.{}", index, key.name);
+  case SceneSection::layer:
+    return fmt::format("layer.{}.{}", index, key.name);
   default:
     return section_name(key.section) + "." + key.name;
   }
@@ -233,6 +237,8 @@ std::size_t section_count(const Scene& scene, SceneSection section) {
     return scene.volumes.size();
   if (section == SceneSection::mesh || section == SceneSection::material)
     return scene.surfaces.size();
+  if (section == SceneSection::layer)
+    return scene.layers.size();
   return section == SceneSection::light ? scene.lights.size() : 1;
 }
 

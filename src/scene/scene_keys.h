@@ -12,7 +12,18 @@
 namespace vdbeam {
 
 /// The tables of a scene file.
-enum class SceneSection { image, camera, volume, phase, emission, mesh, material, light, render };
+enum class SceneSection {
+  image,
+  camera,
+  volume,
+  phase,
+  emission,
+  mesh,
+  material,
+  light,
+  layer,
+  render
+};
 
 /// What a key's value is in the file.
 enum class KeyKind {
@@ -75,7 +86,8 @@ struct SceneKey {
   bool is_list_item() const {
     return section == SceneSection::volume || section == SceneSection::phase ||
            section == SceneSection::emission || section == SceneSection::mesh ||
-           section == SceneSection::material || section == SceneSection::light;
+           section == SceneSection::material || section == SceneSection::light ||
+           section == SceneSection::layer;
   }
   /// What is wrong with a value ("must lie in (-1, 1), got 1.2"), or nothing.
   std::optional<std::string> complaint(const KeyValue& value) const;

@@ -35,7 +35,8 @@ const std::vector<std::pair<std::string, SceneSection>>& root_sections() {
   static const std::vector<std::pair<std::string, SceneSection>> sections{
       {"image", SceneSection::image},   {"camera", SceneSection::camera},
       {"volume", SceneSection::volume}, {"mesh", SceneSection::mesh},
-      {"light", SceneSection::light},   {"render", SceneSection::render},
+      {"light", SceneSection::light},   {"layer", SceneSection::layer},
+      {"render", SceneSection::render},
   };
   return sections;
 }
@@ -51,6 +52,8 @@ std::string item_name(SceneSection section, std::size_t index) {
     return fmt::format("mesh.{}", index);
   if (section == SceneSection::material)
     return fmt::format("mesh.{}.material", index);
+  if (section == SceneSection::layer)
+    return fmt::format("layer.{}", index);
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
@@ -117,7 +120,7 @@ void SceneReader::note_idle_keys() {
 
 void SceneReader::read_section(SceneSection section, const toml::node& node) {
   if (section == SceneSection::volume || section == SceneSection::mesh ||
-      section == SceneSection::light)
+      section == SceneSection::light || section == SceneSection::layer)
     return read_list(section, node);
   if (const auto* table = node.as_table()) {
     read_table(section, 0, *table);
@@ -144,6 +147,8 @@ void SceneReader::read_list(SceneSection section, const toml::node& node) {
       scene_.volumes.emplace_back();
     else if (section == SceneSection::mesh)
       scene_.surfaces.emplace_back();
+    else if (section == SceneSection::layer)
+      scene_.layers.emplace_back();
     else
       scene_.lights.emplace_back();
     read_table(section, i, *table);

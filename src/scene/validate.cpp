@@ -1,11 +1,15 @@
 #include "scene/validate.h"
 
 #include "estimators/estimator_table.h"
+#include "estimators/light_groups.h"
+#include "film/layers.h"
 #include "lights/light_table.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -58,6 +62,14 @@ public:
 
   void check_volume(std::size_t index) const {
     check_transform(fmt::format("volume.{}.transform", index), scene_.volumes[index].transform);
+    const VolumeSettings& volume = scene_.volumes[index];
+    if (volume.box_lower.has_value() != volume.box_upper.has_value())
+      fail(fmt::format("volume.{}.{}", index, volume.box_lower ? "box_lower" : "box_upper"),
+           "needs the other corner too: box_lower and box_upper");
+    for (int a = 0; a < 3 && volume.box_lower; ++a)
+      if (!((*volume.box_lower)[a] < (*volume.box_upper)[a]))
+        fail(fmt::format("volume.{}.box_upper", index),
+             "must be greater than box_lower along all three axes");
   }
 
   void check_transform(const std::string& path, const std::array<double, 12>& m) const {
@@ -90,6 +102,39 @@ public:
       fail(fmt::format("mesh.{}", index),
            "needs a file, or a type that needs none: sphere, quad or disk");
     check_transform(fmt::format("mesh.{}.transform", index), surface.transform);
+  }
+
+  void check_groups() const {
+    bool grouped = false;
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+      const std::string& group = scene_.lights[i].group;
+      grouped = grouped || !group.empty();
+      const bool plain = std::all_of(group.begin(), group.end(),
+                                     [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+      if (!plain || group == "rest")
+        fail(fmt::format("light.{}.group", i),
+             fmt::format("must be made of letters, digits and _, and not be \"rest\", got \"{}\"",
+                         group));
+    }
+    if (grouped && scene_.render.clamp)
+      fail("render.clamp", "excludes groups of lights (light.group)");
+    for (std::size_t i = 0; i < scene_.surfaces.size() && grouped; ++i)
+      if (shines(scene_.surfaces[i].material))
+        fail(fmt::format("mesh.{}.material", i),
+             "must not be emissive in a scene whose lights have groups (light.group)");
+  }
+
+  void check_layers() const {
+    const std::vector<std::string> groups = light_group_names(scene_);
+    for (std::size_t i = 0; i < scene_.layers.size(); ++i) {
+      const std::string path = fmt::format("layer.{}.name", i);
+      const std::string& name = scene_.layers[i].name;
+      if (const std::string why = why_no_layer(name, groups); !why.empty())
+        fail(path, why);
+      for (std::size_t j = 0; j < i; ++j)
+        if (scene_.layers[j].name == name)
+          fail(path, fmt::format("must not be there twice, got \"{}\"", name));
+    }
   }
 
   void check_render() const {
@@ -128,6 +173,8 @@ void validate_consistency(const Scene& scene, const KeyLocator& locate) {
     checker.check_mesh(i);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     checker.check_light(i);
+  checker.check_groups();
+  checker.check_layers();
   checker.check_render();
 }
 

@@ -1,0 +1,108 @@
+#include "estimators/light_groups.h"
+
+#include <algorithm>
+#include <set>
+
+namespace vdbeam {
+namespace {
+
+constexpr const char* rest = "rest";
+
+/// One group and what renders it.
+struct Group {
+  Group(const EstimatorInput& from, const EstimatorType& type, const std::vector<bool>& lights,
+        bool with_emission)
+      : world(from.world), plan(from.plan), input{world,      from.camera, from.settings, plan,
+                                                  from.frame, from.window, from.stop} {
+    world.lights = from.world.lights.only(lights);
+    if (!with_emission)
+      world.medium.emitters.clear();
+    plan.shadow_ray_lights.clear();
+    for (std::size_t i = 0; i < from.plan.shadow_ray_lights.size(); ++i)
+      if (lights[i])
+        plan.shadow_ray_lights.push_back(from.plan.shadow_ray_lights[i]);
+    estimator = make_estimator(type, input);
+  }
+  Group(const Group&) = delete;
+
+  World world;
+  RenderPlan plan;
+  EstimatorInput input;
+  std::unique_ptr<Estimator> estimator;
+};
+
+void add(std::vector<Rgb>& to, const std::vector<Rgb>& what) {
+  for (std::size_t i = 0; i < what.size(); ++i)
+    to[i] += what[i];
+}
+
+class GroupedEstimator : public Estimator {
+public:
+  GroupedEstimator(const Scene& scene, const EstimatorInput& input) : input_(input) {
+    for (const std::string& name : light_group_names(scene)) {
+      const bool is_rest = name == rest;
+      // Volumes that glow are lights that come after those of the scene.
+      std::vector<bool> lights(input.world.lights.size(), is_rest);
+      for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        lights[i] = scene.lights[i].group == (is_rest ? "" : name);
+      groups_.push_back(std::make_unique<Group>(input, scene.render.estimator, lights, is_rest));
+    }
+  }
+
+  void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override {
+    PassImage part;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      PassImage& target = g == 0 ? image : part;
+      groups_[g]->estimator->render_pass(pass, target, statistics);
+      std::vector<Rgb> light(target.direct.size());
+      for (std::size_t i = 0; i < light.size(); ++i)
+        light[i] = target.total(i);
+      if (g > 0)
+        add_part(part, image);
+      image.groups.push_back(std::move(light));
+      if (input_.stopped()) {
+        std::fill(image.finished_tiles.begin(), image.finished_tiles.end(), 0);
+        return;
+      }
+    }
+  }
+
+private:
+  static void add_part(const PassImage& part, PassImage& image) {
+    add(image.direct, part.direct);
+    add(image.indirect, part.indirect);
+    add(image.background, part.background);
+    if (image.emission.empty())
+      image.emission = part.emission;
+    else
+      add(image.emission, part.emission);
+    for (std::size_t i = 0; i < image.finished_tiles.size(); ++i)
+      image.finished_tiles[i] = image.finished_tiles[i] && part.finished_tiles[i];
+  }
+
+  EstimatorInput input_;
+  std::vector<std::unique_ptr<Group>> groups_;
+};
+
+} // namespace
+
+std::vector<std::string> light_group_names(const Scene& scene) {
+  std::set<std::string> names;
+  bool others = scene.glows();
+  for (const LightSettings& light : scene.lights) {
+    if (light.group.empty())
+      others = true;
+    else
+      names.insert(light.group);
+  }
+  std::vector<std::string> list(names.begin(), names.end());
+  if (!list.empty() && others)
+    list.emplace_back(rest);
+  return list;
+}
+
+std::unique_ptr<Estimator> make_grouped_estimator(const Scene& scene, const EstimatorInput& input) {
+  return std::make_unique<GroupedEstimator>(scene, input);
+}
+
+} // namespace vdbeam

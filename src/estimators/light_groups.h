@@ -1,0 +1,17 @@
+#pragma once
+
+#include "estimators/estimator.h"
+
+namespace vdbeam {
+
+/// The groups of a scene's lights, in the order of their names, and "rest" for lights without one
+/// and volumes that glow, where there are any; empty where no light has a group.
+std::vector<std::string> light_group_names(const Scene& scene);
+
+/// An estimator that renders the lights of each group by themselves, one after the other, and adds
+/// them up: light is additive, so the picture is what it is without groups, but for the noise, and
+/// PassImage::groups add up to it. `scene` says to which group a light of the input's world
+/// belongs.
+std::unique_ptr<Estimator> make_grouped_estimator(const Scene& scene, const EstimatorInput& input);
+
+} // namespace vdbeam

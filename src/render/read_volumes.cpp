@@ -1,0 +1,173 @@
+#include "render/read_volumes.h"
+
+#include "render/memory_check.h"
+#include "scene/scene_keys.h"
+#include "volume/edited_field.h"
+#include "volume/moved_field.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+namespace vdbeam {
+namespace {
+
+/// The grid from the last frame, or nothing where it is another one.
+const ReadVolume* find_read(const PreparedScenePtr& previous, const std::string& identity) {
+  if (previous)
+    for (const ReadVolume& volume : previous->volumes)
+      if (!identity.empty() && volume.identity == identity)
+        return &volume;
+  return nullptr;
+}
+
+/// Motion of a volume between the moment that its file shows and this one.
+std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& read) {
+  if (!read.velocity || volume.velocity.time == 0)
+    return std::nullopt;
+  return Motion{*read.velocity, volume.velocity};
+}
+
+/// The settings that edit a volume's density, as text.
+std::string edits_text(const VolumeSettings& volume) {
+  const DensityRemap& r = volume.remap;
+  return fmt::format("|{}|{}|{}|{}|{}|{}", volume.mask, r.scale, r.offset, r.least,
+                     r.most.value_or(-1), r.power);
+}
+
+/// The box that a volume is clipped to, and what places it there.
+std::string box_text(const VolumeSettings& volume) {
+  if (!volume.box_lower || !volume.box_upper)
+    return "";
+  const Vec3d &a = *volume.box_lower, &b = *volume.box_upper;
+  std::string text = fmt::format("|{} {} {} {} {} {}", a.x, a.y, a.z, b.x, b.y, b.z);
+  for (const double x : volume.transform)
+    text += fmt::format(" {}", x);
+  return text;
+}
+
+/// The edits of a grid that lies in its place; those of the density where `density`.
+GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool density) {
+  GridEdits edits;
+  edits.to_world = Affine::from_matrix(volume.transform).after(grid.index_to_world);
+  if (density)
+    edits.remap = volume.remap;
+  if (volume.box_lower && volume.box_upper)
+    edits.box = Boxd{*volume.box_lower, *volume.box_upper};
+  return edits;
+}
+
+/// The density as its file has it, times its mask.
+DensityGrid read_density(const VolumeSettings& volume) {
+  DensityGrid grid = read_density_grid(volume.file, volume.density);
+  if (volume.mask.empty())
+    return grid;
+  const DensityGrid mask = read_density_grid(volume.file, volume.mask, {}, Background::ignored);
+  GridEdits edits;
+  edits.to_world = grid.index_to_world;
+  edits.mask = &mask;
+  edits.mask_to_world = mask.index_to_world;
+  grid.field = edited_field(grid.field, edits);
+  return grid;
+}
+
+/// Everything that decides an emission field but the contents of the file; its strength does not.
+std::string emission_identity(const VolumeSettings& volume) {
+  std::string text = file_identity(volume.file) + box_text(volume);
+  Scene scene;
+  scene.volumes.push_back(volume);
+  for (const SceneKey& key : scene_keys())
+    if (key.section == SceneSection::emission && !key.scales_emission)
+      text += fmt::format("|{}", key.format(key.get(scene, 0)));
+  return text;
+}
+
+} // namespace
+
+/// Tells one state of a file from another.
+std::string file_identity(const std::string& path) {
+  struct stat status {};
+  if (path.empty() || stat(path.c_str(), &status) != 0)
+    return path;
+  return fmt::format("{}|{}|{}|{}.{:09}", path, status.st_ino, status.st_size,
+                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
+DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                      ReadVolume& read) {
+  if (!volume.needs_density())
+    return {};
+  const std::string edits = edits_text(volume) + box_text(volume);
+  read.identity = file_identity(volume.file) + "|" + volume.density + edits;
+  const auto motion = motion_of(volume, read);
+  const bool edited = edits_of(volume, {}, true).changes();
+  // What was edited cannot be moved: the box would move too.
+  if (const ReadVolume* known = find_read(previous, read.identity); known && !(motion && edited)) {
+    DensityGrid grid = known->facts;
+    if (known->index >= 0)
+      grid.field = previous->world->medium.volumes[static_cast<std::size_t>(known->index)].field;
+    if (!motion)
+      return grid;
+    read.identity.clear(); // other frames have no use for it
+    return moved_grid(grid, *motion, volume.file, granted_memory());
+  }
+  DensityGrid grid = read_density(volume);
+  if (motion) {
+    read.identity.clear();
+    grid = moved_grid(grid, *motion, volume.file, granted_memory());
+  }
+  grid.field = edited_field(grid.field, edits_of(volume, grid, true));
+  return grid;
+}
+
+EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                           ReadVolume& read) {
+  if (!volume.glows())
+    return {};
+  const auto motion = motion_of(volume, read);
+  if (!motion) {
+    read.emission_identity = emission_identity(volume);
+    if (previous)
+      for (const ReadVolume& known : previous->volumes)
+        if (known.emission_identity == read.emission_identity)
+          return known.emission;
+    if (!volume.box_lower)
+      return read_emission_grid(volume.file, volume.emission);
+  }
+  const auto take = [&](const std::string& name) -> DensityGrid {
+    if (name.empty())
+      return {};
+    DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored);
+    if (motion)
+      grid = moved_grid(grid, *motion, volume.file, granted_memory());
+    grid.field = edited_field(grid.field, edits_of(volume, grid, false));
+    return grid;
+  };
+  return make_emission(volume.emission, take(volume.emission.intensity),
+                       take(volume.emission.temperature), volume.file, granted_memory());
+}
+
+void take_velocities(const Scene& scene, const PreparedScenePtr& previous,
+                     PreparedScene& prepared) {
+  for (std::size_t i = 0; i < scene.volumes.size() && !scene.moments.empty(); ++i) {
+    const VolumeSettings& volume = scene.volumes[i];
+    ReadVolume& read = prepared.volumes[i];
+    if (!volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
+      continue;
+    const std::string identity = fmt::format(
+        "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,
+        volume.velocity.scale, static_cast<int>(volume.velocity.units));
+    if (previous && i < previous->volumes.size() &&
+        previous->volumes[i].velocity_identity == identity)
+      read.velocity = previous->volumes[i].velocity;
+    else
+      read.velocity = read_velocity(volume.file, volume.velocity);
+    read.velocity_identity = identity;
+    if (read.velocity && read.velocity->outliers() > 0)
+      prepared.facts.notes.push_back(fmt::format(
+          "{}: {} voxels have a velocity that is not a number or crosses the whole grid "
+          "within a frame; they move like their neighbours",
+          volume.file, read.velocity->outliers()));
+  }
+}
+
+} // namespace vdbeam

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "render/prepared_scene.h"
+
+namespace vdbeam {
+
+/// Tells one state of a file from another.
+std::string file_identity(const std::string& path);
+
+/// A volume's density as the scene wants it: read, or taken from `previous`, moved and edited.
+DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                      ReadVolume& read);
+
+/// Likewise what glows.
+EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                           ReadVolume& read);
+
+/// Reads the velocities of volumes that passes see at several moments.
+void take_velocities(const Scene& scene, const PreparedScenePtr& previous, PreparedScene& prepared);
+
+} // namespace vdbeam

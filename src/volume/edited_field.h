@@ -1,0 +1,28 @@
+#pragma once
+
+#include "vdbeam/volume_edits.h"
+#include "volume/vdb_reader.h"
+
+#include <optional>
+
+namespace vdbeam {
+
+/// What look development makes of a grid, lattice point by lattice point, so that bricks, majorants
+/// and tracking are as exact as for a file that holds the result.
+struct GridEdits {
+  DensityRemap remap;
+  Affine to_world;                   ///< of the grid's index coordinates
+  std::optional<Boxd> box;           ///< values outside of it are 0 [world]
+  const DensityGrid* mask = nullptr; ///< multiplies values, before they are mapped
+  Affine mask_to_world;
+
+  bool changes() const { return remap.changes() || box || mask; }
+};
+
+/// A value after the remapping; 0 stays 0.
+float remapped(const DensityRemap& remap, float value);
+
+/// Applies the edits to a field with this origin.
+DensityField edited_field(const DensityField& field, const GridEdits& edits);
+
+} // namespace vdbeam
