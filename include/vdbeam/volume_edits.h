@@ -7,8 +7,9 @@
 
 namespace vdbeam {
 
-/// In what a velocity grid measures lengths: the grid's index space or the world.
-enum class VelocityUnits { world, index };
+/// In what a velocity grid measures lengths: the world, or the grid's index space. Automatic: the
+/// world, but for files of Mantaflow, which have 2.5 voxels per second to the unit.
+enum class VelocityUnits { automatic, world, index };
 
 /// How a volume moves, for motion blur.
 struct VelocitySettings {
@@ -17,7 +18,7 @@ struct VelocitySettings {
   std::string grid = "auto";
   double fps = 24;  ///< frames per second: velocities are lengths per second
   double scale = 1; ///< factor of the velocities
-  VelocityUnits units = VelocityUnits::world;
+  VelocityUnits units = VelocityUnits::automatic;
   double time = 0; ///< by which the volume is moved from the moment that its file shows [seconds]
 };
 

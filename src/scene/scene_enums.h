@@ -47,8 +47,10 @@ struct EnumNames<PixelFilter> {
 };
 template <>
 struct EnumNames<VelocityUnits> {
-  static constexpr std::array<std::pair<VelocityUnits, std::string_view>, 2> table{
-      {{VelocityUnits::world, "world"}, {VelocityUnits::index, "index"}}};
+  static constexpr std::array<std::pair<VelocityUnits, std::string_view>, 3> table{
+      {{VelocityUnits::automatic, "auto"},
+       {VelocityUnits::world, "world"},
+       {VelocityUnits::index, "index"}}};
 };
 template <>
 struct EnumNames<LayerPrecision> {

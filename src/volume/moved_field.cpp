@@ -26,10 +26,9 @@ public:
     const Affine to_world = grid.index_to_world.after(shift);
     to_velocity_ = velocity_.index_to_world().inverse().after(to_world);
     const Affine to_local = to_world.inverse();
-    turn_ = motion.settings.units == VelocityUnits::index
-                ? to_local.after(velocity_.index_to_world())
-                : to_local;
-    time_ = motion.settings.time * motion.settings.scale;
+    const VelocityScale meaning = scale_of(motion.settings, velocity_.from_mantaflow());
+    turn_ = meaning.index ? to_local.after(velocity_.index_to_world()) : to_local;
+    time_ = motion.settings.time * meaning.factor;
   }
 
   Vec3d at(const Vec3d& local) const {

@@ -48,6 +48,7 @@ struct RawGridHeader {
   std::array<double, 12> index_to_world{}; ///< row-major 3x4
   std::uint32_t level_set = 0;
   std::uint32_t staggered = 0; ///< of velocities: each component lies on its faces of the voxel
+  std::uint32_t from_mantaflow = 0;
 };
 
 /// The grid in a file of that layout; it refers to the file's memory. Trusts nothing, since a

@@ -15,6 +15,14 @@ bool is_missing(const Vec3f& v) {
 
 } // namespace
 
+VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow) {
+  // Blender runs Mantaflow with a step of 0.1 units for a frame of 1/25 s (at a time scale of 1).
+  constexpr double mantaflow_units = 2.5;
+  if (settings.units == VelocityUnits::automatic && from_mantaflow)
+    return {true, mantaflow_units * settings.scale};
+  return {settings.units == VelocityUnits::index, settings.scale};
+}
+
 VelocityField::VelocityField(Values values, double longest) : values_(std::move(values)) {
   find_means(longest);
   fill_cells_without();

@@ -21,6 +21,7 @@ public:
   struct Values {
     Affine index_to_world;
     bool staggered = false;    ///< component c lies half a voxel before its voxel along axis c
+    bool from_mantaflow = false;
     Vec3<std::int64_t> origin; ///< index of the first cell's first voxel, a multiple of 8
     Vec3<int> cells;
     std::vector<std::int32_t> table; ///< brick of each cell (x-major), or -1
@@ -31,6 +32,7 @@ public:
   VelocityField(Values values, double longest);
 
   const Affine& index_to_world() const { return values_.index_to_world; }
+  bool from_mantaflow() const { return values_.from_mantaflow; }
   /// At a point in index coordinates, in the grid's own units.
   Vec3d sample(const Vec3d& index) const;
   /// Voxels whose velocity was too long or not a number.
@@ -50,6 +52,14 @@ private:
   Values values_;
   std::uint64_t outliers_ = 0;
 };
+
+/// What a velocity's numbers mean: lengths per second of the grid's index space or of the world,
+/// times a factor.
+struct VelocityScale {
+  bool index = false;
+  double factor = 1;
+};
+VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow);
 
 /// Reads the velocity of a VDB; null where settings.grid is "auto" and the file has none. What
 /// would cross the whole grid within a frame is an outlier. Throws as read_density_grid.

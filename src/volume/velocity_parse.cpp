@@ -126,6 +126,7 @@ void write_component(const Grid& grid, int component, int descriptor) {
     for (int j = 0; j < 4; ++j)
       header.index_to_world[static_cast<std::size_t>(4 * i + j)] = matrix(j, i);
   header.staggered = grid.getGridClass() == openvdb::GRID_STAGGERED;
+  header.from_mantaflow = static_cast<bool>(grid["file_base_resolution"]);
   header.leaf_count = leaves.size();
   header.tile_count = tiles.size();
   std::array<char, RawGridHeader::values_offset> page{};

@@ -116,10 +116,10 @@ private:
 /// The longest velocity that does not cross the whole lattice within a frame.
 double longest_velocity(const VelocityField::Values& values, const VelocitySettings& settings) {
   const Vec3d size = Vec3d(values.cells) * double{width};
-  const double diagonal = settings.units == VelocityUnits::index
-                              ? length(size)
-                              : length(values.index_to_world.vector(size));
-  const double scale = std::abs(settings.scale);
+  const VelocityScale meaning = scale_of(settings, values.from_mantaflow);
+  const double diagonal =
+      meaning.index ? length(size) : length(values.index_to_world.vector(size));
+  const double scale = std::abs(meaning.factor);
   return scale > 0 ? diagonal * settings.fps / scale : std::numeric_limits<double>::infinity();
 }
 
@@ -151,6 +151,7 @@ read_velocity(const std::string& path, const VelocitySettings& settings, const R
   if (!(std::abs(values.index_to_world.determinant()) > 0))
     throw InputError(label + " has a transform that is singular or not finite");
   values.staggered = components[0].header.staggered != 0;
+  values.from_mantaflow = components[0].header.from_mantaflow != 0;
   const double longest = longest_velocity(values, settings);
   return std::make_shared<const VelocityField>(std::move(values), longest);
 }
