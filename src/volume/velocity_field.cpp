@@ -1,5 +1,8 @@
 #include "volume/velocity_field.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +16,92 @@ bool is_missing(const Vec3f& v) {
   return std::isnan(v.x);
 }
 
+constexpr std::size_t cell_size = std::size_t{width} * width * width;
+
+std::size_t cell_offset(const Vec3<int>& n, const Vec3<int>& cell) {
+  return (static_cast<std::size_t>(cell.x) * n.y + cell.y) * n.z + cell.z;
+}
+Vec3<int> cell_at(const Vec3<int>& n, std::size_t offset) {
+  return {static_cast<int>(offset / n.z / n.y), static_cast<int>(offset / n.z % n.y),
+          static_cast<int>(offset % n.z)};
+}
+
+/// Ring by ring, a cell without a velocity takes the mean of its neighbours that have one.
+void fill_cells_without(VelocityField::Values& values) {
+  const Vec3<int>& n = values.cells;
+  std::vector<std::size_t> ring, next;
+  const auto visit_neighbours = [&](std::size_t offset, const auto& visit) {
+    const Vec3<int> cell = cell_at(n, offset);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-1, 1}) {
+        Vec3<int> other = cell;
+        other[axis] += step;
+        if (other[axis] >= 0 && other[axis] < n[axis])
+          visit(cell_offset(n, other));
+      }
+  };
+  for (std::size_t cell = 0; cell < values.means.size(); ++cell)
+    if (!is_missing(values.means[cell]))
+      ring.push_back(cell);
+  if (ring.empty())
+    values.means.assign(values.means.size(), Vec3f(0));
+  std::vector<std::uint8_t> queued(values.means.size());
+  while (!ring.empty()) {
+    next.clear();
+    for (const std::size_t cell : ring)
+      visit_neighbours(cell, [&](std::size_t neighbour) {
+        if (!queued[neighbour] && is_missing(values.means[neighbour])) {
+          queued[neighbour] = 1;
+          next.push_back(neighbour);
+        }
+      });
+    std::vector<Vec3f> found;
+    for (const std::size_t cell : next) {
+      Vec3f sum;
+      float count = 0;
+      visit_neighbours(cell, [&](std::size_t neighbour) {
+        if (!is_missing(values.means[neighbour])) {
+          sum += values.means[neighbour];
+          ++count;
+        }
+      });
+      found.push_back(sum / count);
+    }
+    for (std::size_t i = 0; i < next.size(); ++i)
+      values.means[next[i]] = found[i];
+    std::swap(ring, next);
+  }
+}
+
+/// The value of a voxel, or what stands for it; beyond the cells that of the nearest.
+const Vec3f& voxel_value(const VelocityField::Values& values, Vec3<int> p) {
+  for (int a = 0; a < 3; ++a)
+    p[a] = std::clamp(p[a], 0, width * values.cells[a] - 1);
+  const std::size_t cell = cell_offset(values.cells, {p.x / width, p.y / width, p.z / width});
+  if (const std::int32_t brick = values.table[cell]; brick >= 0) {
+    const int voxel = ((p.x % width) * width + p.y % width) * width + p.z % width;
+    const Vec3f& value =
+        values
+            .bricks[static_cast<std::size_t>(brick) * cell_size + static_cast<std::size_t>(voxel)];
+    if (!is_missing(value))
+      return value;
+  }
+  return values.means[cell];
+}
+
+/// At a lattice point: of components on faces, the mean of the faces to both sides.
+Vec3f lattice_value(const VelocityField::Values& values, const Vec3<int>& p) {
+  if (!values.staggered)
+    return voxel_value(values, p);
+  Vec3f result;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3<int> next = p;
+    ++next[axis];
+    result[axis] = 0.5f * (voxel_value(values, p)[axis] + voxel_value(values, next)[axis]);
+  }
+  return result;
+}
+
 } // namespace
 
 VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow) {
@@ -23,33 +112,36 @@ VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow) {
   return {settings.units == VelocityUnits::index, settings.scale};
 }
 
-VelocityField::VelocityField(Values values, double longest) : values_(std::move(values)) {
-  find_means(longest);
-  fill_cells_without();
+VelocityField::VelocityField(Values values, double longest)
+    : index_to_world_(values.index_to_world), from_mantaflow_(values.from_mantaflow),
+      origin_(values.origin), cells_(values.cells) {
+  find_means(values, longest);
+  fill_cells_without(values);
+  build_bricks(values);
+  means_ = std::move(values.means);
 }
 
 /// Drops what is not to be trusted, and takes the mean of the rest of each cell.
-void VelocityField::find_means(double longest) {
+void VelocityField::find_means(Values& values, double longest) {
   const double longest_square = longest * longest;
   const auto trusted = [&](const Vec3f& v) {
     const double square = dot(Vec3d(v), Vec3d(v));
     return std::isfinite(square) && square <= longest_square;
   };
-  values_.means.resize(values_.table.size(), Vec3f(not_a_number));
-  for (std::size_t cell = 0; cell < values_.table.size(); ++cell) {
-    Vec3f& mean = values_.means[cell];
-    if (values_.table[cell] < 0) {
+  values.means.resize(values.table.size(), Vec3f(not_a_number));
+  for (std::size_t cell = 0; cell < values.table.size(); ++cell) {
+    Vec3f& mean = values.means[cell];
+    if (values.table[cell] < 0) {
       if (!is_missing(mean) && !trusted(mean)) {
         mean = Vec3f(not_a_number);
-        outliers_ += width * width * width;
+        outliers_ += cell_size;
       }
       continue;
     }
-    constexpr std::size_t size = width * width * width;
-    Vec3f* brick = values_.bricks.data() + static_cast<std::size_t>(values_.table[cell]) * size;
+    Vec3f* brick = values.bricks.data() + static_cast<std::size_t>(values.table[cell]) * cell_size;
     Vec3d sum;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < cell_size; ++i) {
       // A voxel that is not active is NaN in all components, of three grids perhaps in some.
       const bool active =
           !(std::isnan(brick[i].x) && std::isnan(brick[i].y) && std::isnan(brick[i].z));
@@ -65,102 +157,60 @@ void VelocityField::find_means(double longest) {
   }
 }
 
-/// Ring by ring, a cell without a velocity takes the mean of its neighbours that have one.
-void VelocityField::fill_cells_without() {
-  const Vec3<int>& n = values_.cells;
-  std::vector<std::size_t> ring, next;
-  const auto visit_neighbours = [&](std::size_t cell, const auto& visit) {
-    const int k = static_cast<int>(cell % n.z), j = static_cast<int>(cell / n.z % n.y),
-              i = static_cast<int>(cell / n.z / n.y);
-    const int at[3] = {i, j, k};
-    const std::size_t strides[3] = {static_cast<std::size_t>(n.y) * n.z,
-                                    static_cast<std::size_t>(n.z), 1};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (at[axis] > 0)
-        visit(cell - strides[axis]);
-      if (at[axis] + 1 < n[axis])
-        visit(cell + strides[axis]);
+/// Bricks of the cells in which, or at whose upper sides, there are velocities.
+void VelocityField::build_bricks(const Values& values) {
+  const Vec3<int>& n = cells_;
+  table_.assign(values.table.size(), -1);
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < table_.size(); ++cell) {
+    const Vec3<int> c = cell_at(n, cell);
+    bool any = false;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3<int> next{c.x + (corner & 1), c.y + (corner >> 1 & 1), c.z + (corner >> 2)};
+      if (next.x < n.x && next.y < n.y && next.z < n.z)
+        any = any || values.table[cell_offset(n, next)] >= 0;
     }
-  };
-  for (std::size_t cell = 0; cell < values_.means.size(); ++cell)
-    if (!is_missing(values_.means[cell]))
-      ring.push_back(cell);
-  if (ring.empty())
-    values_.means.assign(values_.means.size(), Vec3f(0));
-  std::vector<std::uint8_t> queued(values_.means.size());
-  while (!ring.empty()) {
-    next.clear();
-    for (const std::size_t cell : ring)
-      visit_neighbours(cell, [&](std::size_t neighbour) {
-        if (!queued[neighbour] && is_missing(values_.means[neighbour])) {
-          queued[neighbour] = 1;
-          next.push_back(neighbour);
-        }
-      });
-    std::vector<Vec3f> found;
-    for (const std::size_t cell : next) {
-      Vec3f sum;
-      float count = 0;
-      visit_neighbours(cell, [&](std::size_t neighbour) {
-        if (!is_missing(values_.means[neighbour])) {
-          sum += values_.means[neighbour];
-          ++count;
-        }
-      });
-      found.push_back(sum / count);
-    }
-    for (std::size_t i = 0; i < next.size(); ++i)
-      values_.means[next[i]] = found[i];
-    std::swap(ring, next);
+    if (any)
+      table_[cell] = static_cast<std::int32_t>(count++);
   }
-}
-
-const Vec3f& VelocityField::at(std::int64_t i, std::int64_t j, std::int64_t k) const {
-  const auto cell_of = [](std::int64_t x, int cells) {
-    return static_cast<int>(std::clamp<std::int64_t>(x >> 3, 0, cells - 1));
-  };
-  const std::size_t cell = cell_offset(cell_of(i, values_.cells.x), cell_of(j, values_.cells.y),
-                                       cell_of(k, values_.cells.z));
-  const bool inside = i >= 0 && j >= 0 && k >= 0 && i < std::int64_t{width} * values_.cells.x &&
-                      j < std::int64_t{width} * values_.cells.y &&
-                      k < std::int64_t{width} * values_.cells.z;
-  if (const std::int32_t brick = values_.table[cell]; brick >= 0 && inside) {
-    const auto voxel = static_cast<std::size_t>(((i & 7) * width + (j & 7)) * width + (k & 7));
-    const Vec3f& value =
-        values_.bricks[static_cast<std::size_t>(brick) * width * width * width + voxel];
-    if (!is_missing(value))
-      return value;
-  }
-  return values_.means[cell];
-}
-
-Vec3d VelocityField::trilinear(const Vec3d& local) const {
-  const Vec3d base{std::floor(local.x), std::floor(local.y), std::floor(local.z)};
-  const Vec3d f = local - base;
-  const auto i = static_cast<std::int64_t>(base.x), j = static_cast<std::int64_t>(base.y),
-             k = static_cast<std::int64_t>(base.z);
-  Vec3d sum;
-  for (int corner = 0; corner < 8; ++corner) {
-    const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-    const double weight = (a ? f.x : 1 - f.x) * (b ? f.y : 1 - f.y) * (c ? f.z : 1 - f.z);
-    if (weight > 0)
-      sum += Vec3d(at(i + a, j + b, k + c)) * weight;
-  }
-  return sum;
+  constexpr std::size_t brick_size = std::size_t{brick_width} * brick_width * brick_width;
+  bricks_.resize(count * brick_size);
+  tbb::parallel_for(std::size_t{0}, table_.size(), [&](std::size_t cell) {
+    if (table_[cell] < 0)
+      return;
+    const Vec3<int> c = cell_at(n, cell) * width;
+    Vec3f* out = bricks_.data() + static_cast<std::size_t>(table_[cell]) * brick_size;
+    for (int i = 0; i < brick_width; ++i)
+      for (int j = 0; j < brick_width; ++j)
+        for (int k = 0; k < brick_width; ++k)
+          *out++ = lattice_value(values, {c.x + i, c.y + j, c.z + k});
+  });
 }
 
 Vec3d VelocityField::sample(const Vec3d& index) const {
-  constexpr double farthest = 1e9; // beyond it integers would overflow
-  const Vec3d local = max(Vec3d(-farthest), min(Vec3d(farthest), index - Vec3d(values_.origin)));
-  if (!values_.staggered)
-    return trilinear(local);
-  Vec3d result;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3d face = local;
-    face[axis] += 0.5;
-    result[axis] = trilinear(face)[axis];
+  const Vec3d local = index - Vec3d(origin_);
+  Vec3<int> cell, voxel;
+  Vec3d f;
+  for (int a = 0; a < 3; ++a) {
+    // Beyond the cells the values at their border hold.
+    const double x = std::clamp(local[a], 0.0, double{width} * cells_[a]);
+    const int below = std::min(static_cast<int>(x), width * cells_[a] - 1);
+    cell[a] = below / width;
+    voxel[a] = below % width;
+    f[a] = x - below;
   }
-  return result;
+  const std::size_t offset = cell_offset(cells_, cell);
+  if (table_[offset] < 0)
+    return Vec3d(means_[offset]);
+  const Vec3f* p =
+      bricks_.data() +
+      ((static_cast<std::size_t>(table_[offset]) * brick_width + voxel.x) * brick_width + voxel.y) *
+          brick_width +
+      voxel.z;
+  const auto along_z = [&](int at) { return Vec3d(p[at]) * (1 - f.z) + Vec3d(p[at + 1]) * f.z; };
+  constexpr int y = brick_width, x = brick_width * brick_width;
+  return (along_z(0) * (1 - f.y) + along_z(y) * f.y) * (1 - f.x) +
+         (along_z(x) * (1 - f.y) + along_z(x + y) * f.y) * f.x;
 }
 
 } // namespace vdbeam

@@ -11,16 +11,17 @@
 
 namespace vdbeam {
 
-/// Velocities on an integer lattice, trilinear between its points. Where there is none, or one that
-/// is not to be trusted, the mean of the cell of 8^3 around is taken, and in cells without any the
-/// mean of the cells that are nearest: what moves must be able to leave the place where it was.
+/// Velocities on an integer lattice, trilinear between its points; staggered ones are brought to
+/// the points by the mean of both faces. Where there is none, or one that is not to be trusted, the
+/// mean of the cell of 8^3 around is taken, and in cells without any the mean of the cells that are
+/// nearest: what moves must be able to leave the place where it was.
 class VelocityField {
 public:
   static constexpr int cell_width = 8;
 
   struct Values {
     Affine index_to_world;
-    bool staggered = false;    ///< component c lies half a voxel before its voxel along axis c
+    bool staggered = false; ///< component c lies half a voxel before its voxel along axis c
     bool from_mantaflow = false;
     Vec3<std::int64_t> origin; ///< index of the first cell's first voxel, a multiple of 8
     Vec3<int> cells;
@@ -31,25 +32,26 @@ public:
   /// Velocities that are longer than `longest` count as missing.
   VelocityField(Values values, double longest);
 
-  const Affine& index_to_world() const { return values_.index_to_world; }
-  bool from_mantaflow() const { return values_.from_mantaflow; }
+  const Affine& index_to_world() const { return index_to_world_; }
+  bool from_mantaflow() const { return from_mantaflow_; }
   /// At a point in index coordinates, in the grid's own units.
   Vec3d sample(const Vec3d& index) const;
   /// Voxels whose velocity was too long or not a number.
   std::uint64_t outliers() const { return outliers_; }
-  bool empty() const { return values_.table.empty(); }
+  bool empty() const { return table_.empty(); }
 
 private:
-  void find_means(double longest);
-  void fill_cells_without();
-  std::size_t cell_offset(int i, int j, int k) const {
-    return (static_cast<std::size_t>(i) * values_.cells.y + j) * values_.cells.z + k;
-  }
-  /// The velocity at a lattice point, from the first cell's first voxel on.
-  const Vec3f& at(std::int64_t i, std::int64_t j, std::int64_t k) const;
-  Vec3d trilinear(const Vec3d& local) const;
+  static constexpr int brick_width = cell_width + 1; ///< with the first layer of the next cells
 
-  Values values_;
+  void find_means(Values& values, double longest);
+  void build_bricks(const Values& values);
+
+  Affine index_to_world_;
+  bool from_mantaflow_ = false;
+  Vec3<std::int64_t> origin_;
+  Vec3<int> cells_;
+  std::vector<std::int32_t> table_; ///< brick of each cell; -1: its mean everywhere
+  std::vector<Vec3f> bricks_, means_;
   std::uint64_t outliers_ = 0;
 };
 
