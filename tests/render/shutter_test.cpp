@@ -98,6 +98,28 @@ TEST_F(ShutterTest, MovesABallByItsVelocity) {
   EXPECT_NEAR(end.y - start.y, 0.8, 0.01);
 }
 
+/// Pass for pass the blurred picture is that of a shutter that is open for an instant at the pass'
+/// moment.
+TEST_F(ShutterTest, BlurIsTheMeanOfItsMoments) {
+  const Scene scene = load({"camera.shutter_open=-0.2", "camera.shutter_close=0.6"});
+  const Image blurred = render(scene).image;
+  std::vector<double> sum(plane(blurred, "A").size());
+  for (int pass = 0; pass < 16; ++pass) {
+    const std::size_t moment = Shutter::moment_of(pass, scene.moments.size(), 1);
+    const double time = scene.moments[moment].volumes[0].velocity.time; // 1 frame per second
+    Scene instant = load({"camera.shutter_open=" + std::to_string(time - 1e-4),
+                          "camera.shutter_close=" + std::to_string(time + 1e-4),
+                          "camera.shutter_times=1"});
+    FrameSettings frame;
+    frame.pass_range = PassRange{pass, pass};
+    const Image image = render(instant, frame).image;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      sum[i] += static_cast<double>(plane(image, "A")[i]) / 16;
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    EXPECT_NEAR(sum[i], plane(blurred, "A")[i], 1e-4) << i;
+}
+
 /// A camera that moves and a ball that moves as it does make a still picture but for the sampling.
 TEST_F(ShutterTest, CamerasMoveToo) {
   const std::vector<std::string> base{"render.passes=64"};

@@ -45,6 +45,17 @@ TEST(Memory, MorePhotonsThanNumbersAreRefused) {
   }
 }
 
+TEST(Memory, AThousandGroupsOfLightsAreRefusedOrFit) {
+  MemoryScene scene = box_scene(1);
+  scene.scene.image = {3840, 2160};
+  for (int i = 0; i < 1000; ++i) {
+    add_sky(scene);
+    scene.scene.lights.back().group = "g" + std::to_string(i);
+  }
+  EXPECT_NE(complaint(scene.scene, 64 * gigabyte), "");
+  EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
+}
+
 TEST(Memory, PhotonsThatNobodyNeedsAreNoReason) {
   MemoryScene scene = box_scene(1, 0);
   add_sky(scene);
