@@ -59,9 +59,10 @@ private:
 
   void add_medium() {
     add(Stage::read, !scene_.volumes.empty(),
-        scene_.volumes.empty() ? "no volumes"
-        : needs_.glows         ? "density and emission grids only"
-                               : "density grids only");
+        scene_.volumes.empty()    ? "no volumes"
+        : !scene_.moments.empty() ? "the scene's grids, and velocities where there are any"
+        : needs_.glows            ? "density and emission grids only"
+                                  : "density grids only");
     add(Stage::majorants, needs_.medium, needs_.medium ? "the medium is not empty" : no_medium);
     const bool surfaces = !scene_.surfaces.empty();
     add(Stage::surfaces, surfaces,
