@@ -17,15 +17,16 @@ namespace {
   throw InputError(one_line(fmt::format("{} {}: must {}", option, text, right)));
 }
 
-/// Whole numbers that a separator divides, none of them negative; nothing for any other text.
-std::optional<std::vector<int>> parse_numbers(const std::string& text, char separator) {
+/// Whole numbers that a separator divides, none below `least`; nothing for any other text.
+std::optional<std::vector<int>> parse_numbers(const std::string& text, char separator,
+                                              int least = 0) {
   std::vector<int> numbers;
   std::stringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) {
     int number = 0;
     const char* const end = part.data() + part.size();
     const auto [stop, error] = std::from_chars(part.data(), end, number);
-    if (error != std::errc{} || stop != end || part.empty() || number < 0)
+    if (error != std::errc{} || stop != end || part.empty() || number < least)
       return std::nullopt;
     numbers.push_back(number);
   }
@@ -46,7 +47,7 @@ PassRange parse_pass_range(const std::string& text) {
 }
 
 PixelRegion parse_region(const std::string& text) {
-  const auto numbers = parse_numbers(text, ',');
+  const auto numbers = parse_numbers(text, ',', -16384);
   if (!numbers || numbers->size() != 4 || (*numbers)[2] <= (*numbers)[0] ||
       (*numbers)[3] <= (*numbers)[1])
     fail("--region", text, "look like x0,y0,x1,y1 with x0 < x1 and y0 < y1, in pixels");
