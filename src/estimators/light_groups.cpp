@@ -95,9 +95,9 @@ std::vector<std::string> light_group_names(const Scene& scene) {
     else
       names.insert(light.group);
   }
+  if (!names.empty() && others)
+    names.insert(rest);
   std::vector<std::string> list(names.begin(), names.end());
-  if (!list.empty() && others)
-    list.emplace_back(rest);
   return list;
 }
 

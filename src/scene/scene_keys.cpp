@@ -133,6 +133,7 @@ std::string SceneKey::default_text() const {
   scene.volumes.emplace_back();
   scene.surfaces.emplace_back();
   scene.lights.emplace_back();
+  scene.layers.emplace_back();
   const KeyValue value = get(scene, 0);
   if (std::holds_alternative<std::monostate>(value) && absent_word.empty())
     return "as render." + name;

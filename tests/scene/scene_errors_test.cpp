@@ -53,10 +53,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nseed = 1\n",
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
-                 "s.toml:2: unknown key image.zzz; its keys are width, height, fps, pixel_aspect, "
-                 "overscan, filter and filter_width"},
+                 "s.toml:2: unknown key image.zzz; its keys are width, height, fps, compression, "
+                 "pixel_aspect, overscan, filter and filter_width"},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
-                              "mesh, light and render"}));
+                              "mesh, light, layer and render"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Types, BadSceneFile,

@@ -9,8 +9,9 @@ namespace {
 
 using SceneHash = test::SceneTest;
 
-const char* const text = "[[volume]]\nfile = 'cloud.vdb'\n[[light]]\ntype = 'environment'\n"
-                         "[[mesh]]\ntype = 'quad'\n[render]\nestimator = 'path'\n";
+const char* const text =
+    "[[volume]]\nfile = 'cloud.vdb'\n[[light]]\ntype = 'environment'\n"
+    "[[mesh]]\ntype = 'quad'\n[[layer]]\nname = 'depth'\n[render]\nestimator = 'path'\n";
 
 TEST_F(SceneHash, IsSixteenHexDigitsAndStable) {
   const std::string hash = scene_hash(load(text));
@@ -38,6 +39,8 @@ TEST_F(SceneHash, EveryKeyThatChangesThePictureChangesIt) {
       value = value == KeyValue(key.choices[0]) ? key.choices[1] : key.choices[0];
     else if (key.kind == KeyKind::text)
       value = std::string("other");
+    else if (key.kind == KeyKind::vector)
+      value = std::vector<double>{1, 2, 3};
     else if (key.kind == KeyKind::integer)
       value = std::int64_t{5};
     else

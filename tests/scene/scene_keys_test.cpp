@@ -23,6 +23,7 @@ TEST(SceneKeys, DefaultsAreValid) {
   scene.volumes.emplace_back();
   scene.surfaces.emplace_back();
   scene.lights.emplace_back();
+  scene.layers.emplace_back();
   for (const SceneKey& key : scene_keys())
     if (key.get && !key.required) {
       EXPECT_FALSE(key.complaint(key.get(scene, 0)).has_value()) << key.name;
@@ -36,7 +37,7 @@ TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
   for (const SceneSection section :
        {SceneSection::image, SceneSection::camera, SceneSection::volume, SceneSection::phase,
         SceneSection::emission, SceneSection::mesh, SceneSection::material, SceneSection::light,
-        SceneSection::render})
+        SceneSection::layer, SceneSection::render})
     EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
         << "docs/scene.md lacks this table of " << section_name(section) << ":\n"
         << key_table_markdown(section);

@@ -1,0 +1,101 @@
+#include "support/temp_folder.h"
+#include "vdbeam/error.h"
+#include "vdbeam/render.h"
+#include "vdbeam/scene_file.h"
+#include "volume_factory.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace vdbeam {
+namespace {
+
+/// A ball of radius 0.9 with a velocity of (1, 2, 3), seen by parallel rays; 4 pixels to the unit.
+class Look : public ::testing::Test {
+protected:
+  Look() {
+    VolumeOptions options;
+    options.size = 24;
+    write_volume("staggered", folder_.file("ball.vdb"), options);
+  }
+  Scene load(const std::vector<std::string>& more = {}) {
+    std::ofstream(folder_.file("s.toml"))
+        << "[image]\nwidth = 24\nheight = 24\n"
+           "[camera]\nposition = [0, 0, 6]\nprojection = \"orthographic\"\nview_height = 6\n"
+           "[[volume]]\nfile = \"ball.vdb\"\nextinction = 0.5\nvelocity_fps = 1\n"
+           "[[light]]\ntype = \"environment\"\nvisible = false\n"
+           "[render]\npasses = 4\nestimator = \"path\"\n";
+    return load_scene(folder_.file("s.toml"), 1, more);
+  }
+  static std::vector<float> opacity(const Image& image) { return image.find("A")->data; }
+  static float at(const std::vector<float>& values, double x, double y) {
+    const int px = static_cast<int>((x + 3) * 4), py = static_cast<int>((3 - y) * 4);
+    return values[static_cast<std::size_t>(py * 24 + px)];
+  }
+  static void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+      ASSERT_NEAR(a[i], b[i], 1e-5) << i;
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(Look, DensityScaleIsAFactorOfTheExtinction) {
+  const Image scaled = render(load({"volume.0.density_scale=3"})).image;
+  expect_near(opacity(scaled), opacity(render(load({"volume.0.extinction=1.5"})).image));
+  const Image limited = render(load({"volume.0.density_scale=8", "volume.0.density_max=3"})).image;
+  // At the ball's border the density falls over a voxel, from 3 there and from 3 here.
+  EXPECT_NEAR(at(opacity(limited), 0, 0), at(opacity(scaled), 0, 0), 1e-3);
+}
+
+TEST_F(Look, TheBoxCutsAndStaysWhereItIs) {
+  const std::vector<std::string> box{"volume.0.box_lower=[-2, -2, -2]",
+                                     "volume.0.box_upper=[0.3, 2, 2]"};
+  const std::vector<float> whole = opacity(render(load()).image);
+  const std::vector<float> cut = opacity(render(load(box)).image);
+  EXPECT_NEAR(at(cut, -0.4, 0.1), at(whole, -0.4, 0.1), 1e-5);
+  EXPECT_GT(at(whole, 0.6, 0.1), 0.1);
+  EXPECT_EQ(at(cut, 0.6, 0.1), 0);
+  // The ball moves half a unit to the right and one up; the box does not.
+  std::vector<std::string> moved = box;
+  moved.insert(moved.end(), {"camera.shutter_open=0.4999", "camera.shutter_close=0.5001",
+                             "camera.shutter_times=1"});
+  const std::vector<float> later = opacity(render(load(moved)).image);
+  EXPECT_NEAR(at(later, 0.1, 1.1), at(whole, -0.4, 0.1), 1e-3);
+  EXPECT_EQ(at(later, 0.6, 1.1), 0);
+}
+
+TEST_F(Look, FramesDoNotTakeOverOtherEdits) {
+  const Scene plain = load(), scaled = load({"volume.0.density_scale=3"});
+  const PreparedScenePtr first = prepare_scene(plain), second = prepare_scene(scaled, first);
+  EXPECT_EQ(opacity(render(scaled, second).image), opacity(render(scaled).image));
+  EXPECT_EQ(opacity(render(plain, prepare_scene(plain, second)).image),
+            opacity(render(plain).image));
+}
+
+TEST_F(Look, AMaskMultiplies) {
+  // The ball as its own mask: the density is 1 in it.
+  const std::vector<float> masked = opacity(render(load({"volume.0.mask=density"})).image);
+  EXPECT_NEAR(at(masked, 0, 0), at(opacity(render(load()).image), 0, 0), 1e-5);
+  EXPECT_THROW(render(load({"volume.0.mask=nothing"})), InputError);
+}
+
+TEST_F(Look, TellsWhatIsWrong) {
+  const auto error = [&](const std::vector<std::string>& overrides) {
+    try {
+      load(overrides);
+    } catch (const InputError& problem) {
+      const std::string text = problem.what();
+      return text.substr(text.find(": ") + 2);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error({"volume.0.box_lower=[0,0,0]"}),
+            "volume.0.box_lower needs the other corner too: box_lower and box_upper");
+  EXPECT_EQ(error({"volume.0.box_lower=[0,0,0]", "volume.0.box_upper=[1,1,0]"}),
+            "volume.0.box_upper must be greater than box_lower along all three axes");
+}
+
+} // namespace
+} // namespace vdbeam
