@@ -50,8 +50,8 @@ TEST_F(Look, DensityScaleIsAFactorOfTheExtinction) {
 }
 
 TEST_F(Look, TheBoxCutsAndStaysWhereItIs) {
-  const std::vector<std::string> box{"volume.0.box_lower=[-2, -2, -2]",
-                                     "volume.0.box_upper=[0.3, 2, 2]"};
+  const std::vector<std::string> box{"volume.0.box_lower=[-2, -2, -6]",
+                                     "volume.0.box_upper=[0.3, 2, 6]"};
   const std::vector<float> whole = opacity(render(load()).image);
   const std::vector<float> cut = opacity(render(load(box)).image);
   EXPECT_NEAR(at(cut, -0.4, 0.1), at(whole, -0.4, 0.1), 1e-5);
