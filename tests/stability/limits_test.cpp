@@ -8,6 +8,8 @@
 #include "vdbeam/render.h"
 #include "volume_factory.h"
 
+#include <fmt/format.h>
+
 namespace vdbeam {
 namespace {
 
@@ -50,7 +52,7 @@ TEST(Memory, AThousandGroupsOfLightsAreRefusedOrFit) {
   scene.scene.image = {3840, 2160};
   for (int i = 0; i < 1000; ++i) {
     add_sky(scene);
-    scene.scene.lights.back().group = "g" + std::to_string(i);
+    scene.scene.lights.back().group = fmt::format("g{}", i);
   }
   EXPECT_NE(complaint(scene.scene, 64 * gigabyte), "");
   EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
