@@ -1,7 +1,9 @@
 #include "estimators/light_groups.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 namespace vdbeam {
 namespace {
@@ -12,8 +14,9 @@ constexpr const char* rest = "rest";
 struct Group {
   Group(const EstimatorInput& from, const EstimatorType& type, const std::vector<bool>& lights,
         bool with_emission)
-      : world(from.world), plan(from.plan), input{world,      from.camera, from.settings, plan,
-                                                  from.frame, from.window, from.stop} {
+      : world(from.world), plan(from.plan), input{world,     from.camera, from.settings,
+                                                  plan,      from.frame,  from.window,
+                                                  from.stop, nullptr,     from.blur_pixels} {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();
@@ -34,6 +37,17 @@ struct Group {
 void add(std::vector<Rgb>& to, const std::vector<Rgb>& what) {
   for (std::size_t i = 0; i < what.size(); ++i)
     to[i] += what[i];
+}
+
+/// Blur is additive as light is.
+void add_blur(std::vector<PixelValue>& to, const std::vector<PixelValue>& what) {
+  std::map<std::size_t, Rgb> sums;
+  for (const std::vector<PixelValue>* values : {&std::as_const(to), &what})
+    for (const PixelValue& value : *values)
+      sums[value.pixel] += value.radiance;
+  to.clear();
+  for (const auto& [pixel, radiance] : sums)
+    to.push_back({pixel, radiance});
 }
 
 class GroupedEstimator : public Estimator {
@@ -72,6 +86,7 @@ private:
     add(image.direct, part.direct);
     add(image.indirect, part.indirect);
     add(image.background, part.background);
+    add_blur(image.blur, part.blur);
     if (image.emission.empty())
       image.emission = part.emission;
     else
