@@ -37,8 +37,7 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeR
     s.t_end = std::min(s.t_end, static_cast<float>(farthest - result.shift));
   }
   if (world.surfaces) {
-    result.hit =
-        world.surfaces->set->intersect(eye.origin, eye.direction, nearest, farthest, true);
+    result.hit = world.surfaces->set->intersect(eye.origin, eye.direction, nearest, farthest, true);
     result.segment.t_end = std::min(result.segment.t_end, result.whole().t_end);
   }
   return result;

@@ -117,8 +117,7 @@ private:
 double longest_velocity(const VelocityField::Values& values, const VelocitySettings& settings) {
   const Vec3d size = Vec3d(values.cells) * double{width};
   const VelocityScale meaning = scale_of(settings, values.from_mantaflow);
-  const double diagonal =
-      meaning.index ? length(size) : length(values.index_to_world.vector(size));
+  const double diagonal = meaning.index ? length(size) : length(values.index_to_world.vector(size));
   const double scale = std::abs(meaning.factor);
   return scale > 0 ? diagonal * settings.fps / scale : std::numeric_limits<double>::infinity();
 }

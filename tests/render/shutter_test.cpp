@@ -107,9 +107,9 @@ TEST_F(ShutterTest, BlurIsTheMeanOfItsMoments) {
   for (int pass = 0; pass < 16; ++pass) {
     const std::size_t moment = Shutter::moment_of(pass, scene.moments.size(), 1);
     const double time = scene.moments[moment].volumes[0].velocity.time; // 1 frame per second
-    Scene instant = load({"camera.shutter_open=" + std::to_string(time - 1e-4),
-                          "camera.shutter_close=" + std::to_string(time + 1e-4),
-                          "camera.shutter_times=1"});
+    Scene instant =
+        load({"camera.shutter_open=" + std::to_string(time - 1e-4),
+              "camera.shutter_close=" + std::to_string(time + 1e-4), "camera.shutter_times=1"});
     FrameSettings frame;
     frame.pass_range = PassRange{pass, pass};
     const Image image = render(instant, frame).image;
