@@ -17,12 +17,20 @@ struct MaterialSettings {
   double roughness = 0.2;       ///< conductor: alpha of GGX is its square, in [0, 1]
   double ior = 1.5;             ///< dielectric: index of refraction inside over that outside
   Rgb absorption{0, 0, 0};      ///< dielectric: absorption coefficient inside [1/world]
-  Rgb radiance{1, 1, 1};        ///< emissive [W m^-2 sr^-1]
-  bool two_sided = false;       ///< emissive: shines from the back as well
+  /// dielectric: volumes end at its surface. What absorbs is solid in any case.
+  bool solid = false;
+  Rgb radiance{1, 1, 1};  ///< emissive [W m^-2 sr^-1]
+  bool two_sided = false; ///< emissive: shines from the back as well
 };
 
 inline bool shines(const MaterialSettings& material) {
   return material.type == MaterialType::emissive && max_component(material.radiance) > 0;
+}
+
+/// Sends light on in single directions only.
+inline bool is_specular(const MaterialSettings& material) {
+  return material.type == MaterialType::mirror || material.type == MaterialType::dielectric ||
+         (material.type == MaterialType::conductor && material.roughness == 0);
 }
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the

@@ -18,7 +18,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   weights.colored = channels > 1;
   weights.reach = 4 * photons_.map().mean_radius();
   BlurProbe blur(input_, photons_);
-  shade_tiles(input_, photons_, pass, image, statistics, [&](TileScratch& scratch, const RngKey&) {
+  const auto gather = [&](TileScratch& scratch, const RngKey&) {
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
     scratch.tile.radiance.assign(static_cast<std::size_t>(channels) * BeamTile::ray_count, 0);
     scratch.tile.first_flight.assign(first_flights ? scratch.tile.radiance.size() : 0, 0);
@@ -38,7 +38,14 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
       }
     blur.probe(scratch.rays, scratch.tile,
                [&](int i) { return light_of(scratch.tile.radiance, i); });
-  });
+  };
+  const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
+    std::vector<float> table;
+    Rgb sum;
+    photons_.map().query_ray(ray_weights(world, ray, profile, weights, table), sum);
+    return sum;
+  };
+  shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
   image.blur = blur.take();
   photons_.release();
 }
@@ -55,8 +62,8 @@ const EstimatorKind beam_estimator{
     .name = "beam",
     .help = "the beam radiance estimate: photons, gathered along whole camera rays",
     .unbiased = false,
-    .stages = {Stage::photons, Stage::photon_importance, Stage::kernel_pilot, Stage::map,
-               Stage::neighbours, Stage::photon_directions, Stage::photon_color,
+    .stages = {Stage::surfaces, Stage::photons, Stage::photon_importance, Stage::kernel_pilot,
+               Stage::map, Stage::neighbours, Stage::photon_directions, Stage::photon_color,
                Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
                Stage::beam_query, Stage::bias},
     .keys = beam_keys,

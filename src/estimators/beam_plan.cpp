@@ -110,8 +110,7 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
       trial->maps.push_back(PhotonMap::build(traced.photons, input.photon_channels(), radii,
                                              input.settings.kernel_shape));
-      if (share)
-        trial->maps.back().divide_power(share);
+      fit_kernels(world, share, trial->maps.back());
     }
   }
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);

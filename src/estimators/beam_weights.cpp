@@ -22,6 +22,8 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
     tile.du[i] = static_cast<float>(dot(rays[i].eye.direction, u));
     tile.dv[i] = static_cast<float>(dot(rays[i].eye.direction, v));
     tile.dw[i] = static_cast<float>(dot(rays[i].eye.direction, w));
+    tile.end[static_cast<std::size_t>(i)] =
+        rays[i].camera.hit ? rays[i].camera.hit->t : static_cast<double>(infinity);
   }
   tile.own_origins = camera.has_own_origins();
   for (int i = 0; i < TileRays::count && tile.own_origins; ++i) {
@@ -32,115 +34,139 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
   }
 }
 
-/// Where a sub-tile's knots lie: spacing by the lattice crossings of its rays, finer where one
+/// Where the knots of a few rays lie: spacing by the lattice crossings of the rays, finer where one
 /// piece takes a visible share of the light.
-struct KnotRange {
+class KnotRange {
+public:
   double begin = infinity, end = -infinity;
   int intervals = 0;
+
+  void add(const DepthProfile& profile, double shift) {
+    if (profile.empty())
+      return;
+    begin = std::min(begin, profile.front() + shift);
+    end = std::max(end, profile.back() + shift);
+    pieces_ = std::max(pieces_, profile.knots());
+    sharpest_ = std::max(sharpest_, profile.sharpest_piece());
+    deepest_ = std::max(deepest_, std::min(profile.total(profile.knots() - 1), 14.0f));
+  }
+
+  /// Requires a profile that is not empty.
+  void choose(const WeightSettings& settings) {
+    constexpr float finest_piece = 0.5f; // visible optical depth per interval
+    constexpr int most_intervals = 1024;
+    // A lattice line is crossed about 1.5 times per voxel.
+    double count = std::max({16.0, 0.67 * static_cast<double>(pieces_), 4.0 * deepest_});
+    count *= std::max(1.0f, std::min(sharpest_ / finest_piece, 8.0f));
+    intervals = static_cast<int>(std::min<double>(count, most_intervals));
+    if (settings.store == PhotonStore::fluence)
+      return;
+    const double width = (end - begin) / intervals;
+    begin = std::max(0.0, begin - settings.reach);
+    end += settings.reach;
+    intervals = static_cast<int>(std::min(2048.0, std::ceil((end - begin) / width)));
+  }
+
+  bool empty() const { return pieces_ == 0; }
+
+private:
+  std::size_t pieces_ = 0;
+  float sharpest_ = 0, deepest_ = 0;
 };
 
-KnotRange choose_knots(const TileRays& rays, int subtile) {
-  constexpr float finest_piece = 0.5f; // visible optical depth per interval
-  constexpr int most_intervals = 1024;
-  KnotRange range;
-  std::size_t pieces = 0;
-  float sharpest = 0, deepest = 0;
-  for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i) {
-    const DepthProfile& profile = rays[i].profile;
-    if (profile.empty())
-      continue;
-    range.begin = std::min(range.begin, profile.front() + rays[i].camera.shift);
-    range.end = std::max(range.end, profile.back() + rays[i].camera.shift);
-    pieces = std::max(pieces, profile.knots());
-    sharpest = std::max(sharpest, profile.sharpest_piece());
-    deepest = std::max(deepest, std::min(profile.total(profile.knots() - 1), 14.0f));
-  }
-  if (pieces == 0)
-    return range;
-  // A lattice line is crossed about 1.5 times per voxel.
-  double intervals = std::max({16.0, 0.67 * static_cast<double>(pieces), 4.0 * deepest});
-  intervals *= std::max(1.0f, std::min(sharpest / finest_piece, 8.0f));
-  range.intervals = static_cast<int>(std::min<double>(intervals, most_intervals));
-  return range;
+/// A table of weights [(group * channels + c)][knot][ray].
+struct WeightTable {
+  double t_begin = 0;
+  float step = 1;
+  int knots = 0, rays = 1;
+  float* weights = nullptr;
+};
+
+int count_channels(const World& world, const WeightSettings& settings) {
+  const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && settings.colored);
+  return coloured ? 3 : 1;
 }
 
 class WeightWriter {
 public:
-  WeightWriter(const World& world, const WeightSettings& settings, BeamTile& tile)
-      : world_(world), settings_(settings), tile_(tile),
-        groups_(static_cast<int>(world.medium.phases.size())) {}
+  WeightWriter(const World& world, const WeightSettings& settings)
+      : world_(world), settings_(settings), channels_(count_channels(world, settings)) {}
 
-  void write(const TileRays& rays, int subtile, const KnotRange& range) {
-    BeamTile::Profile& profile = tile_.profiles[subtile];
-    profile = {};
-    if (range.intervals == 0)
-      return;
-    profile.step = static_cast<float>((range.end - range.begin) / range.intervals);
+  int channels() const { return channels_; }
+
+  /// A table for `rays` rays, all 0, at the end of `weights`.
+  WeightTable make_table(const KnotRange& range, int rays, std::vector<float>& weights) const {
+    WeightTable table;
+    table.rays = rays;
+    table.step = static_cast<float>((range.end - range.begin) / range.intervals);
     if (settings_.store == PhotonStore::fluence) {
-      profile.knots = range.intervals + 1;
-      profile.t_begin = range.begin;
+      table.knots = range.intervals + 1;
+      table.t_begin = range.begin;
     } else {
       // A knot in the middle of each interval, and one of weight 0 before and after.
-      profile.knots = range.intervals + 2;
-      profile.t_begin = range.begin - 0.5 * static_cast<double>(profile.step);
+      table.knots = range.intervals + 2;
+      table.t_begin = range.begin - 0.5 * static_cast<double>(table.step);
     }
-    profile.offset = tile_.weights.size();
-    tile_.weights.resize(profile.offset + static_cast<std::size_t>(profile.knots) * 16 * groups_ *
-                                              tile_.weight_channels);
-    for (int ray = 0; ray < 16; ++ray) {
-      const TileRays::PixelRay& pixel = rays[16 * subtile + ray];
-      if (!pixel.profile.empty())
-        write_ray(pixel, range, profile, ray);
-    }
+    const std::size_t offset = weights.size(),
+                      tables = world_.medium.phases.size() * static_cast<std::size_t>(channels_);
+    weights.resize(offset + tables * static_cast<std::size_t>(table.knots * rays));
+    table.weights = weights.data() + offset;
+    return table;
   }
 
-private:
-  void write_ray(const TileRays::PixelRay& pixel, const KnotRange& range,
-                 const BeamTile::Profile& profile, int ray) {
-    const float begin = static_cast<float>(range.begin - pixel.camera.shift);
+  void write_ray(const CameraRay& camera, const DepthProfile& profile, const KnotRange& range,
+                 const WeightTable& table, int ray) {
+    const float begin = static_cast<float>(range.begin - camera.shift);
+    const float end = camera.hit ? camera.segment.t_end : infinity;
     const std::size_t volumes = world_.medium.volumes.size();
-    ProfileCursor cursor(pixel.profile);
+    ProfileCursor cursor(profile);
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
     for (int i = 0; i < range.intervals; ++i) {
-      cursor.move_to(begin + static_cast<float>(i + 1) * profile.step);
+      const float from = begin + static_cast<float>(i) * table.step;
+      cursor.move_to(begin + static_cast<float>(i + 1) * table.step);
       for (std::size_t v = 0; v < volumes; ++v)
         after_[v] = cursor.tau(v);
+      // Where the ray ends within, the interval does too.
+      last_ = i + 1 == range.intervals || (end > from && end - from < table.step);
+      length_ = last_ ? std::min(table.step, std::max(end - from, 1e-3f * table.step)) : table.step;
       if (settings_.store == PhotonStore::scatter)
-        write_transmittance(profile, i + 1, ray);
-      else if (volumes == 1 && tile_.weight_channels == 1)
-        write_simple(profile, i, ray);
+        write_transmittance(table, i + 1, ray);
+      else if (volumes == 1 && channels_ == 1)
+        write_simple(table, i, ray);
       else
-        write_scattering(profile, i, ray);
+        write_scattering(table, i, ray);
       std::swap(before_, after_);
     }
   }
 
-  float* weight(const BeamTile::Profile& profile, int group, int channel, int knot, int ray) {
-    const std::size_t table = static_cast<std::size_t>(group) * tile_.weight_channels + channel;
-    return &tile_.weights[profile.offset + (table * profile.knots + knot) * 16 + ray];
+private:
+  float* weight(const WeightTable& table, int group, int channel, int knot, int ray) {
+    const std::size_t row = static_cast<std::size_t>(group * channels_ + channel);
+    const std::size_t at =
+        row * static_cast<std::size_t>(table.knots) + static_cast<std::size_t>(knot);
+    return table.weights + at * static_cast<std::size_t>(table.rays) + ray;
   }
 
   /// Gives half of an interval's mean weight to the knot at either end. The knots at the ends of
-  /// the table, which weigh over half an interval, get all of theirs: photons lie right up to the
-  /// medium's border, so a ramp there would lose light.
-  void deposit(const BeamTile::Profile& profile, int group, int channel, int interval, int ray,
+  /// the table, or of the ray, which weigh over half an interval, get all of theirs: photons lie
+  /// right up to the medium's border, so a ramp there would lose light.
+  void deposit(const WeightTable& table, int group, int channel, int interval, int ray,
                float mean) {
-    float* knot = weight(profile, group, channel, interval, ray);
+    float* knot = weight(table, group, channel, interval, ray);
     knot[0] += interval == 0 ? mean : 0.5f * mean;
-    knot[16] += interval + 2 == profile.knots ? mean : 0.5f * mean;
+    knot[table.rays] += last_ ? mean : 0.5f * mean;
   }
 
-  void write_simple(const BeamTile::Profile& profile, int interval, int ray) {
+  void write_simple(const WeightTable& table, int interval, int ray) {
     const float piece = after_[0] - before_[0];
     if (piece > 0)
-      deposit(profile, 0, 0, interval, ray,
-              std::exp(-before_[0]) * -std::expm1(-piece) / profile.step);
+      deposit(table, 0, 0, interval, ray, std::exp(-before_[0]) * -std::expm1(-piece) / length_);
   }
 
-  void write_scattering(const BeamTile::Profile& profile, int interval, int ray) {
+  void write_scattering(const WeightTable& table, int interval, int ray) {
     const std::vector<Volume>& volumes = world_.medium.volumes;
-    for (int c = 0; c < tile_.weight_channels; ++c) {
+    for (int c = 0; c < channels_; ++c) {
       float tau_before = 0, tau_after = 0;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         tau_before += volumes[v].channel_scale[c] * before_[v];
@@ -149,20 +175,20 @@ private:
       const float piece = tau_after - tau_before;
       if (!(piece > 0))
         continue;
-      const float scattered = std::exp(-tau_before) * -std::expm1(-piece) / profile.step;
+      const float scattered = std::exp(-tau_before) * -std::expm1(-piece) / length_;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
-        deposit(profile, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
+        deposit(table, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
       }
     }
   }
 
   /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several
   /// phase functions share by their volumes' part in the interval.
-  void write_transmittance(const BeamTile::Profile& profile, int knot, int ray) {
+  void write_transmittance(const WeightTable& table, int knot, int ray) {
     const std::vector<Volume>& volumes = world_.medium.volumes;
-    for (int c = 0; c < tile_.weight_channels; ++c) {
+    for (int c = 0; c < channels_; ++c) {
       float tau = 0, piece = 0;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         tau += volumes[v].channel_scale[c] * 0.5f * (before_[v] + after_[v]);
@@ -170,21 +196,22 @@ private:
       }
       const float tr = std::exp(-tau);
       if (!(piece > 0)) {
-        *weight(profile, volumes[0].phase_index, c, knot, ray) += tr;
+        *weight(table, volumes[0].phase_index, c, knot, ray) += tr;
         continue;
       }
       for (std::size_t v = 0; v < volumes.size(); ++v)
-        *weight(profile, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
-                                                                  volumes[v].channel_scale[c] *
-                                                                  (after_[v] - before_[v]) / piece;
+        *weight(table, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
+                                                                volumes[v].channel_scale[c] *
+                                                                (after_[v] - before_[v]) / piece;
     }
   }
 
   const World& world_;
   const WeightSettings& settings_;
-  BeamTile& tile_;
-  int groups_;
-  std::vector<float> before_, after_;
+  int channels_;
+  std::vector<float> before_, after_; ///< optical depths at the ends of the interval at hand
+  bool last_ = false;                 ///< it is the ray's last
+  float length_ = 1;
 };
 
 } // namespace
@@ -193,22 +220,51 @@ void fill_beam_tile(const World& world, const Camera& camera, const TileRays& ra
                     const WeightSettings& settings, BeamTile& tile) {
   fill_frame(world, camera, rays, tile);
   tile.phases = &world.medium.gathered_phases();
-  const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && settings.colored);
-  tile.weight_channels = coloured ? 3 : 1;
+  WeightWriter writer(world, settings);
+  tile.weight_channels = writer.channels();
   tile.weights.clear();
-  WeightWriter writer(world, settings, tile);
   for (int subtile = 0; subtile < BeamTile::subtile_count; ++subtile) {
-    KnotRange range = choose_knots(rays, subtile);
-    if (range.intervals > 0 && settings.store == PhotonStore::scatter) {
-      const double width = (range.end - range.begin) / range.intervals;
-      const double begin = std::max(0.0, range.begin - settings.reach);
-      const double end = range.end + settings.reach;
-      range.intervals = static_cast<int>(std::min(2048.0, std::ceil((end - begin) / width)));
-      range.begin = begin;
-      range.end = end;
+    BeamTile::Profile& profile = tile.profiles[subtile];
+    profile = {};
+    KnotRange range;
+    for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i)
+      range.add(rays[i].profile, rays[i].camera.shift);
+    if (range.empty())
+      continue;
+    range.choose(settings);
+    profile.offset = tile.weights.size();
+    const WeightTable table = writer.make_table(range, 16, tile.weights);
+    profile.t_begin = table.t_begin;
+    profile.step = table.step;
+    profile.knots = table.knots;
+    for (int ray = 0; ray < 16; ++ray) {
+      const TileRays::PixelRay& pixel = rays[16 * subtile + ray];
+      if (!pixel.profile.empty())
+        writer.write_ray(pixel.camera, pixel.profile, range, table, ray);
     }
-    writer.write(rays, subtile, range);
   }
+}
+
+PhotonMap::RayProfile ray_weights(const World& world, const CameraRay& camera,
+                                  const DepthProfile& profile, const WeightSettings& settings,
+                                  std::vector<float>& weights) {
+  KnotRange range;
+  range.add(profile, camera.shift);
+  range.choose(settings);
+  WeightWriter writer(world, settings);
+  weights.clear();
+  const WeightTable table = writer.make_table(range, 1, weights);
+  writer.write_ray(camera, profile, range, table, 0);
+  PhotonMap::RayProfile result;
+  result.ray = camera.ray();
+  result.t_begin = static_cast<float>(table.t_begin - camera.shift);
+  result.step = table.step;
+  result.knots = table.knots;
+  result.t_end = camera.hit ? camera.segment.t_end : infinity;
+  result.weights = table.weights;
+  result.weight_channels = writer.channels();
+  result.phases = &world.medium.gathered_phases();
+  return result;
 }
 
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/tile_rays.h"
+#include "photonmap/photon_map.h"
 
 namespace vdbeam {
 
@@ -18,7 +19,16 @@ struct WeightSettings {
 /// optical depths at its ends, (Tr(a) - Tr(b)) / (b - a) * albedo, and W at a knot is the mean of
 /// the two intervals that it joins. So the table's integral is exact however stiff the medium, and
 /// no voxel can be missed. Scatter storage: W = Tr.
+///
+/// A ray that ends at a surface has weights up to there that do not ramp down before it: the table
+/// of one ray ends there, and the tile knows where each of its rays does.
 void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
                     const WeightSettings& settings, BeamTile& tile);
+
+/// The same for a single ray, whose profile is not empty, as PhotonMap::query_ray takes it. The
+/// result points into `weights`.
+PhotonMap::RayProfile ray_weights(const World& world, const CameraRay& camera,
+                                  const DepthProfile& profile, const WeightSettings& settings,
+                                  std::vector<float>& weights);
 
 } // namespace vdbeam

@@ -38,7 +38,10 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeR
   }
   if (world.surfaces) {
     result.hit = world.surfaces->set->intersect(eye.origin, eye.direction, nearest, farthest, true);
-    result.segment.t_end = std::min(result.segment.t_end, result.whole().t_end);
+    const bool in_medium =
+        !result.hit || world.surfaces->medium_end(result.hit, result.segment.ray.direction) > 0;
+    result.segment.t_end =
+        in_medium ? std::min(result.segment.t_end, result.whole().t_end) : result.segment.t_begin;
   }
   return result;
 }

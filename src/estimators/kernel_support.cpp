@@ -53,6 +53,18 @@ float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
   return std::max(least_share, static_cast<float>(hits) / 14);
 }
 
+void clear_of_surfaces(const World& world, PhotonMap& map) {
+  if (const Surfaces* surfaces = world.surfaces.get())
+    map.keep_clear([&](const Vec3f& point, float most) {
+      return static_cast<float>(surfaces->set->distance(Vec3d(point), static_cast<double>(most)));
+    });
+}
+
+void fit_kernels(const World& world, const KernelShare& share, PhotonMap& map) {
+  clear_of_surfaces(world, map);
+  map.divide_power(share);
+}
+
 KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain) {
   // The share is that of a positive kernel; a kernel of fourth order, whose rim is negative, would
   // gain bias by it. Scattering events lie in the medium, wherever it is.

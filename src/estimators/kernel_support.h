@@ -34,6 +34,13 @@ private:
 /// What a kernel is normalised over: the disc across the camera ray, or the ball.
 enum class KernelDomain { disc, ball };
 
+/// Makes kernels end before the world's surfaces, if there are any (PhotonMap::keep_clear).
+void clear_of_surfaces(const World& world, PhotonMap& map);
+
+/// Makes the kernels of a map what they are to be in the world: none reaches through a surface,
+/// and each is divided by its share, if there is one.
+void fit_kernels(const World& world, const KernelShare& share, PhotonMap& map);
+
 /// The share that photons' powers of a map are to be divided by for this camera; none where the
 /// estimate gains nothing by it. The input's world and camera must outlive it.
 KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain);

@@ -23,14 +23,14 @@ public:
 
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
   /// lights.
-  Rgb march(const TileRays::PixelRay& ray, Rng& rng, RenderStatistics& counts, Rgb& straight) {
+  Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
+            RenderStatistics& counts, Rgb& straight) {
     const Medium& medium = world_.medium;
-    const float begin =
-        std::max(static_cast<float>(-ray.camera.shift), ray.profile.front() - reach_);
-    const float end = ray.profile.back() + reach_;
+    const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
+    const float end = std::min(profile.back() + reach_, camera.whole().t_end);
     const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / step_)));
     const float step = (end - begin) / static_cast<float>(steps);
-    ProfileCursor cursor(ray.profile);
+    ProfileCursor cursor(profile);
     std::vector<float> before(medium.volumes.size()), after(medium.volumes.size());
     gathered_.resize(medium.phases.size());
     straight_.resize(medium.phases.size());
@@ -43,9 +43,9 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c = photons_.map().query_point(
-            ray.camera.ray().at(t), ray.camera.ray().direction, medium.gathered_phases(),
-            gathered_.data(), straight_.data());
+        const QueryCounts c = photons_.map().query_point(camera.ray().at(t), camera.ray().direction,
+                                                         medium.gathered_phases(), gathered_.data(),
+                                                         straight_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
         sum += weigh(before, after, step, gathered_);
@@ -94,19 +94,25 @@ private:
 
 void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
   photons_.trace_and_build(pass, statistics);
-  shade_tiles(input_, photons_, pass, image, statistics,
-              [&](TileScratch& scratch, const RngKey& key) {
-                RayMarcher marcher(input_.settings, photons_);
-                for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
-                  const TileRays::PixelRay& ray = scratch.rays[i];
-                  if (!ray.inside || ray.profile.empty())
-                    continue;
-                  Rng rng(key, RngStage::march, ray.pixel);
-                  Rgb straight;
-                  image.indirect[ray.pixel] = marcher.march(ray, rng, scratch.statistics, straight);
-                  image.move_to_direct(ray.pixel, straight);
-                }
-              });
+  const auto gather = [&](TileScratch& scratch, const RngKey& key) {
+    RayMarcher marcher(input_.settings, photons_);
+    for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
+      const TileRays::PixelRay& ray = scratch.rays[i];
+      if (!ray.inside || ray.profile.empty())
+        continue;
+      Rng rng(key, RngStage::march, ray.pixel);
+      Rgb straight;
+      image.indirect[ray.pixel] =
+          marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight);
+      image.move_to_direct(ray.pixel, straight);
+    }
+  };
+  const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
+    RenderStatistics counts;
+    Rgb straight;
+    return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
+  };
+  shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
   photons_.release();
 }
 
@@ -123,9 +129,10 @@ const EstimatorKind march_estimator{
     .help =
         "conventional photon mapping: the same photons, gathered step by step along camera rays",
     .unbiased = false,
-    .stages = {Stage::photons, Stage::map, Stage::neighbours, Stage::photon_directions,
-               Stage::photon_color, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
-               Stage::spectral_tracking, Stage::march, Stage::bias},
+    .stages = {Stage::surfaces, Stage::photons, Stage::map, Stage::neighbours,
+               Stage::photon_directions, Stage::photon_color, Stage::depth_profiles,
+               Stage::emission, Stage::shadow_rays, Stage::spectral_tracking, Stage::march,
+               Stage::bias},
     .keys = march_keys,
     .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
       return std::make_unique<MarchEstimator>(input);

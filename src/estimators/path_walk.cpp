@@ -168,13 +168,14 @@ bool WalkTracer::scatter(PathWalk& walk) const {
 }
 
 /// The flight has left the medium.
-void WalkTracer::leave(PathWalk& walk) const {
+bool WalkTracer::leave(PathWalk& walk) const {
   const float t_end = walk.segment.t_end;
   if (meets_light_)
     gather_light(walk, t_end);
   else
     (walk.bounces == 1 ? walk.direct : walk.indirect) +=
         lights_met(walk, {walk.segment.ray, 0, t_end});
+  return false;
 }
 
 /// Light that the flight meets, from where it was gathered last to t_end: the medium's own, and

@@ -63,7 +63,7 @@ public:
   void meet(PathWalk& walk, const Collision& hit) const;
   bool pass(const PathWalk&) const { return true; }
   bool collide(PathWalk& walk, const Collision& hit) const;
-  void leave(PathWalk& walk) const;
+  bool leave(PathWalk& walk) const;
 
 private:
   bool sample_lights(PathWalk& walk) const;

@@ -42,6 +42,7 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   make_map(pass_settings(input_.in(world), plan_, static_cast<std::uint64_t>(pass)), radii,
            statistics);
   const Stopwatch watch;
+  clear_of_surfaces(world, map_);
   if (input_.blur_pixels)
     narrow_map_ = map_.divide_power(boundary_share_, PassImage::blur_narrowing);
   else

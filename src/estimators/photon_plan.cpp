@@ -60,13 +60,14 @@ bool common_albedo(const Medium& medium) {
 
 /// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
 /// from all around alike; photons of other lights would lose it. Scattering events are counted
-/// exactly where their number is limited, and the scene's own light is not split from the peak's.
+/// exactly where their number is limited, and neither the scene's own light nor that of surfaces is
+/// split from the peak's.
 bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sampled_lights) {
   const World& world = input.world;
   const RenderSettings& settings = input.settings;
   bool possible = settings.forward_peak == ForwardPeak::automatic &&
                   settings.store == PhotonStore::fluence && !settings.max_bounces &&
-                  world.medium.emitters.empty();
+                  world.medium.emitters.empty() && !world.surfaces;
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     possible = possible && (sampled_lights[i] || (world.lights.traits(i).surrounds &&
                                                   !world.lights.traits(i).wants_shadow_rays));

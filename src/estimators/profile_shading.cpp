@@ -18,23 +18,6 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-/// The visible lights that the camera ray meets, seen through the medium; `tr` is its
-/// transmittance.
-Rgb lights_through(const World& world, const CameraRay& camera, const DepthProfile& profile,
-                   const Rgb& tr) {
-  Rgb beyond, sum;
-  for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    if (!world.lights.traits(i).visible || world.lights[i].surface() >= 0)
-      continue;
-    const LightHit hit = world.lights[i].emitted_radiance(camera.whole());
-    if (hit.distance == infinity)
-      beyond += hit.radiance;
-    else
-      sum += hit.radiance * transmittance_to(world.medium, profile, hit.distance);
-  }
-  return sum + tr * beyond;
-}
-
 /// A surface is opaque, but for one that stands for what is composited later.
 void end_at_surface(const World& world, const CameraRay& camera, std::size_t pixel,
                     PassImage& image) {
@@ -46,6 +29,28 @@ void end_at_surface(const World& world, const CameraRay& camera, std::size_t pix
 }
 
 } // namespace
+
+Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                   const Rgb& tr, bool camera) {
+  Rgb beyond, sum;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    if ((camera && !world.lights.traits(i).visible) || world.lights[i].surface() >= 0)
+      continue;
+    const LightHit hit = world.lights[i].emitted_radiance(segment);
+    if (hit.distance == infinity)
+      beyond += hit.radiance;
+    else
+      sum += hit.radiance * transmittance_to(world.medium, profile, hit.distance);
+  }
+  return sum + tr * beyond;
+}
+
+Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
+  if (profile.empty())
+    return Rgb(1);
+  const Rgb tau = profile.channels(medium, profile.knots() - 1);
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+}
 
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
@@ -62,7 +67,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
     image.depth[pixel] = static_cast<float>(
         (profile.opacity_depth(world.medium) + camera.shift * opacity) / world.space.scale);
   }
-  image.background[pixel] = lights_through(world, camera, profile, tr);
+  image.background[pixel] = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
     image.background[pixel] += tr * surface;
     end_at_surface(world, camera, pixel, image);

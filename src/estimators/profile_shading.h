@@ -13,4 +13,12 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
                    std::uint64_t& emission_rays, const Rgb& surface = {});
 
+/// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
+/// is `tr`. `camera`: only those that the camera sees.
+Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                   const Rgb& tr, bool camera);
+
+/// exp(-tau) all along the profile.
+Rgb transmittance(const Medium& medium, const DepthProfile& profile);
+
 } // namespace vdbeam

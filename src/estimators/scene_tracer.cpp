@@ -57,7 +57,7 @@ void SceneTracer::follow(Path& path) const {
         set.intersect(path.origin, Vec3d(path.direction), 0, static_cast<double>(infinity));
     const float t_end = met ? static_cast<float>(met->t) : infinity;
     Collision hit;
-    if (fly(path, t_end, hit)) {
+    if (fly(path, t_end, world_.surfaces->medium_end(met, path.direction), hit)) {
       if (!collide(path, hit))
         return;
       continue;
@@ -80,21 +80,21 @@ void SceneTracer::follow(Path& path) const {
   }
 }
 
-/// Flies on up to t_end and gathers what shines on the way. True where the medium scatters or
-/// absorbs before.
-bool SceneTracer::fly(Path& path, float t_end, Collision& hit) const {
+/// Flies on up to t_end and gathers what shines on the way. True where the medium, which ends at
+/// medium_end, scatters or absorbs before.
+bool SceneTracer::fly(Path& path, float t_end, float medium_end, Collision& hit) const {
   const Medium& medium = world_.medium;
   const Ray ray = path.ray();
   const bool emits = !medium.emitters.empty();
   float gathered = 0;
   const auto gather = [&](float t) {
-    if (emits)
+    if (emits && gathered < t)
       path.add(sample_emission(medium, {ray, gathered, t}, path.rng) * path.throughput);
     gathered = t;
   };
   bool collided = false;
   if (!medium.empty()) {
-    MediumTracker tracker(medium, {ray, 0, t_end});
+    MediumTracker tracker(medium, {ray, 0, medium_end});
     while (!collided && tracker.advance(path.rng)) {
       hit = tracker.collision();
       // A coloured throughput changes at null collisions too.
@@ -103,7 +103,7 @@ bool SceneTracer::fly(Path& path, float t_end, Collision& hit) const {
       collided = sample_real_collision(hit, medium.chromatic, path.throughput, path.rng);
     }
   }
-  gather(collided ? hit.t : t_end);
+  gather(collided ? hit.t : medium_end);
   path.add(lights_met(path, collided ? hit.t : t_end) * path.throughput);
   return collided;
 }

@@ -37,7 +37,7 @@ private:
   struct Path;
 
   void follow(Path& path) const;
-  bool fly(Path& path, float t_end, Collision& hit) const;
+  bool fly(Path& path, float t_end, float medium_end, Collision& hit) const;
   bool collide(Path& path, const Collision& hit) const;
   bool bounce(Path& path, const SurfaceVertex& vertex) const;
   Rgb lights_at_collision(const Path& path, const Vec3f& point, const PhaseFunction& phase,

@@ -36,18 +36,24 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
-                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather) {
+                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
+                 const GatherAlong& gather_along) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty());
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
+  std::optional<SurfaceShading> surfaces;
+  if (world.surfaces)
+    surfaces.emplace(input, photons, gather_along);
   const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
     counts.depth_profiles += ray.profile.empty() ? 0 : 1;
+    const Rgb surface = surfaces ? surfaces->radiance(ray.camera, key, ray.pixel, counts) : Rgb();
     if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
       shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), ray.pixel,
                     image, counts.emission_rays);
     else
-      shade_profile(input, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays);
+      shade_profile(input, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays,
+                    surface);
     Rng rng(key, RngStage::direct, ray.pixel);
     image.direct[ray.pixel] =
         light_of_the_peak(world, ray, photons.plan().sampled_lights) +

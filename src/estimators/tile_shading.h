@@ -1,10 +1,8 @@
 #pragma once
 
 #include "estimators/estimator.h"
-#include "estimators/photon_pass.h"
+#include "estimators/surface_shading.h"
 #include "estimators/tile_rays.h"
-
-#include <functional>
 
 namespace vdbeam {
 
@@ -17,9 +15,11 @@ struct TileScratch {
 
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
 /// direct light, what is seen through the medium, and the stage times. `gather` adds what the
-/// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics.
+/// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics;
+/// `gather_along` gives the same for the rays that go on behind mirrors and glass.
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
-                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather);
+                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
+                 const GatherAlong& gather_along);
 
 } // namespace vdbeam

@@ -15,6 +15,48 @@ Boxd Shape::bounds() const {
 
 namespace {
 
+/// The largest factor by which a map stretches a vector: the root of the largest eigenvalue of its
+/// square (Smith 1961, for symmetric 3x3 matrices).
+double most_stretch(const Affine& map) {
+  double square[3][3];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      square[i][j] = dot(map.rows[i], map.rows[j]);
+  const double mean = (square[0][0] + square[1][1] + square[2][2]) / 3;
+  double spread = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double d = square[i][j] - (i == j ? mean : 0);
+      spread += d * d;
+    }
+  const double p = std::sqrt(spread / 6);
+  if (!(p > 1e-12 * mean))
+    return std::sqrt(mean);
+  const auto b = [&](int i, int j) { return (square[i][j] - (i == j ? mean : 0)) / p; };
+  const double half = 0.5 * (b(0, 0) * (b(1, 1) * b(2, 2) - b(1, 2) * b(2, 1)) -
+                             b(0, 1) * (b(1, 0) * b(2, 2) - b(1, 2) * b(2, 0)) +
+                             b(0, 2) * (b(1, 0) * b(2, 1) - b(1, 1) * b(2, 0)));
+  return std::sqrt(mean + 2 * p * std::cos(std::acos(std::clamp(half, -1.0, 1.0)) / 3));
+}
+
+double distance_to_edge(const Vec3d& p, const Vec3d& a, const Vec3d& edge) {
+  const double square = dot(edge, edge);
+  const double along = square > 0 ? std::clamp(dot(p - a, edge) / square, 0.0, 1.0) : 0;
+  return length(p - a - edge * along);
+}
+
+/// From a point to a triangle: to its plane where the point stands above it, else to an edge.
+double distance_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d normal = cross(b - a, c - a);
+  const double square = dot(normal, normal);
+  const bool above = square > 0 && dot(cross(b - a, p - a), normal) >= 0 &&
+                     dot(cross(c - b, p - b), normal) >= 0 && dot(cross(a - c, p - c), normal) >= 0;
+  if (above)
+    return std::abs(dot(p - a, normal)) / std::sqrt(square);
+  return std::min({distance_to_edge(p, a, b - a), distance_to_edge(p, b, c - b),
+                   distance_to_edge(p, c, a - c)});
+}
+
 constexpr double pi_d = std::numbers::pi;
 
 class MeshShape final : public Shape {
@@ -57,6 +99,11 @@ public:
       return std::nullopt;
     return ShapeHit{t, cross(e1, e2)};
   }
+  double distance(std::size_t i, const Vec3d& point, const ShapePlace& place) const override {
+    const Affine& map = place.to_render;
+    return distance_to_triangle(point, map.point(vertex(i, 0)), map.point(vertex(i, 1)),
+                                map.point(vertex(i, 2)));
+  }
   double area() const override { return area_until_.back(); }
   ShapePoint sample(double u_primitive, double u, double v) const override {
     const auto found = std::upper_bound(area_until_.begin(), area_until_.end() - 1,
@@ -98,6 +145,9 @@ public:
         return ShapeHit{t, nearest + direction * (t - middle)};
     return std::nullopt;
   }
+  double distance(std::size_t, const Vec3d& point, const ShapePlace& place) const override {
+    return std::abs(length(place.to_shape.point(point)) - 1) / place.most_shrink;
+  }
   double area() const override { return 4 * pi_d; }
   ShapePoint sample(double, double u, double v) const override {
     const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
@@ -126,6 +176,12 @@ private:
 
 class QuadShape final : public FlatShape {
 public:
+  double distance(std::size_t, const Vec3d& point, const ShapePlace& place) const override {
+    const auto corner = [&](double x, double y) { return place.to_render.point({x, y, 0}); };
+    const Vec3d a = corner(-1, -1), b = corner(1, 1);
+    return std::min(distance_to_triangle(point, a, corner(1, -1), b),
+                    distance_to_triangle(point, a, b, corner(-1, 1)));
+  }
   double area() const override { return 4; }
   ShapePoint sample(double, double u, double v) const override {
     return {{2 * u - 1, 2 * v - 1, 0}, {0, 0, 1}};
@@ -137,6 +193,12 @@ private:
 
 class DiskShape final : public FlatShape {
 public:
+  double distance(std::size_t, const Vec3d& point, const ShapePlace& place) const override {
+    const Vec3d p = place.to_shape.point(point);
+    const double beyond = std::max(0.0, std::hypot(p.x, p.y) - 1);
+    const double to_plane = std::abs(p.z) / length(place.to_shape.rows[2]);
+    return std::max(to_plane, std::hypot(beyond, p.z) / place.most_shrink);
+  }
   double area() const override { return pi_d; }
   ShapePoint sample(double, double u, double v) const override {
     const double r = std::sqrt(u);
@@ -148,6 +210,11 @@ private:
 };
 
 } // namespace
+
+ShapePlace ShapePlace::at(const Affine& to_render) {
+  const Affine to_shape = to_render.inverse();
+  return {to_render, to_shape, most_stretch(to_shape)};
+}
 
 std::shared_ptr<const Shape> make_mesh_shape(Mesh mesh) {
   return std::make_shared<MeshShape>(std::move(mesh));

@@ -19,6 +19,14 @@ struct ShapePoint {
   Vec3d position, normal;
 };
 
+/// How a shape stands in the world.
+struct ShapePlace {
+  Affine to_render, to_shape;
+  double most_shrink = 1; ///< the length of a unit vector in the shape's space at most
+
+  static ShapePlace at(const Affine& to_render);
+};
+
 /// A surface in its own space, made of primitives numbered from 0. All arithmetic is in double
 /// precision, so that rays find even huge triangles where they are.
 class Shape {
@@ -32,6 +40,10 @@ public:
   virtual std::optional<ShapeHit> intersect(std::size_t primitive, const Vec3d& origin,
                                             const Vec3d& direction, double t_begin,
                                             double t_end) const = 0;
+  /// The distance of a point from a primitive in its place, both in render space, or less: exact
+  /// for triangles and quads, and for spheres and disks that are not stretched.
+  virtual double distance(std::size_t primitive, const Vec3d& point,
+                          const ShapePlace& place) const = 0;
   virtual double area() const = 0;
   virtual ShapePoint sample(double u_primitive, double u, double v) const = 0;
   virtual std::size_t bytes() const { return 0; }

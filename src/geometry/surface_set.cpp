@@ -26,14 +26,15 @@ using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 /// A surface with the maps that queries need.
 struct Placed {
   PlacedShape surface;
-  Affine to_shape;
+  ShapePlace place;
   Boxd bounds;
 
   /// A normal of the shape in render space, unit length.
   Vec3d normal(const Vec3d& n) const { return normalize(covector(n)); }
   /// The same, as long as makes it a covector: times the transposed inverse.
   Vec3d covector(const Vec3d& n) const {
-    return to_shape.rows[0] * n.x + to_shape.rows[1] * n.y + to_shape.rows[2] * n.z;
+    const auto& rows = place.to_shape.rows;
+    return rows[0] * n.x + rows[1] * n.y + rows[2] * n.z;
   }
   /// By how much an area grows where its unit normal, in the shape's space, is `n`.
   double stretch(const Vec3d& n) const {
@@ -63,7 +64,7 @@ struct Query {
   void enter(unsigned surface) {
     if (surface == local_of)
       return;
-    const Affine& map = (*surfaces)[surface].to_shape;
+    const Affine& map = (*surfaces)[surface].place.to_shape;
     local_of = surface;
     local_origin = map.point(origin);
     local_direction = map.vector(direction);
@@ -129,6 +130,30 @@ void occlude_shape(const RTCOccludedFunctionNArguments* args) {
     reinterpret_cast<RTCRay*>(args->ray)->tfar = -infinity;
 }
 
+/// A search for the nearest surface.
+struct Nearest {
+  const std::vector<Placed>* surfaces;
+  Vec3d point;
+  double distance;
+};
+
+/// Takes a primitive into account; true where Embree need not look as far any more.
+bool approach_primitive(RTCPointQueryFunctionArguments* args) {
+  auto& nearest = *static_cast<Nearest*>(args->userPtr);
+  const Placed& entry = (*nearest.surfaces)[args->context->instID[0]];
+  const double distance = entry.surface.shape->distance(args->primID, nearest.point, entry.place);
+  if (!(distance < nearest.distance))
+    return false;
+  nearest.distance = distance;
+  // Embree's radius is one of the shape's own space, unless that is stretched unevenly.
+  const double scale = args->similarityScale > 0 ? entry.place.most_shrink : 1;
+  const float radius = std::nextafter(static_cast<float>(distance * scale * (1 + 1e-5)), infinity);
+  if (!(radius < args->query->radius))
+    return false;
+  args->query->radius = radius;
+  return true;
+}
+
 /// The map's shortest stretch of a unit vector, or less.
 double least_stretch(const Affine& inverse) {
   double square = 0;
@@ -174,7 +199,7 @@ void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
   for (PlacedShape& surface : placed) {
     Placed entry{std::move(surface), {}, {}};
     const Shape& shape = *entry.surface.shape;
-    entry.to_shape = entry.surface.to_render.inverse();
+    entry.place = ShapePlace::at(entry.surface.to_render);
     entry.bounds = mapped(entry.surface.to_render, shape.bounds());
     bounds.extend(entry.bounds);
     surfaces.push_back(std::move(entry));
@@ -210,7 +235,7 @@ void SurfaceSet::Data::build(double reach) {
   for (const Placed& entry : surfaces) {
     ShapeEntry& shape = shapes[entry.surface.shape.get()];
     const double size = length(entry.surface.shape->bounds().size());
-    const double local_reach = reach / least_stretch(entry.to_shape) + size;
+    const double local_reach = reach / least_stretch(entry.place.to_shape) + size;
     shape.margin = std::max(shape.margin, std::min(rounding * local_reach, widest * size));
   }
   for (auto& [shape, entry] : shapes)
@@ -310,6 +335,17 @@ bool SurfaceSet::occluded(const Vec3d& origin, const Vec3d& direction, double t_
   return query.found != RTC_INVALID_GEOMETRY_ID;
 }
 
+double SurfaceSet::distance(const Vec3d& point, double most) const {
+  Nearest nearest{&data_->surfaces, point, most};
+  RTCPointQuery query{static_cast<float>(point.x), static_cast<float>(point.y),
+                      static_cast<float>(point.z), 0,
+                      std::nextafter(static_cast<float>(most * (1 + 1e-5)), infinity)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(data_->scene.get(), &query, &context, approach_primitive, &nearest);
+  return nearest.distance;
+}
+
 std::size_t SurfaceSet::size() const {
   return data_->surfaces.size();
 }
@@ -356,13 +392,6 @@ float SurfaceSet::sample_pdf(std::size_t surface, const Vec3f& normal) const {
 
 int SurfaceSet::devices_made() {
   return devices;
-}
-
-Vec3d SurfaceHit::leave(const Vec3f& direction) const {
-  const Vec3d p = position;
-  const double largest = max_component(Vec3d{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  const double offset = 1e-10 * largest + 1e-15;
-  return p + Vec3d(normal) * (dot(direction, normal) < 0 ? -offset : offset);
 }
 
 } // namespace vdbeam

@@ -3,6 +3,7 @@
 #include "geometry/shape.h"
 #include "math/ray.h"
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,7 +28,12 @@ struct SurfaceHit {
   /// Where a ray along `direction` begins so that it does not meet this point again: off the
   /// surface by more than rounding may have put the point to the wrong side. In double precision,
   /// in which this is so little that the ray does not slip through the walls of a corner either.
-  Vec3d leave(const Vec3f& direction) const;
+  Vec3d leave(const Vec3f& direction) const {
+    const Vec3d& p = position;
+    const double largest = max_component(Vec3d{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const double offset = 1e-10 * largest + 1e-15;
+    return p + Vec3d(normal) * (dot(direction, normal) < 0 ? -offset : offset);
+  }
 };
 
 /// A point drawn uniformly by area on a surface.
@@ -59,6 +65,10 @@ public:
   }
   /// Something stands strictly between two distances.
   bool occluded(const Vec3d& origin, const Vec3d& direction, double t_begin, double t_end) const;
+
+  /// The distance of a point from the nearest surface, `most` where that is less. Where a sphere or
+  /// disk is stretched it may be less than that.
+  double distance(const Vec3d& point, double most) const;
 
   std::size_t size() const;
   const Boxd& bounds() const; ///< of all surfaces

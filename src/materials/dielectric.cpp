@@ -9,7 +9,8 @@ class Dielectric final : public Material {
 public:
   Dielectric(const MaterialSettings& settings, double scale)
       : Material(MaterialType::dielectric), ior_(static_cast<float>(settings.ior)),
-        absorption_(settings.absorption / static_cast<float>(scale)) {}
+        absorption_(settings.absorption / static_cast<float>(scale)),
+        solid_(settings.solid || max_component(settings.absorption) > 0) {}
 
   Rgb evaluate(const Vec3f&, const Vec3f&) const override { return {}; }
   float pdf(const Vec3f&, const Vec3f&) const override { return 0; }
@@ -26,10 +27,12 @@ public:
   }
   bool is_specular() const override { return true; }
   Rgb absorption() const override { return absorption_; }
+  bool is_solid() const override { return solid_; }
 
 private:
   float ior_;
   Rgb absorption_;
+  bool solid_;
 };
 
 } // namespace

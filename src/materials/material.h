@@ -44,6 +44,8 @@ public:
   }
   /// Absorption coefficient of what its back encloses, per render unit.
   virtual Rgb absorption() const { return {}; }
+  /// No medium is inside of what its back encloses.
+  virtual bool is_solid() const { return false; }
   /// Light ends here and the picture is transparent.
   virtual bool is_holdout() const { return false; }
   MaterialType type() const { return type_; }

@@ -2,6 +2,8 @@
 
 #include "phase/phase_function.h"
 
+#include <array>
+#include <limits>
 #include <vector>
 
 namespace vdbeam {
@@ -27,6 +29,9 @@ struct BeamTile {
   alignas(64) float ou[ray_count]{};
   alignas(64) float ov[ray_count]{};
   alignas(64) float ow[ray_count]{};
+  /// Distance at which a ray ends at a surface; infinite where it does not. What lies beyond does
+  /// not count, whatever the weights.
+  std::array<double, ray_count> end = endless();
 
   /// What the medium makes of a photon at distance t on each ray, per sub-tile at uniform knots
   /// t_k = t_begin + k * step, linear in between, 0 before the first and after the last knot:
@@ -49,6 +54,13 @@ struct BeamTile {
   /// Out: the part of it that comes from photons on their first flight, single scattering. Empty
   /// where the map has no such photons.
   std::vector<float> first_flight;
+
+private:
+  static std::array<double, ray_count> endless() {
+    std::array<double, ray_count> ends;
+    ends.fill(std::numeric_limits<double>::infinity());
+    return ends;
+  }
 };
 
 /// What a query did, for the report and for tuning.

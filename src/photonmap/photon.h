@@ -16,7 +16,8 @@ struct PhotonList {
       direction;          ///< unit direction of travel; empty where no phase function needs it
   std::vector<Rgb> power; ///< per photon, already divided by the number of emitted photons
 
-  /// 1 for photons that come straight from a light; empty where none does.
+  /// 1 for photons that the medium has not scattered yet: straight from a light, or by way of
+  /// surfaces. Empty where there are none.
   std::vector<std::uint8_t> first_flight;
 
   /// Number of the light path within its pass; empty unless it was asked for. Photons of one path

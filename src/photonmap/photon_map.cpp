@@ -8,6 +8,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 namespace vdbeam {
 namespace {
 
@@ -73,6 +75,15 @@ struct PhotonMap::Data {
   MapTimes times;
   float mean_radius = 0;
 
+  /// After radii have changed.
+  void refit() {
+    tree = build_block_tree(blocks);
+    double sum = 0;
+    for (std::size_t i = 0; i < blocks.count(); ++i)
+      sum += blocks.at(i, PhotonBlocks::radius);
+    mean_radius =
+        blocks.count() ? static_cast<float>(sum / static_cast<double>(blocks.count())) : 0;
+  }
   MapView view() const { return {blocks, tree, shape, mean_radius}; }
 };
 
@@ -95,12 +106,7 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   find_kernel_radii(data.blocks, radii);
   data.times.radii = watch.restart();
 
-  data.tree = build_block_tree(data.blocks);
-  double sum = 0;
-  for (std::size_t i = 0; i < data.blocks.count(); ++i)
-    sum += data.blocks.at(i, PhotonBlocks::radius);
-  data.mean_radius =
-      data.blocks.count() ? static_cast<float>(sum / static_cast<double>(data.blocks.count())) : 0;
+  data.refit();
   data.times.build = watch.seconds();
   return map;
 }
@@ -109,6 +115,22 @@ PhotonMap PhotonMap::copy() const {
   PhotonMap map;
   *map.data_ = *data_;
   return map;
+}
+
+void PhotonMap::keep_clear(const Clearance& clearance) {
+  PhotonBlocks& blocks = data_->blocks;
+  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+    float& radius = blocks.at(i, PhotonBlocks::radius);
+    constexpr float far = 3, nearest = 0.1f, near = 0.3f; // distances in units of the radius
+    const float clear = clearance(blocks.position(i), far * radius), ratio = clear / radius;
+    if (!(ratio < far))
+      return;
+    const float factor = ratio < nearest ? 0 : ratio < near ? near / (near - nearest) : 1;
+    radius = factor > 0 ? clear / std::sqrt(1 + ratio * ratio) : 0;
+    for (int c = 0; c < blocks.channels(); ++c)
+      blocks.at(i, PhotonBlocks::power + c) *= factor;
+  });
+  data_->refit();
 }
 
 void PhotonMap::divide_power(const KernelShare& share) {

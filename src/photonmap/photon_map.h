@@ -14,6 +14,9 @@ namespace vdbeam {
 /// radius.
 using KernelShare = std::function<float(const Vec3f& position, float radius)>;
 
+/// The distance of a point from the nearest surface; `most` where that is less.
+using Clearance = std::function<float(const Vec3f& point, float most)>;
+
 /// How kernel radii are chosen (render units).
 struct RadiusSettings {
   KernelRadius mode = KernelRadius::adaptive;
@@ -52,6 +55,12 @@ public:
 
   /// The same map once more.
   PhotonMap copy() const;
+  /// Makes kernels end before surfaces: at a distance d from the nearest one the radius r becomes
+  /// d / sqrt(1 + (d / r)^2), less than d, so that no light leaks through it, and no part of a
+  /// kernel is cut off, so that none is lost. (A radius that followed d up to r would heap light up
+  /// before the surface and thin it out at r: docs/decisions.md.) Photons nearer than 0.1 r, whose
+  /// kernels would be too small, count as nothing; those up to 0.3 r count half as much again.
+  void keep_clear(const Clearance& clearance);
   /// Divides every photon's power by its kernel's share; `share` may be empty, for 1 everywhere.
   void divide_power(const KernelShare& share);
   /// The same, and returns this map with the radius of every kernel multiplied by `narrowing`, in
@@ -78,6 +87,7 @@ public:
     Ray ray;
     float t_begin = 0, step = 1;
     int knots = 0;
+    float t_end = infinity; ///< where the ray ends; what lies beyond does not count
     const float* weights = nullptr;
     int weight_channels = 1;
     const std::vector<PhaseFunction>* phases = nullptr;

@@ -19,6 +19,7 @@ namespace {
 struct NearRay {
   float origin[3], direction[3], inverse[3];
   float t_begin, t_end;
+  float last;   ///< knot coordinate of its end
   float margin; ///< outward margin of the box tests [length]
 };
 
@@ -37,6 +38,8 @@ NearRay near_ray(const PhotonMap::RayProfile& profile, const Boxf& bounds) {
   ray.t_begin = static_cast<float>(profile.t_begin - shift);
   ray.t_end = static_cast<float>(profile.t_begin +
                                  static_cast<double>(profile.step) * (profile.knots - 1) - shift);
+  ray.last = std::min(static_cast<float>(profile.knots - 1),
+                      (profile.t_end - profile.t_begin) / profile.step);
   ray.margin = 1e-6f * (length(bounds.size()) + length(Vec3f(origin) - bounds.center()));
   return ray;
 }
@@ -201,7 +204,7 @@ private:
     }
     const auto radius = photons.field(PhotonBlocks::radius);
     const auto area = hn::Mul(radius, radius);
-    const auto last = hn::Set(d, static_cast<float>(profile_.knots - 1));
+    const auto last = hn::Set(d, ray_.last);
     const auto f = hn::Mul(hn::Sub(t, hn::Set(d, ray_.t_begin)), hn::Set(d, 1 / profile_.step));
     const auto hit =
         hn::And(hn::Lt(square, area), hn::And(hn::Ge(f, hn::Zero(d)), hn::Le(f, last)));

@@ -152,6 +152,22 @@ void finish_own_origins(const BeamTile& tile, int index, float reach, bool has_d
     s.scale[r] /= 4 * pi;
 }
 
+/// Each ray ends at its own surface. True where one does.
+bool end_rays(const BeamTile& tile, int index, SubtileFrame& s) {
+  const BeamTile::Profile& profile = tile.profiles[index];
+  bool any = false;
+  for (int r = 0; r < rays; ++r) {
+    const double end = tile.end[static_cast<std::size_t>(index * rays + r)];
+    s.last[r] = s.last_knot;
+    if (end == std::numeric_limits<double>::infinity())
+      continue;
+    any = true;
+    s.last[r] = static_cast<float>(
+        std::min(static_cast<double>(s.last_knot), (end - profile.t_begin) / profile.step));
+  }
+  return any;
+}
+
 void make_subtile(const BeamTile& tile, int index, float mean_radius, float reach,
                   bool has_directions, SubtileFrame& s) {
   const BeamTile::Profile& profile = tile.profiles[index];
@@ -169,6 +185,7 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
   s.inverse_step = 1 / profile.step;
   s.cone_width = 0;
   s.own_origins = tile.own_origins;
+  const bool cut = end_rays(tile, index, s);
   if (tile.own_origins)
     return finish_own_origins(tile, index, reach, has_directions, s);
   const double cosine = 1 / std::sqrt(1 + spread * spread);
@@ -179,7 +196,7 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
   // and by depth * spread^2 / 2: nothing that a kernel of that radius would resolve.
   const double farthest = tile.camera_distance + reach;
   const double by_depth = farthest * spread * spread / 2;
-  s.per_ray = spread > widest_shared_spread ||
+  s.per_ray = cut || spread > widest_shared_spread ||
               by_depth > std::max(0.0625 * profile.step, 0.05 * mean_radius);
   s.knot_margin = static_cast<float>((1 / cosine - 1) * farthest / profile.step + 1);
   s.phase = phase_mode(*tile.phases, spread, has_directions);

@@ -15,6 +15,7 @@ struct SubtileFrame {
   alignas(64) float b[16];
   alignas(64) float dw[16];      ///< third component of the unit direction
   alignas(64) float stretch[16]; ///< 1 / dw - 1
+  alignas(64) float last[16];    ///< per ray: f beyond which there is no weight
   alignas(64) float scale[16];   ///< final factor of the ray's sum; 0 for a ray without direction
   /// Of rays with origins of their own: where they pass the plane w = 0, and how many knots before
   /// that their distances begin.

@@ -62,7 +62,7 @@ HWY_INLINE RayLanes load_rays(const SubtileFrame& s, std::size_t lane) {
           hn::Load(d, s.dw + lane),
           hn::Load(d, s.stretch + lane),
           hn::Set(d, s.first_knot),
-          hn::Set(d, s.last_knot),
+          hn::Load(d, s.last + lane),
           own(s.ou),
           own(s.ov),
           own(s.knot_shift),

@@ -78,11 +78,12 @@ private:
             {{!needs_.scatters, no_scattering_},
              {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
              {!needs_.photons, "single bounce, all by shadow rays"}}));
-    const bool importance = needs_.photons && sees && by_view;
+    const bool importance = needs_.photons && sees && by_view && !needs_.specular;
     add(Stage::photon_importance, importance,
         first_reason({{!needs_.photons, no_photons},
                       {!sees, "the estimator stores photons whatever the camera sees"},
-                      {!by_view, "photons are stored evenly, as asked for"}}));
+                      {!by_view, "photons are stored evenly, as asked for"},
+                      {needs_.specular, "mirrors or glass show more than camera rays meet"}}));
     // Where photons may serve frames with other views, kernels must not depend on the view either.
     const bool pilot = importance && runs(Stage::kernel_pilot) &&
                        render.kernel == KernelRadius::adaptive && render.neighbours == 0 &&
@@ -93,6 +94,7 @@ private:
                       {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"},
                       {render.neighbours > 0, "render.neighbours is given"},
                       {render.store != PhotonStore::fluence, "it needs fluence photons"},
+                      {needs_.specular, "photons are stored evenly"},
                       {true, "photons do not depend on the view"}}));
   }
 
@@ -134,10 +136,11 @@ private:
 
   void add_bias() {
     const bool asked = scene_.render.bias_rays > 0;
-    add(Stage::bias, needs_.photons && asked && runs(Stage::bias),
+    add(Stage::bias, needs_.photons && asked && runs(Stage::bias) && !needs_.specular,
         first_reason(
             {{!needs_.photons, no_photons},
              {!asked, "render.bias_rays is 0"},
+             {needs_.specular, "path tracing may miss light that mirrors or glass focus"},
              {true, "kernels blur: some rays are followed by path tracing to tell how much"}}));
   }
 

@@ -51,6 +51,7 @@ void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator,
   const MaterialSettings& material = surface.material;
   needs.colored = needs.colored || !is_grey(material.albedo) || !is_grey(material.reflectance) ||
                   !is_grey(material.absorption) || !is_grey(material.radiance);
+  needs.specular = needs.specular || is_specular(material);
   if (shines(material))
     needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||
                                       direct != DirectLight::photons);
@@ -77,10 +78,11 @@ PlanNeeds find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes
   const int bounces = scene.render.max_bounces.value_or(std::numeric_limits<int>::max());
   const bool lit = !needs.shadow_ray_lights.empty() || needs.glows;
   needs.scatters = needs.scatters && needs.visible && lit && bounces > 0;
-  // No shadow ray looks for what glows: its first flight is left to photons.
+  // No shadow ray looks for what glows, nor for light that surfaces send on: photons bring it.
   const bool first_flight =
-      needs.glows || std::find(needs.shadow_ray_lights.begin(), needs.shadow_ray_lights.end(),
-                               false) != needs.shadow_ray_lights.end();
+      needs.glows || !scene.surfaces.empty() ||
+      std::find(needs.shadow_ray_lights.begin(), needs.shadow_ray_lights.end(), false) !=
+          needs.shadow_ray_lights.end();
   needs.photons = estimator.shoots_photons() && needs.scatters && (bounces > 1 || first_flight);
   return needs;
 }

@@ -16,6 +16,7 @@ struct PlanNeeds {
   bool anisotropic = false;  ///< some phase function depends on the direction
   bool chromatic = false;    ///< extinction differs between channels
   bool colored = false;      ///< some colour is no grey
+  bool specular = false;     ///< some surface is a mirror, or of smooth glass
   bool surrounded = false;   ///< some light is met by rays that leave the scene
   std::vector<bool> shadow_ray_lights;
 

@@ -114,6 +114,8 @@ void add_mesh(KeyTable& table) {
       .unit("1 / world")
       .at_least(0)
       .types({"dielectric"});
+  table.add("solid", &M::solid, "no volume is inside; so wherever it absorbs")
+      .types({"dielectric"});
   table.add("radiance", &M::radiance, "radiance that it sends out")
       .unit("W / m^2 / sr")
       .at_least(0)

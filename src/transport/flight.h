@@ -30,14 +30,14 @@ struct Flight {
   }
 };
 
-/// Advances the walk to the next tentative collision of its flight. False where the flight leaves
-/// its segment first: then `walker.leave(walk)` has been called.
+/// Advances the walk to the next tentative collision. Where its flight reaches the end of its
+/// segment first, `walker.leave(walk)` says whether it goes on. False where it does not.
 template <class Walk, class Walker>
 bool advance_flight(Walk& walk, Walker& walker) {
-  if (walk.tracker->advance(walk.rng))
-    return true;
-  walker.leave(walk);
-  return false;
+  while (!walk.tracker->advance(walk.rng))
+    if (!walker.leave(walk))
+      return false;
+  return true;
 }
 
 /// The loop over a flight's collisions, one of them per call, by delta tracking (spectral tracking
@@ -49,7 +49,8 @@ bool advance_flight(Walk& walk, Walker& walker) {
 /// - `pass(walk)`: it was null; returns false where the walk ends nevertheless;
 /// - `collide(walk, collision)`: it was real; returns whether the walk goes on (if it does, at
 ///   the first tentative collision of its next flight);
-/// - `leave(walk)`: the flight has reached the end of its segment.
+/// - `leave(walk)`: the flight has reached the end of its segment; returns whether the walk has
+///   started another one there.
 template <class Walk, class Walker>
 bool step_flight(const Medium& medium, Walk& walk, Walker& walker) {
   const Collision hit = walk.tracker->collision();

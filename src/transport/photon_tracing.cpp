@@ -23,6 +23,10 @@ struct LightPath : Flight {
 
   std::size_t light = 0;
   std::uint32_t number = 0; ///< within the pass
+  // Among surfaces:
+  std::optional<SurfaceHit> end; ///< of the present flight
+  bool met_surface = false;
+  SurfaceRoulette surfaces;
 };
 
 // Weight windows (Booth and Hendricks 1984): a path that is worth less than `lowest_value` of the
@@ -35,9 +39,10 @@ class PathTracer {
 public:
   PathTracer(const World& world, const PhotonPassSettings& settings)
       : world_(world), settings_(settings),
-        first_flights_(std::find(settings.skip_first_flight.begin(),
-                                 settings.skip_first_flight.end(),
-                                 false) != settings.skip_first_flight.end()) {}
+        single_scattering_(world.surfaces != nullptr ||
+                           std::find(settings.skip_first_flight.begin(),
+                                     settings.skip_first_flight.end(),
+                                     false) != settings.skip_first_flight.end()) {}
 
   /// The paths `begin` to `end` of a pass, of which light i sends first[i] to first[i + 1]. Several
   /// are under way at a time and take turns at every collision, so that one path computes while the
@@ -93,8 +98,8 @@ public:
       split(path, phase, point);
     return paths > 0 && scatter(path, phase, point);
   }
-  /// What leaves the medium is lost: nothing else takes photons.
-  void leave(const LightPath&) const {}
+  /// What leaves the scene is lost. At a surface the path goes on by its material.
+  bool leave(LightPath& path) const { return path.end && reflect(path); }
 
   PhotonList photons;
   std::uint64_t collisions = 0;
@@ -128,18 +133,45 @@ private:
   /// False where the path leaves the medium without another collision.
   bool scatter(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
     const Vec3f direction = path.sample_direction(phase);
-    path.start(world_.medium, {{point, direction}});
+    begin_flight(path, Vec3d(point), direction);
     return advance_flight(path, *this);
   }
 
+  /// Begins a flight, which ends at the first surface.
+  void begin_flight(LightPath& path, const Vec3d& origin, const Vec3f& direction) const {
+    Segment segment{{Vec3f(origin), direction}};
+    if (const Surfaces* surfaces = world_.surfaces.get()) {
+      path.end =
+          surfaces->set->intersect(origin, Vec3d(direction), 0, static_cast<double>(infinity));
+      segment.t_end = surfaces->medium_end(path.end, direction);
+    }
+    path.start(world_.medium, segment);
+  }
+
+  /// False where the path ends at the surface.
+  bool reflect(LightPath& path) const {
+    const SurfaceVertex vertex(*world_.surfaces, *path.end, path.segment.ray.direction);
+    if (vertex.material().is_black() ||
+        !absorption_roulette(vertex.absorbed(), path.throughput, path.rng))
+      return false;
+    const MaterialSample next = vertex.sample(Carried::power, path.rng);
+    if (!absorption_roulette(next.weight, path.throughput, path.rng) ||
+        !path.surfaces.survive(path.throughput, path.rng))
+      return false;
+    path.met_surface = true;
+    begin_flight(path, vertex.hit().leave(next.wi), next.wi);
+    return true;
+  }
+
+  /// Shadow rays find what comes straight from their light, and nothing that a surface sent on.
   bool may_store(const LightPath& path) const {
-    return path.bounces > 0 || !settings_.skip_first_flight[path.light];
+    return path.bounces > 0 || path.met_surface || !settings_.skip_first_flight[path.light];
   }
 
   /// Path `number` of the pass, the `index`-th of `light_paths` from its light, up to its first
   /// tentative collision; none where it meets nothing.
   void emit(std::optional<LightPath>& path, std::uint64_t number, std::size_t light,
-            std::uint64_t index, std::uint64_t light_paths) const {
+            std::uint64_t index, std::uint64_t light_paths) {
     Rng rng(settings_.key, RngStage::photon, number);
     const double place = (static_cast<double>(index) + static_cast<double>(rng.uniform())) /
                          static_cast<double>(light_paths);
@@ -153,7 +185,7 @@ private:
     path.emplace(rng, flux);
     path->light = light;
     path->number = static_cast<std::uint32_t>(number);
-    path->start(world_.medium, {photon.ray});
+    begin_flight(*path, Vec3d(photon.ray.origin), photon.ray.direction);
     if (!advance_flight(*path, *this))
       path.reset();
   }
@@ -189,14 +221,14 @@ private:
     photons.power.push_back(power * settings_.albedo / probability);
     if (settings_.path_numbers)
       photons.path.push_back(path.number);
-    if (first_flights_)
+    if (single_scattering_)
       photons.first_flight.push_back(path.bounces == 0);
   }
 
   std::vector<LightPath> split_; ///< paths that wait for their turn
   const World& world_;
   const PhotonPassSettings& settings_;
-  bool first_flights_; ///< of some light are stored
+  bool single_scattering_; ///< photons may bring light that the medium has not scattered yet
 };
 
 } // namespace

@@ -166,6 +166,45 @@ TEST(SurfaceSet, the_camera_passes_what_it_does_not_see) {
   EXPECT_FALSE(set.occluded(origin, down, 0, 1.5));
 }
 
+/// Against the nearest of many points on the surfaces; never more than the true distance.
+TEST(SurfaceSet, distances_are_those_of_the_nearest_point) {
+  Affine stretched = placed(0.3, {0.5, 0.2, -0.4});
+  stretched.rows[0] = {0.5, 0.1, 0};
+  const std::vector<PlacedShape> surfaces{
+      {make_mesh_shape(ball(12)), stretched},
+      {make_simple_shape(SurfaceShape::sphere), placed(0.2, {-0.4, 0.1, 0.3})},
+      {make_simple_shape(SurfaceShape::quad), placed(0.4, {0, 0, -0.5})},
+      {make_simple_shape(SurfaceShape::disk), placed(0.3, {0, -0.6, 0.2})}};
+  const SurfaceSet set(surfaces, 2);
+  Rng rng({}, RngStage::test, 7);
+  std::vector<Vec3d> points;
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+    for (int i = 0; i < 60000; ++i) {
+      const double u = rng.uniform(), v = rng.uniform(), w = rng.uniform();
+      points.push_back(set.sample(s, u, v, w).position);
+    }
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p = direction(rng) * static_cast<double>(rng.uniform());
+    double nearest = 10;
+    for (const Vec3d& point : points)
+      nearest = std::min(nearest, length(point - p));
+    const double distance = set.distance(p, 10);
+    EXPECT_LE(distance, nearest);
+    EXPECT_GT(distance, nearest - 0.015); // the points lie about 0.005 apart
+    EXPECT_NEAR(set.distance(p, 0.1), std::min(distance, 0.1), 1e-9);
+  }
+}
+
+/// Of a stretched sphere the distance may be less than it is, as far as it is stretched.
+TEST(SurfaceSet, the_distance_from_a_stretched_sphere_is_never_more) {
+  Affine map = placed(1, {0, 0, 0});
+  map.rows[2] = {0, 0, 0.25};
+  const SurfaceSet set({{make_simple_shape(SurfaceShape::sphere), map}}, 2);
+  EXPECT_NEAR(set.distance({0, 0, 0.5}, 10), 0.25, 1e-6);
+  EXPECT_LE(set.distance({1.5, 0, 0}, 10), 0.5);
+  EXPECT_GT(set.distance({1.5, 0, 0}, 10), 0.1);
+}
+
 TEST(SurfaceSet, of_coincident_faces_the_first_counts) {
   const auto quad = make_simple_shape(SurfaceShape::quad);
   const SurfaceSet set({{quad, {}}, {quad, {}}, {quad, {}}}, 5);

@@ -291,6 +291,30 @@ TEST(PhotonMapLimits, OddTiles) {
   EXPECT_EQ(map.query(dark).candidates, 0u);
 }
 
+/// Before a wall at z = 0.5 no kernel reaches it, and what is far from it does not change. All that
+/// photons bring stays the same, up to what those at the wall count more or less.
+TEST(PhotonMap, KernelsKeepClearOfSurfaces) {
+  RadiusSettings radii;
+  radii.mode = KernelRadius::fixed;
+  radii.fixed_radius = 0.1f;
+  PhotonMap map = PhotonMap::build(cube_photons(20000), 1, radii, KernelShape::biweight);
+  const auto distance = [](const Vec3f& p, float most) {
+    return std::min(most, std::abs(p.z - 0.5f));
+  };
+  const auto gathered = [&](float z, float cosine) {
+    Rgb sum;
+    const Vec3f direction{std::sqrt(1 - cosine * cosine), 0, cosine};
+    std::vector<PhaseFunction> phases(1);
+    map.query_point({0.5f, 0.5f, z}, direction, phases, &sum);
+    return sum.x;
+  };
+  const float far = gathered(0.1f, 1), near = gathered(0.45f, 1);
+  map.keep_clear(distance);
+  EXPECT_EQ(gathered(0.1f, 1), far);
+  EXPECT_NEAR(gathered(0.45f, 1), near, 0.5f * near);
+  EXPECT_EQ(gathered(0.5f, 1), 0);
+}
+
 /// What the memory budget of 55 bytes per photon counts on.
 TEST(PhotonMap, BytesPerPhoton) {
   const PhotonMap grey = PhotonMap::build(cube_photons(50000, true), 1, {}, KernelShape::biweight);

@@ -16,7 +16,7 @@ inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weig
       found = hit;
       return false;
     }
-    void leave(Flight&) const {}
+    bool leave(Flight&) const { return false; }
   };
   Walker walker;
   if (medium.empty())

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "estimators/camera_ray.h"
+#include "estimators/photon_pass.h"
+#include "estimators/scene_tracer.h"
+
+#include <functional>
+
+namespace vdbeam {
+
+/// What the photons of a pass scatter into a ray with this profile, which is not empty.
+using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& profile, Rng& rng)>;
+
+/// The surfaces that camera rays meet, for estimators that gather photons.
+///
+/// Behind mirrors and smooth glass the camera ray goes on, by one of the ways that it may take, and
+/// photons are gathered along each of its segments: light that glass throws into the medium is seen
+/// there too. At any other surface path tracing goes on (SceneTracer), which finds all of its light
+/// but what only specular surfaces bring from lights that no ray can meet.
+class SurfaceShading {
+public:
+  /// Requires a world with surfaces.
+  SurfaceShading(const EstimatorInput& input, const PhotonPass& photons, GatherAlong gather);
+
+  /// Radiance that leaves the surface at which the camera ray ends, against the ray: the mean over
+  /// a few ways.
+  Rgb radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+               RenderStatistics& counts) const;
+
+private:
+  Rgb follow(SurfaceHit hit, Vec3f direction, Rng& rng, RenderStatistics& counts) const;
+  Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
+                   RenderStatistics& counts) const;
+
+  const World& world_;
+  const PhotonPass& photons_;
+  GatherAlong gather_;
+  SceneTracer tracer_;
+  float cutoff_;
+};
+
+} // namespace vdbeam
