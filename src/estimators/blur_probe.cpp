@@ -32,8 +32,7 @@ Rgb BlurProbe::narrow(const TileRays::PixelRay& ray, const BeamTile& tile, int i
   profile.t_begin = static_cast<float>(knots.t_begin - ray.camera.shift);
   profile.step = knots.step;
   profile.knots = knots.knots;
-  profile.t_end =
-      static_cast<float>(tile.end[static_cast<std::size_t>(index)] - ray.camera.shift);
+  profile.t_end = static_cast<float>(tile.end[static_cast<std::size_t>(index)] - ray.camera.shift);
   profile.weights = weights.data();
   profile.weight_channels = tile.weight_channels;
   profile.phases = tile.phases;

@@ -1,7 +1,7 @@
 #include "volume/vdb_reader.h"
 
-#include "support/temp_folder.h"
 #include "machine/guarded_process.h"
+#include "support/temp_folder.h"
 #include "volume/vdb_parse.h"
 #include "volume_factory.h"
 
