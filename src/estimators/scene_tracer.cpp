@@ -3,6 +3,8 @@
 #include "transport/emission.h"
 #include "transport/optical_depth.h"
 
+#include <utility>
+
 namespace vdbeam {
 
 namespace {
@@ -149,8 +151,12 @@ bool SceneTracer::bounce(Path& path, const SurfaceVertex& vertex) const {
   return true;
 }
 
-Rgb SceneTracer::lights_at_collision(const Path& path, const Vec3f& point,
-                                     const PhaseFunction& phase, Rng& rng) const {
+/// Next-event estimation: the lights with shadow rays, each by a sample that is weighted against
+/// the direction that the path will draw. scatter(wi): what is scattered to the path from there,
+/// and the density of drawing wi; transmittance(sample): between the point and the sample.
+template <class Scatter, class Transmittance>
+Rgb SceneTracer::sample_lights(const Vec3f& point, Rng& rng, const Scatter& scatter,
+                               const Transmittance& transmittance) const {
   Rgb sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     if (!shadow_rays_[i])
@@ -159,38 +165,44 @@ Rgb SceneTracer::lights_at_collision(const Path& path, const Vec3f& point,
     const IncidentSample sample = world_.lights[i].sample_incident(point, u, v);
     if (max_component(sample.value) <= 0)
       continue;
-    const float p = phase.evaluate(dot(path.direction, sample.wi));
-    const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    if (!(p * weight > 0) || !unoccluded(world_, Vec3d(point), sample.wi, sample.distance))
+    const auto [value, pdf] = scatter(sample.wi);
+    if (max_component(value) <= 0)
       continue;
-    RatioTracking shadow(world_.medium, {{point, sample.wi}, 0, sample.distance});
-    while (shadow.advance(rng))
-      if (!shadow.attenuate(rng))
-        break;
-    sum += sample.value * shadow.transmittance() * (p * weight);
+    const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + pdf) : 1;
+    sum += sample.value * value * weight * transmittance(sample);
   }
   return sum;
 }
 
+Rgb SceneTracer::lights_at_collision(const Path& path, const Vec3f& point,
+                                     const PhaseFunction& phase, Rng& rng) const {
+  const auto scatter = [&](const Vec3f& wi) {
+    const float p = phase.evaluate(dot(path.direction, wi));
+    return std::pair(Rgb(p), p);
+  };
+  return sample_lights(point, rng, scatter, [&](const IncidentSample& sample) {
+    if (!unoccluded(world_, Vec3d(point), sample.wi, sample.distance))
+      return Rgb();
+    RatioTracking shadow(world_.medium, {{point, sample.wi}, 0, sample.distance});
+    while (shadow.advance(rng))
+      if (!shadow.attenuate(rng))
+        break;
+    return Rgb(shadow.transmittance());
+  });
+}
+
 Rgb SceneTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const {
-  Rgb sum;
-  const Vec3f point(vertex.hit().position);
-  for (std::size_t i = 0; i < world_.lights.size(); ++i) {
-    if (!shadow_rays_[i])
-      continue;
-    const float u = rng.uniform(), v = rng.uniform();
-    const IncidentSample sample = world_.lights[i].sample_incident(point, u, v);
-    if (max_component(sample.value) <= 0)
-      continue;
-    const Rgb reflected = vertex.evaluate(sample.wi);
-    const Vec3d origin = vertex.hit().leave(sample.wi);
-    if (max_component(reflected) <= 0 || !unoccluded(world_, origin, sample.wi, sample.distance))
-      continue;
-    const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + vertex.pdf(sample.wi)) : 1;
-    sum += sample.value * reflected * weight *
-           exact_transmittance(world_.medium, {{Vec3f(origin), sample.wi}, 0, sample.distance});
-  }
-  return sum;
+  const auto scatter = [&](const Vec3f& wi) {
+    return std::pair(vertex.evaluate(wi), vertex.pdf(wi));
+  };
+  return sample_lights(
+      Vec3f(vertex.hit().position), rng, scatter, [&](const IncidentSample& sample) {
+        const Vec3d origin = vertex.hit().leave(sample.wi);
+        if (!unoccluded(world_, origin, sample.wi, sample.distance))
+          return Rgb();
+        return Rgb(
+            exact_transmittance(world_.medium, {{Vec3f(origin), sample.wi}, 0, sample.distance}));
+      });
 }
 
 /// The lights that the flight meets up to t_end but for surfaces, weighted against next-event

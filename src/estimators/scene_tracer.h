@@ -40,6 +40,9 @@ private:
   bool fly(Path& path, float t_end, float medium_end, Collision& hit) const;
   bool collide(Path& path, const Collision& hit) const;
   bool bounce(Path& path, const SurfaceVertex& vertex) const;
+  template <class Scatter, class Transmittance>
+  Rgb sample_lights(const Vec3f& point, Rng& rng, const Scatter& scatter,
+                    const Transmittance& transmittance) const;
   Rgb lights_at_collision(const Path& path, const Vec3f& point, const PhaseFunction& phase,
                           Rng& rng) const;
   Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;

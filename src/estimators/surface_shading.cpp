@@ -10,8 +10,8 @@ namespace vdbeam {
 
 namespace {
 
-/// Ways followed for each camera ray that ends at a surface.
-constexpr int ways = 4;
+/// Random paths that go on from each camera ray that ends at a surface.
+constexpr int paths_per_ray = 4;
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
 
@@ -51,11 +51,11 @@ Rgb SurfaceShading::radiance(const CameraRay& camera, const RngKey& key, std::si
   if (!camera.hit)
     return {};
   Rgb sum;
-  for (int i = 0; i < ways; ++i) {
-    Rng rng(key, RngStage::surface, pixel * ways + static_cast<std::size_t>(i));
+  for (int i = 0; i < paths_per_ray; ++i) {
+    Rng rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
     sum += follow(*camera.hit, camera.ray().direction, rng, counts);
   }
-  return sum / static_cast<float>(ways);
+  return sum / static_cast<float>(paths_per_ray);
 }
 
 Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,

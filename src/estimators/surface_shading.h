@@ -13,7 +13,7 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 
 /// The surfaces that camera rays meet, for estimators that gather photons.
 ///
-/// Behind mirrors and smooth glass the camera ray goes on, by one of the ways that it may take, and
+/// Behind mirrors and smooth glass the camera ray goes on, reflected or refracted at random, and
 /// photons are gathered along each of its segments: light that glass throws into the medium is seen
 /// there too. At any other surface path tracing goes on (SceneTracer), which finds all of its light
 /// but what only specular surfaces bring from lights that no ray can meet.
@@ -23,7 +23,7 @@ public:
   SurfaceShading(const EstimatorInput& input, const PhotonPass& photons, GatherAlong gather);
 
   /// Radiance that leaves the surface at which the camera ray ends, against the ray: the mean over
-  /// a few ways.
+  /// a few random paths.
   Rgb radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel,
                RenderStatistics& counts) const;
 

@@ -11,7 +11,6 @@ namespace vdbeam {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t fewest_batches = 3;
 /// Bias goes as the width of kernels to this power: 2 where they are small against all that they
 /// blur, less where they are as wide (measured, docs/decisions.md).
 constexpr double blur_power = 1.5;

@@ -21,7 +21,6 @@ constexpr double least_spread = 0.03;
 /// How far, as a fraction, the square of the bias may be from what narrower kernels tell, and how
 /// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
-constexpr std::size_t fewest_batches = 3;
 constexpr std::size_t batches_of_interval = 4;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).

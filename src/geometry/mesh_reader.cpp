@@ -1,11 +1,10 @@
 #include "geometry/mesh_reader.h"
 
 #include "machine/guarded_process.h"
+#include "machine/input_file.h"
 #include "vdbeam/error.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <assimp/Importer.hpp>
@@ -36,19 +35,10 @@ bool is_mesh_file(const std::string& path) {
 namespace {
 
 std::uint64_t check_file(const std::string& path) {
-  struct stat status;
-  if (::stat(path.c_str(), &status) != 0)
-    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
-  if (!S_ISREG(status.st_mode))
-    throw InputError(path + ": is not a regular file");
+  const std::uint64_t bytes = open_input_file(path).bytes;
   if (!is_mesh_file(path))
     throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
-  if (status.st_size == 0)
-    throw FrameError(path + ": is empty (0 bytes): perhaps it is still being copied");
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0)
-    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
-  return static_cast<std::uint64_t>(status.st_size);
+  return bytes;
 }
 
 /// What a sound file of this size can need at most. An OBJ file needs about two bytes per index, of

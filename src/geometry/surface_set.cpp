@@ -61,6 +61,9 @@ struct Query {
   unsigned found = RTC_INVALID_GEOMETRY_ID, found_primitive = 0;
   ShapeHit hit;
 
+  Query(const Vec3d& from, const Vec3d& along, double begin, double end)
+      : origin(from), direction(along), t_begin(begin), t_end(end) {}
+
   void enter(unsigned surface) {
     if (surface == local_of)
       return;
@@ -306,11 +309,7 @@ SurfaceSet::~SurfaceSet() = default;
 
 std::optional<SurfaceHit> SurfaceSet::intersect(const Vec3d& origin, const Vec3d& direction,
                                                 double t_begin, double t_end, bool camera) const {
-  Query query;
-  query.origin = origin;
-  query.direction = direction;
-  query.t_begin = t_begin;
-  query.t_end = t_end;
+  Query query(origin, direction, t_begin, t_end);
   query.camera = camera;
   data_->run(query);
   if (query.found == RTC_INVALID_GEOMETRY_ID)
@@ -325,11 +324,7 @@ std::optional<SurfaceHit> SurfaceSet::intersect(const Vec3d& origin, const Vec3d
 
 bool SurfaceSet::occluded(const Vec3d& origin, const Vec3d& direction, double t_begin,
                           double t_end) const {
-  Query query;
-  query.origin = origin;
-  query.direction = direction;
-  query.t_begin = t_begin;
-  query.t_end = t_end;
+  Query query(origin, direction, t_begin, t_end);
   query.any = true;
   data_->run(query);
   return query.found != RTC_INVALID_GEOMETRY_ID;

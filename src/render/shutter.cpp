@@ -30,8 +30,8 @@ std::uint64_t bytes_of(const World& world) {
 
 } // namespace
 
-Shutter::Place::Place(const PreparedScenePtr& prepared_, const Camera& camera_,
-                      const EstimatorInput& from, const RenderPlan& path_plan)
+Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const Camera& camera_,
+                                        const EstimatorInput& from, const RenderPlan& path_plan)
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
                              from.frame,       from.window, from.stop,     prepared->photons.get(),
@@ -54,49 +54,49 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   const bool still = scene_.moments.empty();
   const Scene& moment =
       still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
-  Place& place = place_of(moment);
+  MomentRenderer& renderer = renderer_of(moment);
   if (!still)
-    place.camera = Camera(moment.camera, scene_.image, place.prepared->world->space);
-  place.last_pass = pass;
-  if (!place.estimator) {
+    renderer.camera = Camera(moment.camera, scene_.image, renderer.prepared->world->space);
+  renderer.last_pass = pass;
+  if (!renderer.estimator) {
     const Stopwatch watch;
-    place.estimator = light_group_names(scene_).empty()
-                          ? make_estimator(scene_.render.estimator, place.input)
-                          : make_grouped_estimator(scene_, place.input);
-    if (place.input.plan.needs(Stage::bias))
-      place.probe =
-          std::make_unique<BiasProbe>(place.path_input, place.input.window, probe_pixels_);
+    renderer.estimator = light_group_names(scene_).empty()
+                             ? make_estimator(scene_.render.estimator, renderer.input)
+                             : make_grouped_estimator(scene_, renderer.input);
+    if (renderer.input.plan.needs(Stage::bias))
+      renderer.probe =
+          std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
     statistics.pilot += watch.seconds();
-    if (place.prepared->world != prepared_->world) {
-      statistics.read += place.prepared->seconds_read;
-      statistics.prepare += place.prepared->seconds_build;
+    if (renderer.prepared->world != prepared_->world) {
+      statistics.read += renderer.prepared->seconds_read;
+      statistics.prepare += renderer.prepared->seconds_build;
     }
   }
-  return {*place.estimator, place.probe.get()};
+  return {*renderer.estimator, renderer.probe.get()};
 }
 
-Shutter::Place& Shutter::place_of(const Scene& moment) {
+Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
   const std::string key = &moment == &scene_ ? "" : moved_world_settings(moment, *prepared_);
-  std::unique_ptr<Place>& place = places_[key];
-  if (!place) {
+  std::unique_ptr<MomentRenderer>& renderer = renderers_[key];
+  if (!renderer) {
     const PreparedScenePtr prepared =
         &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
-    place = std::make_unique<Place>(
+    renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(moment.camera, scene_.image, prepared->world->space), input_, path_plan_);
     make_room();
-    return *places_[key];
+    return *renderers_[key];
   }
-  return *place;
+  return *renderer;
 }
 
 /// Drops the worlds that were used longest ago where all take more than a quarter of the memory.
 void Shutter::make_room() {
   std::uint64_t bytes = 0;
-  for (const auto& [key, place] : places_)
-    bytes += bytes_of(*place->prepared->world);
-  while (places_.size() > 2 && bytes > granted_memory() / 4) {
+  for (const auto& [key, renderer] : renderers_)
+    bytes += bytes_of(*renderer->prepared->world);
+  while (renderers_.size() > 2 && bytes > granted_memory() / 4) {
     const auto oldest =
-        std::min_element(places_.begin(), places_.end(), [](const auto& a, const auto& b) {
+        std::min_element(renderers_.begin(), renderers_.end(), [](const auto& a, const auto& b) {
           const bool a_used = a.second->estimator != nullptr,
                      b_used = b.second->estimator != nullptr;
           return a_used != b_used ? a_used : a.second->last_pass < b.second->last_pass;
@@ -104,7 +104,7 @@ void Shutter::make_room() {
     if (!oldest->second->estimator)
       return;
     bytes -= bytes_of(*oldest->second->prepared->world);
-    places_.erase(oldest);
+    renderers_.erase(oldest);
   }
 }
 

@@ -35,9 +35,9 @@ public:
 
 private:
   /// A world and what renders it.
-  struct Place {
-    Place(const PreparedScenePtr& prepared_, const Camera& camera_, const EstimatorInput& from,
-          const RenderPlan& path_plan);
+  struct MomentRenderer {
+    MomentRenderer(const PreparedScenePtr& prepared_, const Camera& camera_,
+                   const EstimatorInput& from, const RenderPlan& path_plan);
 
     PreparedScenePtr prepared;
     Camera camera;
@@ -47,7 +47,7 @@ private:
     int last_pass = 0;
   };
 
-  Place& place_of(const Scene& moment);
+  MomentRenderer& renderer_of(const Scene& moment);
   void make_room();
 
   const Scene& scene_;
@@ -55,7 +55,8 @@ private:
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
   const std::vector<std::size_t>& probe_pixels_;
-  std::map<std::string, std::unique_ptr<Place>> places_; ///< by what their worlds are made from
+  std::map<std::string, std::unique_ptr<MomentRenderer>>
+      renderers_; ///< by what their worlds are made from
 };
 
 } // namespace vdbeam

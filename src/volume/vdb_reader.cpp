@@ -1,6 +1,7 @@
 #include "volume/vdb_reader.h"
 
 #include "machine/guarded_process.h"
+#include "machine/input_file.h"
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
@@ -9,14 +10,11 @@
 #include "volume/summary_codec.h"
 #include "volume/vdb_parse.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <openvdb/version.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 
 namespace vdbeam {
@@ -27,22 +25,13 @@ constexpr std::size_t maximum_grids = 1000;
 
 /// The size of a file that can be read at all; InputError otherwise.
 std::uint64_t check_file(const std::string& path) {
-  struct stat status;
-  if (::stat(path.c_str(), &status) != 0)
-    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
-  if (!S_ISREG(status.st_mode))
-    throw InputError(path + ": is not a regular file");
-  if (status.st_size == 0)
-    throw FrameError(path + ": is empty (0 bytes): perhaps it is still being copied");
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0)
-    throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  const InputFile file = open_input_file(path);
   constexpr char magic[] = {' ', 'B', 'D', 'V'};
   char start[sizeof magic];
-  if (::read(file.get(), start, sizeof start) != sizeof start ||
+  if (::read(file.descriptor.get(), start, sizeof start) != sizeof start ||
       std::memcmp(start, magic, sizeof magic) != 0)
     throw InputError(path + ": is not a VDB file");
-  return static_cast<std::uint64_t>(status.st_size);
+  return file.bytes;
 }
 
 /// What a well-formed file of this size can need at most, never more than the user's limits. A node
