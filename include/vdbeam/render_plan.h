@@ -83,6 +83,9 @@ struct PlanStage {
 
 /// What is decided about a render before its first pass, as a value. Estimators follow it.
 struct RenderPlan {
+  /// Of the estimator that renders; "auto" where that is not known before the volumes are read.
+  std::string_view estimator;
+  std::string choice;            ///< why it was chosen, one clause; empty where the scene names it
   std::vector<PlanStage> stages; ///< all of them, in the order of Stage
   /// Per light of the scene: single scattering is found by shadow rays. What the other lights send
   /// is left to photons, or to scattered rays that leave the scene.

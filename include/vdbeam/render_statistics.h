@@ -13,18 +13,20 @@ struct RenderStatistics {
   double build = 0, trace = 0, order = 0, radii = 0, query = 0, profile = 0, direct = 0, path = 0,
          bias = 0, write = 0;
   std::uint64_t light_paths = 0, photons_stored = 0, contributions = 0, camera_rays = 0;
-  std::uint64_t lookups = 0;         ///< rays or points gathered from the photon map
-  std::uint64_t depth_profiles = 0;  ///< camera rays whose optical depth was integrated
-  std::uint64_t shadow_rays = 0;     ///< of camera rays' single scattering
-  std::uint64_t emission_rays = 0;   ///< camera rays along which the medium's own light was summed
-  std::uint64_t camera_walks = 0;    ///< random walks from camera rays (path)
-  std::uint64_t neighbourhoods = 0;  ///< photons whose radius follows their neighbours'
-  std::uint64_t bias_rays = 0;       ///< camera rays followed by path tracing to tell the bias
-  std::uint64_t directions = 0;      ///< photons stored with their direction
-  std::uint64_t maps_reused = 0;     ///< passes whose photons were those of an earlier frame
-  std::uint64_t pilot_paths = 0;     ///< light paths traced before the first pass, to plan photons
-  std::uint64_t importance_rays = 0; ///< rays that found out where the camera sees photons
-  std::uint64_t peak_memory = 0;     ///< bytes, whole process
+  std::uint64_t lookups = 0;          ///< rays or points gathered from the photon map
+  std::uint64_t depth_profiles = 0;   ///< camera rays whose optical depth was integrated
+  std::uint64_t shadow_rays = 0;      ///< of camera rays' single scattering
+  std::uint64_t emission_rays = 0;    ///< camera rays along which the medium's own light was summed
+  std::uint64_t light_collisions = 0; ///< of light paths, where photons could be stored
+  std::uint64_t camera_walks = 0;     ///< random walks from camera rays (path)
+  std::uint64_t walk_collisions = 0;  ///< tentative collisions of these and of their shadow rays
+  std::uint64_t neighbourhoods = 0;   ///< photons whose radius follows their neighbours'
+  std::uint64_t bias_rays = 0;        ///< camera rays followed by path tracing to tell the bias
+  std::uint64_t directions = 0;       ///< photons stored with their direction
+  std::uint64_t maps_reused = 0;      ///< passes whose photons were those of an earlier frame
+  std::uint64_t pilot_paths = 0;      ///< light paths traced before the first pass, to plan photons
+  std::uint64_t importance_rays = 0;  ///< rays that found out where the camera sees photons
+  std::uint64_t peak_memory = 0;      ///< bytes, whole process
   std::size_t bytes_per_photon = 0;
   double neighbours = 0; ///< photons in an adaptive kernel, as given or chosen
   /// What render.clamp took: sums of radiance over passes, pixels and channels, and pixels of

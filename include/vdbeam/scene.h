@@ -89,7 +89,7 @@ enum class SeedPolicy { per_frame, correlated };
 enum class KernelShape { constant, epanechnikov, biweight, fourth_order };
 
 struct RenderSettings {
-  EstimatorType estimator = EstimatorType::beam;
+  EstimatorType estimator = EstimatorType::automatic;
   std::optional<int> passes;            ///< the first of these three met ends the frame
   std::optional<double> time;           ///< seconds
   std::optional<double> target_error;   ///< MRSE

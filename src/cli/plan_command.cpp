@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 #include "cli/streams.h"
+#include "estimators/estimator_table.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -23,7 +24,8 @@ struct PlanOptions {
 };
 
 std::string plan_text(const Scene& scene, const RenderPlan& plan) {
-  std::string text = scene.path + "\n";
+  std::string text = fmt::format("{}\n\nestimator\n  {:<18} {}\n", scene.path, plan.estimator,
+                                 estimator_kind(scene.render.estimator).help);
   for (const bool needed : {true, false}) {
     text += fmt::format("\n{}\n", needed ? "stages" : "left out");
     for (const PlanStage& stage : plan.stages)

@@ -56,19 +56,34 @@ constexpr std::string_view beam_keys[] = {
     "photons",    "store",      "direct", "kernel",   "kernel_shape", "radius",    "neighbours",
     "min_radius", "max_radius", "alpha",  "thinning", "keep",         "bias_rays", "forward_peak"};
 
+constexpr StageSet beam_stages = {
+    Stage::surfaces,          Stage::photons,      Stage::photon_importance,
+    Stage::kernel_pilot,      Stage::map,          Stage::neighbours,
+    Stage::photon_directions, Stage::photon_color, Stage::depth_profiles,
+    Stage::emission,          Stage::shadow_rays,  Stage::spectral_tracking,
+    Stage::beam_query,        Stage::bias};
+
+std::unique_ptr<Estimator> make_beam(const EstimatorInput& input) {
+  return std::make_unique<BeamEstimator>(input);
+}
+
 } // namespace
 
 const EstimatorKind beam_estimator{
     .name = "beam",
     .help = "the beam radiance estimate: photons, gathered along whole camera rays",
     .unbiased = false,
-    .stages = {Stage::surfaces, Stage::photons, Stage::photon_importance, Stage::kernel_pilot,
-               Stage::map, Stage::neighbours, Stage::photon_directions, Stage::photon_color,
-               Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
-               Stage::beam_query, Stage::bias},
+    .stages = beam_stages,
     .keys = beam_keys,
-    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
-      return std::make_unique<BeamEstimator>(input);
-    }};
+    .make = make_beam};
+
+// It reads the keys of beam, and is planned as beam; choose_estimator tells before the first pass which of the two renders.
+const EstimatorKind auto_estimator{
+    .name = "auto",
+    .help = "beam, or path where a short trial tells that its error would be smaller",
+    .unbiased = false,
+    .stages = beam_stages,
+    .keys = {},
+    .make = make_beam};
 
 } // namespace vdbeam

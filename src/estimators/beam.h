@@ -17,6 +17,8 @@ public:
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
+  const PhotonPass& photons() const { return photons_; }
+
 private:
   EstimatorInput input_;
   PhotonPass photons_;

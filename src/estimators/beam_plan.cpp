@@ -87,8 +87,9 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
   plan.stored_per_path = thinning.stored_per_path;
 }
 
-/// The neighbours at which pictures of narrow and wide kernels tell that the error is least.
-double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
+/// Chooses the neighbours at which pictures of narrow and wide kernels tell that the error is
+/// least.
+void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const World& world = input.world;
   const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
@@ -103,8 +104,9 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     key = settings.key;
     const TracedPhotons traced = trace_photons(world, settings);
     plan.pilot_paths += settings.paths;
+    plan.collisions_per_path += traced.mean_collisions / trial_maps;
     if (input.stopped())
-      return plan.neighbours;
+      return;
     for (KernelTrial* trial : {&narrow, &wide}) {
       RadiusSettings radii = radius_settings(input, plan, 0);
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
@@ -114,9 +116,9 @@ double try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     }
   }
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
-  const double best =
-      best_neighbours(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
-  return in_kernel_steps(best);
+  const KernelModel model(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
+  plan.neighbours = in_kernel_steps(model.best_neighbours());
+  plan.trial = std::make_shared<const KernelTrialResult>(KernelTrialResult{model, errors.pixels});
 }
 
 } // namespace
@@ -131,7 +133,7 @@ PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   plan.paths = choose_paths(input, plan.stored_per_path);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
-    plan.neighbours = try_kernels(input, plan);
+    try_kernels(input, plan);
   return plan;
 }
 

@@ -29,6 +29,6 @@ std::span<const EstimatorKind* const> estimator_table();
 /// The estimator of a scene. Throws InputError for one that is not in the table.
 const EstimatorKind& estimator_kind(const EstimatorType& type);
 
-extern const EstimatorKind beam_estimator, march_estimator, path_estimator;
+extern const EstimatorKind auto_estimator, beam_estimator, march_estimator, path_estimator;
 
 } // namespace vdbeam

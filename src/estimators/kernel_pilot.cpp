@@ -16,6 +16,8 @@ namespace vdbeam {
 namespace {
 
 constexpr int most_tiles = 100;
+/// Of a tile's pixels, one in so many is told to the caller.
+constexpr std::size_t pixels_between_samples = 48;
 /// Added to the brightness in the weights, as 0.01 is in MRSE, but relative to the mean: dimming a
 /// light must not change the kernels.
 constexpr double offset = 0.03;
@@ -79,6 +81,7 @@ struct Spread {
 /// What a tile's rays that meet the medium see.
 struct TileView {
   std::vector<std::vector<float>> narrow, wide; ///< by map
+  std::vector<std::size_t> pixels;              ///< of the picture
   std::vector<std::size_t> places;              ///< of a pixel's channel in a map's picture
   std::vector<double> known;                    ///< its light that does not come from photons
   double brightness = 0;                        ///< sum over the pixels
@@ -95,7 +98,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
   weights.colored = input.photon_channels() > 1;
   BeamTile tile;
   fill_beam_tile(world, input.camera, rays, weights, tile);
-  TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, 0};
+  TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, {}, 0};
   PassImage beside;
   beside.resize(TileRays::count, 1, !world.medium.emitters.empty());
   std::uint64_t shadow_rays = 0, emission_rays = 0;
@@ -109,6 +112,7 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
                                                      plan.sampled_lights, 1, rng, shadow_rays);
+    view.pixels.push_back(ray.pixel);
     for (std::size_t c = 0; c < channels; ++c) {
       view.places.push_back(c * TileRays::count + i);
       view.known.push_back(
@@ -117,6 +121,11 @@ TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Ti
     }
   }
   return view;
+}
+
+double weight_of(double brightness, double dark) {
+  const double offset_brightness = std::max(0.0, brightness) + dark;
+  return 1 / (offset_brightness * offset_brightness);
 }
 
 /// Sums over a tile's pixels.
@@ -132,8 +141,7 @@ private:
   void add(const TileView& view, std::size_t place, double known, double dark) {
     const auto count = static_cast<double>(view.narrow.size());
     const Spread n(view.narrow, place), w(view.wide, place);
-    const double brightness = std::max(0.0, known + w.mean) + dark;
-    const double weight = 1 / (brightness * brightness);
+    const double weight = weight_of(known + w.mean, dark);
     narrow += weight * n.squares / (count - 1);
     wide += weight * w.squares / (count - 1);
     // The mean over pairs of different maps, of which noise is no part: the square of the sum less
@@ -148,6 +156,21 @@ private:
     change += weight * (sum * sum - squares) / (count * (count - 1));
   }
 };
+
+/// A few of the tile's pixels, with their weights.
+void add_pixels(const TileView& view, double dark, std::vector<TrialPixel>& pixels) {
+  const std::size_t channels = view.pixels.empty() ? 1 : view.places.size() / view.pixels.size();
+  for (std::size_t i = 0; i < view.pixels.size(); i += pixels_between_samples) {
+    TrialPixel sample{view.pixels[i], {}};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = i * channels + std::min(c, channels - 1);
+      const double mean = Spread(view.wide, view.places[at]).mean;
+      sample.weight[static_cast<int>(c)] =
+          static_cast<float>(weight_of(view.known[at] + mean, dark));
+    }
+    pixels.push_back(sample);
+  }
+}
 
 } // namespace
 
@@ -185,36 +208,61 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
   for (const TileSums& tile : sums)
     errors.change_error += (tile.change - mean) * (tile.change - mean);
   errors.change_error = std::sqrt(errors.change_error);
+  for (double* sum :
+       {&errors.noise_narrow, &errors.noise_wide, &errors.change, &errors.change_error})
+    *sum /= pixels;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    add_pixels(views[i], offset * brightness / pixels, errors.pixels);
   return errors;
 }
 
-double best_neighbours(const KernelTrial& narrow, const KernelTrial& wide,
-                       const KernelErrors& errors, double paths_share, double alpha) {
-  const double ratio = wide.neighbours / narrow.neighbours;
-  // Where narrow kernels reach no camera ray, photons are too few for any but wide ones.
-  if (!(errors.noise_narrow > 0) || !(errors.noise_wide > 0))
-    return wide.neighbours;
-  const double power =
-      std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
-  // Radii go as the cube root of the neighbours; both powers hold for what the passes shrink too.
-  double noise = 0, bias_factor = 0;
-  double shrink = 1;
-  for (int pass = 1; pass <= balanced_passes; ++pass) {
-    noise += std::pow(shrink, -1.5 * power);
-    bias_factor += std::pow(shrink, 1.5 * bias_power);
-    shrink *= (pass + alpha) / (pass + 1);
-  }
-  noise *= errors.noise_narrow * paths_share / (balanced_passes * balanced_passes);
-  bias_factor /= balanced_passes;
+KernelModel::KernelModel(const KernelTrial& narrow, const KernelTrial& wide,
+                         const KernelErrors& errors, double paths_share, double alpha)
+    : narrow_(narrow.neighbours), wide_(wide.neighbours), noise_(errors.noise_narrow * paths_share),
+      alpha_(alpha) {
+  const double ratio = wide_ / narrow_;
+  if (errors.noise_narrow > 0 && errors.noise_wide > 0)
+    noise_power_ =
+        std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
+  else
+    noise_ = 0;
   // Where no bias stands out of the noise it may still be as large as that.
   const double change = std::max(errors.change, errors.change_error);
-  if (!(change > 0))
-    return wide.neighbours;
-  const double bias =
-      change * std::pow((std::pow(ratio, bias_power) - 1), -2) * bias_factor * bias_factor;
+  const double per_change = std::pow(std::pow(ratio, bias_power) - 1, -2);
+  bias_ = std::max(0.0, change) * per_change;
+  measured_bias_ = std::max(0.0, errors.change) * per_change;
+}
+
+/// Radii go as the cube root of the neighbours; both powers hold for what the passes shrink too.
+KernelModel::Balance KernelModel::balance(int passes) const {
+  double noise = 0, bias_factor = 0;
+  double shrink = 1;
+  for (int pass = 1; pass <= passes; ++pass) {
+    noise += std::pow(shrink, -1.5 * noise_power_);
+    bias_factor += std::pow(shrink, 1.5 * bias_power);
+    shrink *= (pass + alpha_) / (pass + 1);
+  }
+  noise *= noise_ / (static_cast<double>(passes) * passes);
+  bias_factor /= passes;
+  return {noise, bias_factor * bias_factor};
+}
+
+double KernelModel::best_neighbours() const {
+  // Where narrow kernels reach no camera ray, photons are too few for any but wide ones.
+  if (!(noise_ > 0) || !(bias_ > 0))
+    return wide_;
+  const Balance at = balance(balanced_passes);
   // noise x^-power + bias x^(2 bias_power) is least where its derivative is 0.
-  const double x = std::pow(power * noise / (2 * bias_power * bias), 1 / (power + 2 * bias_power));
-  return std::max(fewest_neighbours, narrow.neighbours * std::clamp(x, 0.05, ratio));
+  const double x = std::pow(noise_power_ * at.noise / (2 * bias_power * bias_ * at.bias_factor),
+                            1 / (noise_power_ + 2 * bias_power));
+  return std::max(fewest_neighbours, narrow_ * std::clamp(x, 0.05, wide_ / narrow_));
+}
+
+double KernelModel::error(double neighbours, int passes) const {
+  const Balance at = balance(passes);
+  const double x = neighbours / narrow_;
+  return at.noise * std::pow(x, -noise_power_) +
+         measured_bias_ * at.bias_factor * std::pow(x, 2 * bias_power);
 }
 
 } // namespace vdbeam

@@ -143,17 +143,18 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   const EyeRay eye =
       camera.sample(static_cast<int>(pixel % width), static_cast<int>(pixel / width), jitter);
   trace(camera_ray(input_.world, camera, eye), key, pixel, scratch, target, image);
-  take_turns(scratch.walks, walks_under_way, image);
+  take_turns(scratch, walks_under_way, image);
 }
 
 /// Lets the walks take turns until no more than `most` are under way. Walks of several pixels:
 /// while one waits for its voxels to come from memory, others compute.
-void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
-                               PassImage& image) const {
+void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& image) const {
+  std::vector<PathWalk>& walks = scratch.walks;
   const float share = 1 / static_cast<float>(walks_per_ray_);
   for (std::uint32_t rounds = 0; walks.size() > most; ++rounds) {
     if (rounds % rounds_per_check == rounds_per_check - 1 && input_.stopped())
       return walks.clear();
+    scratch.counts.walk_collisions += walks.size();
     for (std::size_t i = 0; i < walks.size();) {
       PathWalk& walk = walks[i];
       if (tracer_.step(walk)) {
@@ -170,7 +171,8 @@ void PathEstimator::take_turns(std::vector<PathWalk>& walks, std::size_t most,
 }
 
 void PathEstimator::render_pixels(int pass, const std::vector<std::size_t>& pixels,
-                                  PassImage& image, std::vector<std::uint8_t>& finished) const {
+                                  PassImage& image, std::vector<std::uint8_t>& finished,
+                                  RenderStatistics& statistics) const {
   const RngKey pass_key = key(pass);
   image.resize(static_cast<int>(pixels.size()), 1, !input_.world.medium.emitters.empty());
   finished.assign(pixels.size(), 0);
@@ -181,17 +183,20 @@ void PathEstimator::render_pixels(int pass, const std::vector<std::size_t>& pixe
     Scratch& scratch = scratches.local();
     for (std::size_t i = range.begin(); i < range.end() && !input_.stopped(); ++i)
       render_pixel(pass_key, pixels[i], scratch, i, image);
-    take_turns(scratch.walks, 0, image);
+    take_turns(scratch, 0, image);
     if (!input_.stopped())
       std::fill_n(finished.begin() + static_cast<std::ptrdiff_t>(range.begin()), range.size(), 1);
   };
   tbb::parallel_for(all, render, tbb::simple_partitioner());
+  for (const Scratch& scratch : scratches)
+    statistics += scratch.counts;
 }
 
 std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t>& pixels) const {
   PassImage image;
   std::vector<std::uint8_t> finished;
-  render_pixels(pass, pixels, image, finished);
+  RenderStatistics uncounted;
+  render_pixels(pass, pixels, image, finished, uncounted);
   std::vector<Rgb> result;
   for (std::size_t i = 0; i < pixels.size(); ++i)
     result.push_back(image.total(i));
@@ -211,7 +216,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
         const std::size_t pixel = static_cast<std::size_t>(y) * camera.width() + x;
         render_pixel(pass_key, pixel, scratch, pixel, image);
       }
-    take_turns(scratch.walks, 0, image);
+    take_turns(scratch, 0, image);
   });
   statistics.pilot_paths += std::exchange(uncounted_pilot_paths_, 0);
   for (const Scratch& scratch : scratches)

@@ -21,8 +21,9 @@ public:
 
   /// Pixels of the picture to the pixels of a picture one row high; `finished` tells which ones
   /// were done before the input's `stop` asked to end.
+  /// Adds what it counts to `statistics`.
   void render_pixels(int pass, const std::vector<std::size_t>& pixels, PassImage& image,
-                     std::vector<std::uint8_t>& finished) const;
+                     std::vector<std::uint8_t>& finished, RenderStatistics& statistics) const;
 
 private:
   struct Scratch;
@@ -35,7 +36,7 @@ private:
   void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
                   const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
   Rgb surface_radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
-  void take_turns(std::vector<PathWalk>& walks, std::size_t most, PassImage& image) const;
+  void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
 
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it

@@ -3,6 +3,7 @@
 #include "estimators/photon_cache.h"
 #include "machine/stopwatch.h"
 
+#include <cmath>
 #include <utility>
 
 namespace vdbeam {
@@ -73,6 +74,8 @@ void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettin
   if (stopped)
     traced = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
+  statistics.light_collisions += static_cast<std::uint64_t>(
+      std::llround(traced.mean_collisions * static_cast<double>(settings.paths)));
   map_ = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
                           input_.settings.kernel_shape);
   statistics.order += map_.times().order;

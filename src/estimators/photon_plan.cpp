@@ -32,23 +32,6 @@ double in_steps(double number) {
   return number > 0 ? std::exp2(std::round(4 * std::log2(number)) / 4) : 0;
 }
 
-/// Camera rays of a pass that meet the medium, from a coarse sample.
-double count_hits(const EstimatorInput& input) {
-  constexpr int samples = 48;
-  const Camera& camera = input.camera;
-  DepthProfile profile;
-  int hits = 0;
-  for (int y = 0; y < samples && !input.stopped(); ++y)
-    for (int x = 0; x < samples; ++x) {
-      const CameraRay ray = camera_ray(
-          input.world, camera,
-          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
-      profile.build(input.world.medium, ray.segment, 0.5f);
-      hits += !profile.empty();
-    }
-  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
-}
-
 /// All volumes have the same albedo, also where a forward peak is taken out.
 bool common_albedo(const Medium& medium) {
   for (const Volume& volume : medium.volumes)
@@ -75,6 +58,22 @@ bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sam
 }
 
 } // namespace
+
+double count_hits(const EstimatorInput& input) {
+  constexpr int samples = 48;
+  const Camera& camera = input.camera;
+  DepthProfile profile;
+  int hits = 0;
+  for (int y = 0; y < samples && !input.stopped(); ++y)
+    for (int x = 0; x < samples; ++x) {
+      const CameraRay ray = camera_ray(
+          input.world, camera,
+          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
+      profile.build(input.world.medium, ray.segment, 0.5f);
+      hits += !profile.empty();
+    }
+  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+}
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {
   const World& world = input.world;

@@ -10,6 +10,8 @@
 
 namespace vdbeam {
 
+struct KernelTrialResult;
+
 /// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
 /// function of the estimator's input (by counts, never by a clock).
 struct PhotonPlan {
@@ -28,8 +30,11 @@ struct PhotonPlan {
   std::shared_ptr<const CellTables> store_probability_by_cell;
   /// Where light paths begin, end and split; null: emission by power, no windows.
   std::shared_ptr<const PathGuide> guide;
-  double stored_per_path = 0; ///< expected photons of a light path
-  double neighbours = 0;      ///< photons in the sphere of an adaptive kernel's radius
+  double stored_per_path = 0;     ///< expected photons of a light path
+  double neighbours = 0;          ///< photons in the sphere of an adaptive kernel's radius
+  double collisions_per_path = 0; ///< of light paths as they are sent in the end
+  /// What tried kernels told; null: none were tried.
+  std::shared_ptr<const KernelTrialResult> trial;
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
@@ -47,6 +52,8 @@ PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// rays to send and how many photons to store, everywhere with the same probability. Only for a
 /// render that needs photons. The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
+/// Camera rays of a pass that meet the medium, from a coarse sample.
+double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
 

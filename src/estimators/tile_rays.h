@@ -26,6 +26,9 @@ public:
     std::size_t pixel = 0;
     bool inside = false; ///< the pixel exists
   };
+  /// One pixel's ray, jittered, without its profile.
+  static PixelRay pixel_ray(const EstimatorInput& input, const RngKey& key, int x, int y);
+
   const PixelRay& operator[](int ray) const { return rays_[ray]; }
   int x0() const { return x0_; }
   int y0() const { return y0_; }

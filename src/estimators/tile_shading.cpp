@@ -34,6 +34,23 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
 
 } // namespace
 
+void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
+               const TileRays::PixelRay& ray, const Rgb& surface, const RngKey& key,
+               std::size_t target, PassImage& image, RenderStatistics& counts) {
+  const World& world = photons.world();
+  counts.depth_profiles += ray.profile.empty() ? 0 : 1;
+  if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
+    shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), target, image,
+                  counts.emission_rays);
+  else
+    shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
+  Rng rng(key, RngStage::direct, ray.pixel);
+  image.direct[target] =
+      light_of_the_peak(world, ray, photons.plan().sampled_lights) +
+      direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
+                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows());
+}
+
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
                  RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
@@ -45,21 +62,6 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
   std::optional<SurfaceShading> surfaces;
   if (world.surfaces)
     surfaces.emplace(input, photons, gather_along);
-  const auto shade_ray = [&](const TileRays::PixelRay& ray, RenderStatistics& counts) {
-    counts.depth_profiles += ray.profile.empty() ? 0 : 1;
-    const Rgb surface = surfaces ? surfaces->radiance(ray.camera, key, ray.pixel, counts) : Rgb();
-    if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
-      shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), ray.pixel,
-                    image, counts.emission_rays);
-    else
-      shade_profile(input, ray.camera, ray.profile, ray.pixel, image, counts.emission_rays,
-                    surface);
-    Rng rng(key, RngStage::direct, ray.pixel);
-    image.direct[ray.pixel] =
-        light_of_the_peak(world, ray, photons.plan().sampled_lights) +
-        direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
-                     photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows());
-  };
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, image, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
@@ -67,8 +69,11 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     scratch.rays.prepare(input.in(world), key, x0, y0);
     scratch.statistics.profile += watch.restart();
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
-      if (scratch.rays[i].inside)
-        shade_ray(scratch.rays[i], scratch.statistics);
+      if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
+        const Rgb surface =
+            surfaces ? surfaces->radiance(ray.camera, key, ray.pixel, scratch.statistics) : Rgb();
+        shade_ray(input, photons, ray, surface, key, ray.pixel, image, scratch.statistics);
+      }
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       gather(scratch, key);

@@ -13,6 +13,13 @@ struct TileScratch {
   RenderStatistics statistics;
 };
 
+/// What a ray of the picture sees but for what it gathers from the photon map: direct light, and
+/// what is seen through the medium. Goes to pixel `target` of `image`. `surface`: radiance of the
+/// surface at which the ray ends, if it does.
+void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
+               const TileRays::PixelRay& ray, const Rgb& surface, const RngKey& key,
+               std::size_t target, PassImage& image, RenderStatistics& counts);
+
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
 /// direct light, what is seen through the medium, and the stage times. `gather` adds what the
 /// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics;

@@ -172,6 +172,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   const EstimatorKind& estimator = estimator_kind(scene.render.estimator);
   const PlanNeeds needs = find_needs(scene, volumes, estimator);
   RenderPlan plan;
+  plan.estimator = estimator.name;
   plan.stages = Planner(scene, estimator, needs).plan();
   plan.shadow_ray_lights = needs.shadow_ray_lights;
   plan.unbiased =

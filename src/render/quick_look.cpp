@@ -98,7 +98,8 @@ void fill_with_quick_look(const EstimatorInput& input, PassImage& image) {
         missing_pixels(input.window, spacing, image.width, known);
     PassImage values;
     std::vector<std::uint8_t> finished;
-    path.render_pixels(quick_look_pass, pixels, values, finished);
+    RenderStatistics uncounted;
+    path.render_pixels(quick_look_pass, pixels, values, finished, uncounted);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (!finished[i])
         continue;

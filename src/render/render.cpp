@@ -1,6 +1,7 @@
 #include "vdbeam/render.h"
 
 #include "estimators/camera_ray.h"
+#include "estimators/choose_estimator.h"
 #include "estimators/estimator.h"
 #include "estimators/light_groups.h"
 #include "machine/stopwatch.h"
@@ -51,9 +52,10 @@ RenderResult render(const Scene& scene, const FrameSettings& frame, const Render
   return render(scene, prepare_scene(scene), frame, hooks);
 }
 
-RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
+RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
                     const FrameSettings& frame, const RenderHooks& hooks) {
-  validate_scene(scene);
+  validate_scene(asked);
+  Scene scene = asked;
   check_range(frame.pass_range);
   const PixelRegion window = choose_window(scene.image, frame.region);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -87,12 +89,28 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
     blur_pixels = choose_blur_pixels(window, camera.width(), loop.probe_pixels());
     input.blur_pixels = &blur_pixels;
   }
-  for (const std::string& line : limit_notes(scene, input))
-    note(line);
   const RenderPlan path_plan = plan_paths(scene, volumes);
   const EstimatorInput path_input = input.with(path_plan);
   loop.show_quick_look(path_input);
   Shutter shutter(scene, prepared, input, path_plan, loop.probe_pixels());
+  if (scene.render.estimator == EstimatorType::automatic) {
+    const Stopwatch watch;
+    EstimatorChoice choice = choose_estimator(input, path_input);
+    result.statistics.pilot += watch.seconds();
+    scene.render.estimator = choice.type;
+    if (choice.type == EstimatorType::path) {
+      result.plan = path_plan;
+      input.blur_pixels = nullptr;
+    }
+    result.plan.estimator = choice.type.name;
+    result.plan.choice = choice.reason;
+    if (choice.type == EstimatorType::path)
+      note(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
+    if (scene.moments.empty() && light_group_names(scene).empty())
+      shutter.take(std::move(choice.beam));
+  }
+  for (const std::string& line : limit_notes(scene, input))
+    note(line);
   if (scene.moments.empty())
     shutter.at(0, result.statistics); // its pilot does not count as part of a pass
   loop.run(shutter, path_input);

@@ -60,7 +60,8 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   renderer.last_pass = pass;
   if (!renderer.estimator) {
     const Stopwatch watch;
-    renderer.estimator = light_group_names(scene_).empty()
+    renderer.estimator = ready_ ? std::move(ready_)
+                         : light_group_names(scene_).empty()
                              ? make_estimator(scene_.render.estimator, renderer.input)
                              : make_grouped_estimator(scene_, renderer.input);
     if (renderer.input.plan.needs(Stage::bias))

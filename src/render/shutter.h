@@ -27,6 +27,8 @@ public:
   Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
           const RenderPlan& path_plan, const std::vector<std::size_t>& probe_pixels);
 
+  /// Has the estimator of a still scene without light groups that was made already.
+  void take(std::unique_ptr<Estimator> ready) { ready_ = std::move(ready); }
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -55,6 +57,7 @@ private:
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
   const std::vector<std::size_t>& probe_pixels_;
+  std::unique_ptr<Estimator> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>
       renderers_; ///< by what their worlds are made from
 };

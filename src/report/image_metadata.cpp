@@ -110,7 +110,8 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   const std::filesystem::path absolute = std::filesystem::absolute(scene.path, error);
   image.metadata["vdbeam:scene"] = error ? scene.path : absolute.lexically_normal().string();
   image.metadata["vdbeam:sceneHash"] = hash;
-  image.metadata["vdbeam:estimator"] = std::string(scene.render.estimator.name);
+  image.metadata["vdbeam:estimator"] = std::string(
+      result.plan.estimator.empty() ? scene.render.estimator.name : result.plan.estimator);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   if (!scene.layers.empty())
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);

@@ -108,7 +108,9 @@ Json plan_json(const RenderPlan& plan) {
   for (const PlanStage& stage : plan.stages)
     stages.push_back(
         {{"name", stage_name(stage.stage)}, {"needed", stage.needed}, {"reason", stage.reason}});
-  return {{"stages", std::move(stages)},
+  return {{"estimator", plan.estimator},
+          {"choice", plan.choice},
+          {"stages", std::move(stages)},
           {"memory",
            {{"volumes", plan.volume_bytes},
             {"photons", plan.photon_bytes},
@@ -137,6 +139,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   report["bytes_per_photon"] = statistics.bytes_per_photon;
   report["neighbours"] = statistics.neighbours;
   report["counts"] = {{"light_paths", statistics.light_paths},
+                      {"light_collisions", statistics.light_collisions},
                       {"photons_stored", statistics.photons_stored},
                       {"contributions", statistics.contributions},
                       {"lookups", statistics.lookups},
@@ -145,6 +148,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"shadow_rays", statistics.shadow_rays},
                       {"emission_rays", statistics.emission_rays},
                       {"camera_walks", statistics.camera_walks},
+                      {"walk_collisions", statistics.walk_collisions},
                       {"bias_rays", statistics.bias_rays},
                       {"neighbourhoods", statistics.neighbourhoods},
                       {"importance_rays", statistics.importance_rays},

@@ -21,7 +21,8 @@ KernelTrial trial(double neighbours) {
 
 TEST(BestNeighbours, FollowsNoiseAndBias) {
   const auto best = [](double noise, double change, double error) {
-    return best_neighbours(trial(100), trial(800), {noise, noise / 4, change, error}, 0.25, 0.6);
+    const KernelErrors errors{noise, noise / 4, change, error, {}};
+    return KernelModel(trial(100), trial(800), errors, 0.25, 0.6).best_neighbours();
   };
   EXPECT_GT(best(20, 0.1, 0), best(10, 0.1, 0));
   EXPECT_LT(best(10, 0.2, 0), best(10, 0.1, 0));

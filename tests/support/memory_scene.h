@@ -78,8 +78,11 @@ inline Affine turn(const Vec3d& axis, double degrees) {
   return map;
 }
 
-/// A scene whose volumes lie in memory. Unit-cube volumes by default; settings are public.
+/// A scene whose volumes lie in memory, for `beam`. Unit-cube volumes by default; settings are
+/// public.
 struct MemoryScene {
+  MemoryScene() { scene.render.estimator = EstimatorType::beam; }
+
   Scene scene;
   std::vector<DensityGrid> grids;
   std::vector<EmissionGrid> emissions;

@@ -70,8 +70,8 @@ const LightKind lantern_light{
 } // namespace
 
 std::span<const EstimatorKind* const> estimator_table() {
-  static constexpr std::array table{&beam_estimator, &march_estimator, &path_estimator,
-                                    &toy_estimator};
+  static constexpr std::array table{&auto_estimator, &beam_estimator, &march_estimator,
+                                    &path_estimator, &toy_estimator};
   return table;
 }
 

@@ -1,0 +1,99 @@
+// What "auto" chooses, and that it renders what the estimator of that name does.
+#include "estimators/choose_estimator.h"
+
+#include "support/make_field.h"
+#include "support/test_frame.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+/// A lumpy box of so many mean free paths, seen whole.
+MemoryScene lumps(double depth) {
+  MemoryScene scene;
+  const DensityField field = closed_field({16, 16, 16}, [](int i, int j, int k) {
+    return (i / 2 + j / 2 + k / 2) % 2 == 0 ? 1.9 : 0.1;
+  });
+  VolumeSettings& volume = scene.add(field, box_map({16, 16, 16}, Vec3d(-0.5), Vec3d(0.5)));
+  volume.extinction = depth;
+  volume.albedo = Rgb(0.98f);
+  scene.look({0.4, 0.3, 3}, {0, 0, 0}, 22, 64, 64);
+  return scene;
+}
+
+MemoryScene thin_under_a_sky() {
+  MemoryScene scene = lumps(0.4);
+  scene.add_light(LightType::environment);
+  return scene;
+}
+
+MemoryScene deep_in_the_sun() {
+  MemoryScene scene = lumps(40);
+  scene.add_light(LightType::distant).direction = {-0.7, -0.5, -0.5};
+  return scene;
+}
+
+class Choice {
+public:
+  explicit Choice(const MemoryScene& scene) : frame_(scene), path_plan_(path_plan(scene)) {
+    const EstimatorInput input = frame_.input();
+    choice = choose_estimator(input, input.with(path_plan_));
+  }
+
+private:
+  static RenderPlan path_plan(MemoryScene scene) {
+    scene.scene.render.estimator = EstimatorType::path;
+    return TestFrame(scene).plan;
+  }
+  TestFrame frame_;
+  RenderPlan path_plan_;
+
+public:
+  EstimatorChoice choice;
+};
+
+TEST(ChooseEstimator, PathInAThinMediumUnderAnEvenSky) {
+  // A walk that leaves the medium finds the same light wherever it goes.
+  const Choice thin(thin_under_a_sky());
+  EXPECT_EQ(thin.choice.type.name, "path");
+  EXPECT_EQ(thin.choice.beam, nullptr);
+}
+
+TEST(ChooseEstimator, BeamInADeepMediumInTheSun) {
+  const Choice deep(deep_in_the_sun());
+  EXPECT_EQ(deep.choice.type.name, "beam");
+  ASSERT_NE(deep.choice.beam, nullptr);
+}
+
+TEST(ChooseEstimator, BeamWhereThereAreNoPhotons) {
+  MemoryScene dark = deep_in_the_sun();
+  dark.scene.volumes[0].albedo = Rgb(0);
+  EXPECT_EQ(Choice(dark).choice.type.name, "beam");
+}
+
+TEST(ChooseEstimator, IsTheSameForAnyNumberOfThreads) {
+  const MemoryScene scene = deep_in_the_sun();
+  const std::string reason = Choice(scene).choice.reason;
+  for (const int threads : {1, 3})
+    tbb::task_arena(threads).execute([&] { EXPECT_EQ(Choice(scene).choice.reason, reason); });
+}
+
+/// The estimator that comes with the choice has its pilot behind it, and draws no other numbers.
+TEST(ChooseEstimator, GivesBeamsOwnPicture) {
+  const MemoryScene scene = deep_in_the_sun();
+  Choice made(scene);
+  const TestFrame frame(scene);
+  PassImage chosen, named;
+  RenderStatistics statistics;
+  made.choice.beam->render_pass(0, chosen, statistics);
+  frame.estimator()->render_pass(0, named, statistics);
+  for (std::size_t i = 0; i < named.direct.size(); ++i)
+    ASSERT_EQ(chosen.total(i), named.total(i)) << "pixel " << i;
+}
+
+} // namespace
+} // namespace vdbeam

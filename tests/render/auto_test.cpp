@@ -1,0 +1,68 @@
+// render.estimator = "auto": a render is that of the estimator that was chosen, and says which.
+#include "report/report.h"
+#include "support/temp_folder.h"
+#include "vdbeam/render.h"
+#include "vdbeam/scene_file.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+Scene small_cloud(EstimatorType estimator) {
+  Scene scene = load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", 1,
+                           {"image.width=64", "image.height=36", "render.passes=2"});
+  scene.render.estimator = estimator;
+  return scene;
+}
+
+/// As thin as haze, under a sky that is the same all around.
+Scene haze(EstimatorType estimator) {
+  Scene scene = small_cloud(estimator);
+  scene.volumes[0].extinction = 0.2;
+  scene.lights = {LightSettings{.type = LightType::environment}};
+  return scene;
+}
+
+void expect_same_picture(const Image& a, const Image& b) {
+  for (const char* channel : {"R", "G", "B"})
+    EXPECT_EQ(a.find(channel)->data, b.find(channel)->data) << channel;
+}
+
+TEST(Auto, IsTheDefault) {
+  EXPECT_EQ(RenderSettings().estimator.name, "auto");
+}
+
+TEST(Auto, RendersACloudByBeam) {
+  const Scene scene = small_cloud(EstimatorType::automatic);
+  const RenderResult result = render(scene);
+  EXPECT_EQ(result.plan.estimator, "beam");
+  EXPECT_EQ(report_json(scene, result, {})["plan"]["estimator"], "beam");
+  EXPECT_FALSE(result.plan.unbiased);
+  expect_same_picture(result.image, render(small_cloud(EstimatorType::beam)).image);
+}
+
+TEST(Auto, RendersHazeUnderAnEvenSkyByPath) {
+  const RenderResult result = render(haze(EstimatorType::automatic));
+  EXPECT_EQ(result.plan.estimator, "path");
+  EXPECT_FALSE(result.plan.choice.empty());
+  EXPECT_TRUE(result.plan.unbiased);
+  EXPECT_EQ(result.statistics.bias_rays, 0u);
+  expect_same_picture(result.image, render(haze(EstimatorType::path)).image);
+}
+
+TEST(Auto, PartsOfAFrameChooseAlike) {
+  test::TempFolder folder;
+  std::vector<std::string> parts;
+  for (const int pass : {0, 1}) {
+    FrameSettings frame;
+    frame.pass_range = PassRange{pass, pass};
+    frame.partial = folder.file(std::to_string(pass) + ".exr");
+    render(haze(EstimatorType::automatic), frame);
+    parts.push_back(frame.partial);
+  }
+  expect_same_picture(merge_partials(parts), render(haze(EstimatorType::automatic)).image);
+}
+
+} // namespace
+} // namespace vdbeam
