@@ -77,7 +77,8 @@ const EstimatorKind beam_estimator{
     .keys = beam_keys,
     .make = make_beam};
 
-// It reads the keys of beam, and is planned as beam; choose_estimator tells before the first pass which of the two renders.
+// It reads the keys of beam, and is planned as beam; choose_estimator tells before the first pass
+// which of the two renders.
 const EstimatorKind auto_estimator{
     .name = "auto",
     .help = "beam, or path where a short trial tells that its error would be smaller",

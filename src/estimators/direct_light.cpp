@@ -13,25 +13,40 @@ namespace {
 ///
 /// Light that is scattered once has all of the scene's phase function p, but on its way before and
 /// after it goes straight on at every further scattering by the peak, as in the medium without it:
-/// the TMS method (Nakajima and Tanaka 1988). From a light that surrounds the medium, which the
-/// peak scatters into the ray from all along it, that would count light of the peak more than once;
-/// what the peak scatters counts at the last such scattering only, seen through the scene's own
-/// medium.
+/// the TMS method (Nakajima and Tanaka 1988). Light that only the peak scatters would then count
+/// once for each of those scatterings, all from where the light is. Towards the light, and from a
+/// light that surrounds the medium, it counts at the last of them only, seen through the scene's
+/// own medium, and comes spread by those before (Aureole).
 struct SinglePhase {
   const PhaseFunction& phase; ///< the scene's
   const PhaseFunction* gathered = nullptr;
+  const Aureole* aureole = nullptr;
   float forward = 0;    ///< share of the peak that was taken out
   Rgb through{1, 1, 1}; ///< transmittance to the point of what was taken out
 
   float evaluate(float cosine) const { return phase.evaluate(cosine); }
   /// What a scattering weighs, of which the medium at hand counts the share 1 - forward.
-  Rgb weight(bool surrounds, float p, float cosine) const {
-    if (!gathered)
-      return Rgb(p);
-    if (!surrounds)
-      return Rgb(p / (1 - forward));
-    const float smooth = gathered->evaluate(cosine);
-    return Rgb(smooth) + through * (p / (1 - forward) - smooth);
+  /// `taken_out`: optical depth of the peak on the way from the light.
+  Rgb weight(bool surrounds, float p, float cosine, const Rgb& taken_out) const {
+    const float tms = p / (1 - forward);
+    const float share = surrounds ? 1 : share_of_aureole(cosine);
+    if (!(forward > 0) || share == 0)
+      return Rgb(tms);
+    const float smooth = gathered->evaluate(cosine), peak = p - (1 - forward) * smooth;
+    Rgb spread(aureole->spread(peak, cosine, taken_out.x));
+    for (int c = 1; c < 3; ++c)
+      if (taken_out[c] != taken_out.x)
+        spread[c] = aureole->spread(peak, cosine, taken_out[c]);
+    const Rgb exact = Rgb(smooth) + through * spread * (1 / (1 - forward));
+    return exact * share + Rgb(tms * (1 - share));
+  }
+
+private:
+  /// Up to 45 degrees all; from 75 on, where TMS is as good or better, nothing (docs/decisions.md).
+  static float share_of_aureole(float cosine) {
+    constexpr float begin = 0.2588f, end = 0.7071f;
+    const float x = std::clamp((cosine - begin) / (end - begin), 0.0f, 1.0f);
+    return x * x * (3 - 2 * x);
   }
 };
 
@@ -50,8 +65,10 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
     const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
     if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
       ++shadow_rays;
-      sum += sample.value * (single.weight(surrounds, p, cosine) * mis) *
-             exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance});
+      Rgb taken_out;
+      const Rgb through =
+          exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance}, &taken_out);
+      sum += sample.value * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
     }
   }
   if (light.is_delta())
@@ -61,9 +78,12 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
   const LightHit hit = light.emitted_radiance({{point, wi}});
   if (max_component(hit.radiance) > 0 && unoccluded(world, Vec3d(point), wi, hit.distance)) {
     const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
-    const Rgb mis = single.weight(surrounds, p, cosine) / (p + light.incident_pdf(point, wi));
     ++shadow_rays;
-    sum += hit.radiance * mis * exact_transmittance(world.medium, {{point, wi}, 0, hit.distance});
+    Rgb taken_out;
+    const Rgb through =
+        exact_transmittance(world.medium, {{point, wi}, 0, hit.distance}, &taken_out);
+    sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
+           (p + light.incident_pdf(point, wi));
   }
   return sum;
 }
@@ -213,7 +233,7 @@ private:
       through += peak.excess[v] * cursor.tau(v);
     for (int c = 0; c < 3; ++c)
       through[c] = std::exp(-through[c]);
-    return {peak.original[i], &peak.gathered[i], peak.forward[i], through};
+    return {peak.original[i], &peak.gathered[i], &peak.aureoles[i], peak.forward[i], through};
   }
 
   const World& world_;

@@ -2,6 +2,7 @@
 
 #include "math/affine.h"
 #include "math/ray.h"
+#include "phase/aureole.h"
 #include "phase/phase_function.h"
 #include "transport/grid_traversal.h"
 #include "transport/majorant_grid.h"
@@ -52,6 +53,7 @@ struct PeakTakenOut {
   std::vector<PhaseFunction> original; ///< per phase function: the scene's
   std::vector<PhaseFunction> gathered; ///< smooth rests, under which photons are gathered
   std::vector<float> forward;          ///< shares of the peaks
+  std::vector<Aureole> aureoles;       ///< about narrow lights, by the peaks
   /// Per volume: the scene's extinction, of its strongest channel, over the one at hand.
   std::vector<float> extinction_factor;
   /// Per volume: optical depth that was taken out, by channel, per optical depth at hand.

@@ -4,9 +4,10 @@
 
 namespace vdbeam {
 
-Rgb exact_transmittance(const Medium& medium, const Segment& segment) {
+Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken_out) {
   Rgb tau{0, 0, 0};
-  for (const Volume& volume : medium.volumes) {
+  for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+    const Volume& volume = medium.volumes[v];
     // The weakest channel decides when nothing is left in any.
     const float weakest =
         std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
@@ -16,6 +17,8 @@ Rgb exact_transmittance(const Medium& medium, const Segment& segment) {
       return sum * weakest < opaque_optical_depth;
     });
     tau += volume.channel_scale * sum;
+    if (taken_out && medium.peak)
+      *taken_out += medium.peak->excess[v] * sum;
   }
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }

@@ -127,8 +127,9 @@ void for_each_piece(const Volume& volume, const Segment& segment, const Visit& v
   }
 }
 
-/// Transmittance per channel, by the exact integral.
-Rgb exact_transmittance(const Medium& medium, const Segment& segment);
+/// Transmittance per channel, by the exact integral. `taken_out`: where given, optical depth of the
+/// forward peak that was taken out of the medium (PeakTakenOut).
+Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken_out = nullptr);
 
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
 /// little is left, a collision at a time. Requires a medium that is not empty.

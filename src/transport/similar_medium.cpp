@@ -43,6 +43,7 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order) {
     any = any || truncated.forward > 0;
     peak->original.push_back(phase);
     peak->forward.push_back(truncated.forward);
+    peak->aureoles.push_back(truncated.forward > 0 ? Aureole(phase, truncated, order) : Aureole());
     peak->gathered.push_back(truncated.gathered);
     phase = truncated.traced;
   }
