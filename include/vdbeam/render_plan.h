@@ -17,6 +17,7 @@ enum class Stage {
   photons,
   photon_importance,
   kernel_pilot,
+  surface_photons,
   map,
   neighbours,
   photon_directions,
@@ -31,7 +32,7 @@ enum class Stage {
   bias,
   environment
 };
-inline constexpr std::size_t stage_count = 19;
+inline constexpr std::size_t stage_count = 20;
 
 /// A stage as plans and reports call it, e.g. "photon importance".
 constexpr std::string_view stage_name(Stage stage) {
@@ -41,6 +42,7 @@ constexpr std::string_view stage_name(Stage stage) {
                                                             "photons",
                                                             "photon importance",
                                                             "kernel pilot",
+                                                            "surface photons",
                                                             "map",
                                                             "neighbours",
                                                             "photon directions",

@@ -3,20 +3,31 @@
 #include "vdbeam/vec.h"
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace vdbeam {
 
 /// What a surface looks like; docs/physics.md has the models.
-enum class MaterialType { diffuse, mirror, conductor, dielectric, emissive, holdout };
+enum class MaterialType {
+  diffuse,
+  mirror,
+  conductor,
+  dielectric,
+  emissive,
+  holdout,
+  shadow_catcher
+};
 
 struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
-  Rgb albedo{0.8f, 0.8f, 0.8f}; ///< diffuse: share of the light that is reflected, per channel
-  Rgb reflectance{1, 1, 1};     ///< mirror, conductor: the same at normal incidence
-  double roughness = 0.2;       ///< conductor: alpha of GGX is its square, in [0, 1]
-  double ior = 1.5;             ///< dielectric: index of refraction inside over that outside
-  Rgb absorption{0, 0, 0};      ///< dielectric: absorption coefficient inside [1/world]
+  /// diffuse, shadow_catcher: share of the light that is reflected, per channel
+  Rgb albedo{0.8f, 0.8f, 0.8f};
+  Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
+  /// conductor, dielectric: alpha of GGX is its square, in [0, 1]; none: `roughness_of`.
+  std::optional<double> roughness;
+  double ior = 1.5;        ///< dielectric: index of refraction inside over that outside
+  Rgb absorption{0, 0, 0}; ///< dielectric: absorption coefficient inside [1/world]
   /// dielectric: volumes end at its surface. What absorbs is solid in any case.
   bool solid = false;
   Rgb radiance{1, 1, 1};  ///< emissive [W m^-2 sr^-1]
@@ -27,10 +38,26 @@ inline bool shines(const MaterialSettings& material) {
   return material.type == MaterialType::emissive && max_component(material.radiance) > 0;
 }
 
+/// Roughness where none is given: metal is a little rough, glass is smooth.
+inline double roughness_of(const MaterialSettings& material) {
+  return material.roughness.value_or(material.type == MaterialType::conductor ? 0.2 : 0);
+}
+
 /// Sends light on in single directions only.
 inline bool is_specular(const MaterialSettings& material) {
-  return material.type == MaterialType::mirror || material.type == MaterialType::dielectric ||
-         (material.type == MaterialType::conductor && material.roughness == 0);
+  return material.type == MaterialType::mirror ||
+         (material.type == MaterialType::dielectric && roughness_of(material) == 0) ||
+         (material.type == MaterialType::conductor && roughness_of(material) == 0);
+}
+
+/// Photons on it tell what light it reflects: it spreads light.
+inline bool takes_photons(const MaterialSettings& material) {
+  return ((material.type == MaterialType::diffuse ||
+           material.type == MaterialType::shadow_catcher) &&
+          max_component(material.albedo) > 0) ||
+         (material.type == MaterialType::dielectric && !is_specular(material)) ||
+         (material.type == MaterialType::conductor && !is_specular(material) &&
+          max_component(material.reflectance) > 0);
 }
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the

@@ -57,11 +57,11 @@ constexpr std::string_view beam_keys[] = {
     "min_radius", "max_radius", "alpha",  "thinning", "keep",         "bias_rays", "forward_peak"};
 
 constexpr StageSet beam_stages = {
-    Stage::surfaces,          Stage::photons,      Stage::photon_importance,
-    Stage::kernel_pilot,      Stage::map,          Stage::neighbours,
-    Stage::photon_directions, Stage::photon_color, Stage::depth_profiles,
-    Stage::emission,          Stage::shadow_rays,  Stage::spectral_tracking,
-    Stage::beam_query,        Stage::bias};
+    Stage::surfaces,          Stage::photons,           Stage::surface_photons,
+    Stage::photon_importance, Stage::kernel_pilot,      Stage::map,
+    Stage::neighbours,        Stage::photon_directions, Stage::photon_color,
+    Stage::depth_profiles,    Stage::emission,          Stage::shadow_rays,
+    Stage::spectral_tracking, Stage::beam_query,        Stage::bias};
 
 std::unique_ptr<Estimator> make_beam(const EstimatorInput& input) {
   return std::make_unique<BeamEstimator>(input);

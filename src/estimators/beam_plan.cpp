@@ -126,7 +126,7 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
 PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   PhotonPlan plan = default_photon_plan(input);
   if (!input.plan.needs(Stage::photons))
-    return plan;
+    return plan_photons(input);
   TracedPhotons pilot = trace_pilot(input, plan);
   if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
     follow_view(input, std::move(pilot), plan);

@@ -129,10 +129,10 @@ const EstimatorKind march_estimator{
     .help =
         "conventional photon mapping: the same photons, gathered step by step along camera rays",
     .unbiased = false,
-    .stages = {Stage::surfaces, Stage::photons, Stage::map, Stage::neighbours,
-               Stage::photon_directions, Stage::photon_color, Stage::depth_profiles,
-               Stage::emission, Stage::shadow_rays, Stage::spectral_tracking, Stage::march,
-               Stage::bias},
+    .stages = {Stage::surfaces, Stage::photons, Stage::surface_photons, Stage::map,
+               Stage::neighbours, Stage::photon_directions, Stage::photon_color,
+               Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
+               Stage::march, Stage::bias},
     .keys = march_keys,
     .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
       return std::make_unique<MarchEstimator>(input);

@@ -1,6 +1,7 @@
 #include "estimators/path.h"
 
 #include "estimators/camera_ray.h"
+#include "estimators/caught_shadow.h"
 #include "estimators/direct_light.h"
 #include "estimators/estimator_table.h"
 #include "estimators/pixel_tiles.h"
@@ -90,18 +91,22 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   image.indirect[target] += light.indirect / static_cast<float>(walks_per_ray_);
 }
 
-/// What leaves the surface at which a camera ray ends, the mean over a few paths.
-Rgb PathEstimator::surface_radiance(const CameraRay& camera, const RngKey& key,
-                                    std::size_t pixel) const {
+/// What is seen of the surface at which a camera ray ends, the mean over a few paths.
+SeenSurface PathEstimator::seen_surface(const CameraRay& camera, const RngKey& key,
+                                        std::size_t pixel) const {
   if (!camera.hit)
     return {};
   constexpr int paths = 4;
+  if (input_.world.surfaces->material(*camera.hit).is_shadow_catcher()) {
+    Rng rng(key, RngStage::surface, pixel * paths);
+    return {{}, caught_shadow(input_.world, camera, rng)};
+  }
   Rgb sum;
   for (int i = 0; i < paths; ++i) {
     Rng rng(key, RngStage::surface, pixel * paths + static_cast<std::size_t>(i));
     sum += scene_tracer_->from_surface(*camera.hit, camera.ray().direction, rng);
   }
-  return sum / static_cast<float>(paths);
+  return {sum / static_cast<float>(paths)};
 }
 
 /// One pixel: what is seen through the medium and single scattering from the depth profile, the
@@ -113,7 +118,7 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   DepthProfile& profile = scratch.profile;
   profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff));
   shade_profile(input_, camera, profile, target, image, scratch.counts.emission_rays,
-                surface_radiance(camera, key, pixel));
+                seen_surface(camera, key, pixel));
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;

@@ -3,6 +3,7 @@
 #include "estimators/camera_ray.h"
 #include "estimators/estimator.h"
 #include "estimators/path_walk.h"
+#include "estimators/profile_shading.h"
 #include "estimators/scene_tracer.h"
 #include "transport/distance_sampling.h"
 
@@ -35,7 +36,7 @@ private:
              std::size_t target, PassImage& image) const;
   void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
                   const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
-  Rgb surface_radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
+  SeenSurface seen_surface(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
   void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
 
   EstimatorInput input_;

@@ -34,14 +34,13 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   narrow_map_ = {};
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
-  if (!input_.plan.needs(Stage::photons)) {
+  if (!input_.plan.needs(Stage::photons) && !input_.plan.needs(Stage::surface_photons)) {
     map_ = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
     return;
   }
   count_pilot(statistics);
   // Only the boundary's correction depends on the camera.
-  make_map(pass_settings(input_.in(world), plan_, static_cast<std::uint64_t>(pass)), radii,
-           statistics);
+  make_maps(pass, radii, statistics);
   const Stopwatch watch;
   clear_of_surfaces(world, map_);
   if (input_.blur_pixels)
@@ -58,17 +57,23 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
     statistics.bytes_per_photon = map_.bytes() / map_.size();
 }
 
-/// The map of these photons: an earlier frame's, or a new one.
-void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
-                          RenderStatistics& statistics) {
-  if (const auto kept = input_.photons ? input_.photons->find(settings, radii) : nullptr) {
+/// The maps of a pass: an earlier frame's, or new ones. Those of surfaces are not kept.
+void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatistics& statistics) {
+  const EstimatorInput input = input_.in(*world_);
+  PhotonPassSettings settings = pass_settings(input, plan_, static_cast<std::uint64_t>(pass));
+  const bool on_surfaces = input_.plan.needs(Stage::surface_photons);
+  if (on_surfaces)
+    settings.surface_photon_lights = lights_of_surfaces(input);
+  if (!input_.plan.needs(Stage::photons))
+    settings.store_probability = 0;
+  PhotonCache* cache = on_surfaces ? nullptr : input_.photons;
+  if (const auto kept = cache ? cache->find(settings, radii) : nullptr) {
     map_ = kept->copy();
     ++statistics.maps_reused;
     return;
   }
   const Stopwatch watch;
-  const World& world = *world_;
-  TracedPhotons traced = trace_photons(world, settings);
+  TracedPhotons traced = trace_photons(*world_, settings);
   statistics.trace += watch.seconds();
   const bool stopped = input_.stopped();
   if (stopped)
@@ -81,8 +86,12 @@ void PhotonPass::make_map(const PhotonPassSettings& settings, const RadiusSettin
   statistics.order += map_.times().order;
   statistics.radii += map_.times().radii;
   statistics.build += map_.times().build;
-  if (input_.photons && !stopped)
-    input_.photons->keep(settings, radii, map_);
+  if (on_surfaces)
+    surface_map_ =
+        PhotonMap::build(std::move(traced.surface_photons), input_.photon_channels(),
+                         surface_radii(input, plan_, pass), input_.settings.kernel_shape);
+  if (cache && !stopped)
+    cache->keep(settings, radii, map_);
 }
 
 } // namespace vdbeam

@@ -23,6 +23,7 @@ public:
   void release() {
     map_ = {};
     narrow_map_ = {};
+    surface_map_ = {};
   }
 
   const PhotonPlan& plan() const { return plan_; }
@@ -31,12 +32,13 @@ public:
   const PhotonMap& map() const { return map_; }
   /// The same photons in narrower kernels; empty where nobody asked for the blur.
   const PhotonMap& narrow_map() const { return narrow_map_; }
+  /// Photons on surfaces: what mirrors, glass and the medium send on to them.
+  const PhotonMap& surface_map() const { return surface_map_; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
   const World& world() const { return *world_; }
 
 private:
-  void make_map(const PhotonPassSettings& settings, const RadiusSettings& radii,
-                RenderStatistics& statistics);
+  void make_maps(int pass, const RadiusSettings& radii, RenderStatistics& statistics);
   void count_pilot(RenderStatistics& statistics);
 
   EstimatorInput input_;
@@ -46,7 +48,7 @@ private:
   ShadowLattices shadows_;
   KernelShare boundary_share_;
   bool pilot_counted_ = false;
-  PhotonMap map_, narrow_map_;
+  PhotonMap map_, narrow_map_, surface_map_;
 };
 
 } // namespace vdbeam

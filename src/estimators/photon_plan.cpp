@@ -25,6 +25,9 @@ constexpr double most_paths_per_photon = 16;
 constexpr double direct_per_path = 12;
 constexpr int most_direct_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
+/// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
+constexpr float surface_neighbours = 64;
+constexpr double widest_surface_kernel = 0.05;
 
 /// The nearest power of the fourth root of two: the same number, and so the same photons, for
 /// frames that differ a little.
@@ -62,6 +65,7 @@ bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sam
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;
+  const bool on_surfaces = input.plan.needs(Stage::surface_photons);
   DepthProfile profile;
   int hits = 0;
   for (int y = 0; y < samples && !input.stopped(); ++y)
@@ -70,7 +74,7 @@ double count_hits(const EstimatorInput& input) {
           input.world, camera,
           camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
       profile.build(input.world.medium, ray.segment, 0.5f);
-      hits += !profile.empty();
+      hits += !profile.empty() || (ray.hit && on_surfaces);
     }
   return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
 }
@@ -118,6 +122,8 @@ PhotonPlan plan_photons(const EstimatorInput& input) {
   if (input.plan.needs(Stage::photons)) {
     trace_pilot(input, plan);
     plan.paths = choose_paths(input, plan.stored_per_path);
+  } else if (input.plan.needs(Stage::surface_photons)) {
+    plan.paths = choose_paths(input, 1);
   }
   return plan;
 }
@@ -143,6 +149,13 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   return settings;
 }
 
+std::vector<bool> lights_of_surfaces(const EstimatorInput& input) {
+  std::vector<bool> lights = input.shadow_ray_lights();
+  for (std::size_t i = 0; i < input.plan.shadow_ray_lights.size(); ++i)
+    lights[i] = lights[i] || input.world.lights.traits(i).wants_shadow_rays;
+  return lights;
+}
+
 float radius_scale(int pass, double alpha) {
   double squared = 1;
   for (int i = 1; i <= pass; ++i)
@@ -166,6 +179,15 @@ RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& pl
     radii.max_radius = infinity;
   if (settings.max_radius > 0)
     radii.max_radius = static_cast<float>(settings.max_radius) * scale;
+  return radii;
+}
+
+RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
+  RadiusSettings radii = radius_settings(input, plan, pass);
+  radii.neighbours = surface_neighbours;
+  if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
+    radii.max_radius = static_cast<float>(widest_surface_kernel *
+                                          length(input.world.surfaces->set->bounds().size()));
   return radii;
 }
 

@@ -52,7 +52,8 @@ PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// rays to send and how many photons to store, everywhere with the same probability. Only for a
 /// render that needs photons. The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
-/// Camera rays of a pass that meet the medium, from a coarse sample.
+/// Camera rays of a pass that meet the medium, or a surface where photons lie on these, from a
+/// coarse sample.
 double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
@@ -63,9 +64,15 @@ inline constexpr double stored_per_path_aim = 4;
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1;
 
+/// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
+/// bring, since a path from a surface may not meet it.
+std::vector<bool> lights_of_surfaces(const EstimatorInput& input);
+
 /// How photons of a pass are traced and stored.
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
                                  std::uint64_t pass);
+/// The kernels of photons on surfaces.
+RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass);
 /// How wide the kernels of a pass are.
 RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass);
 /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).

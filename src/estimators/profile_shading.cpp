@@ -18,11 +18,17 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-/// A surface is opaque, but for one that stands for what is composited later.
-void end_at_surface(const World& world, const CameraRay& camera, std::size_t pixel,
+/// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
+/// the share that is in shadow is.
+void end_at_surface(const World& world, const CameraRay& camera, std::size_t pixel, float shadow,
                     PassImage& image) {
-  if (world.surfaces->material(*camera.hit).is_holdout())
+  const Material& material = world.surfaces->material(*camera.hit);
+  if (material.is_holdout())
     return;
+  if (material.is_shadow_catcher()) {
+    image.opacity[pixel] += (1 - image.opacity[pixel]) * shadow;
+    return;
+  }
   image.depth[pixel] +=
       (1 - image.opacity[pixel]) * static_cast<float>(camera.hit->t / world.space.scale);
   image.opacity[pixel] = 1;
@@ -54,7 +60,7 @@ Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
 
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   std::uint64_t& emission_rays, const Rgb& surface) {
+                   std::uint64_t& emission_rays, const SeenSurface& surface) {
   const World& world = input.world;
   Rgb tr(1);
   if (!profile.empty()) {
@@ -69,8 +75,8 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   }
   image.background[pixel] = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
-    image.background[pixel] += tr * surface;
-    end_at_surface(world, camera, pixel, image);
+    image.background[pixel] += tr * surface.radiance;
+    end_at_surface(world, camera, pixel, surface.shadow, image);
   }
   if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;

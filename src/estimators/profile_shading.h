@@ -6,12 +6,18 @@
 
 namespace vdbeam {
 
+/// What a camera ray sees of the surface at which it ends.
+struct SeenSurface {
+  Rgb radiance = {}; ///< that leaves it against the ray
+  float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+};
+
 /// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
-/// through the medium, and emission. `surface`: radiance of the surface at which the ray ends, if
-/// it does. Counts a ray in `emission_rays` where emission was integrated.
+/// through the medium, and emission. `surface`: what is seen of the surface at which the ray ends,
+/// if it does. Counts a ray in `emission_rays` where emission was integrated.
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   std::uint64_t& emission_rays, const Rgb& surface = {});
+                   std::uint64_t& emission_rays, const SeenSurface& surface = {});
 
 /// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
 /// is `tr`. `camera`: only those that the camera sees.

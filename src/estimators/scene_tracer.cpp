@@ -22,6 +22,8 @@ struct SceneTracer::Path {
   Vec3f direction;
   float pdf = 0;              ///< with which the direction was drawn; 0: nothing else draws it
   bool skips_sampled = false; ///< light straight from lights with shadow rays counts elsewhere
+  bool all_light = true;      ///< else such light counts on surfaces that it reaches straight only
+  bool from_surface = false;  ///< the present flight begins at one that is no mirror and no glass
   int scatterings = 0;        ///< in the medium
   ScatteredLight light;       ///< so far; from a surface all is in `direct`
   LengthRoulette length;
@@ -29,12 +31,15 @@ struct SceneTracer::Path {
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
 
   Ray ray() const { return {Vec3f(origin), direction}; }
+  /// Light straight from lights with shadow rays counts elsewhere on the present flight.
+  bool leaves_out_sampled() const { return skips_sampled || (!all_light && !from_surface); }
   void add(const Rgb& value) { (scatterings > 1 ? light.indirect : light.direct) += value; }
 };
 
-Rgb SceneTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng) const {
+Rgb SceneTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                              bool all_light) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
-  Path path{rng, Rgb(1), {}, direction, 0, false, 0, {}, {}, {}, 1};
+  Path path{rng, Rgb(1), {}, direction, 0, false, all_light, false, 0, {}, {}, {}, 1};
   path.add(vertex.emitted());
   path.throughput *= vertex.absorbed();
   if (bounce(path, vertex))
@@ -47,7 +52,8 @@ ScatteredLight SceneTracer::from_medium(const Ray& ray, const Rgb& throughput,
   const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
   const Vec3f direction = phase.sample(ray.direction, u_lobe, u, v);
   const float pdf = phase.evaluate(dot(ray.direction, direction));
-  Path path{rng, throughput, Vec3d(ray.origin), direction, pdf, true, 1, {}, {}, {}, 1};
+  Path path{rng, throughput, Vec3d(ray.origin), direction, pdf, true, true, false, 1, {}, {},
+            {},  1};
   follow(path);
   return path.light;
 }
@@ -71,7 +77,7 @@ void SceneTracer::follow(Path& path) const {
     const int light = vertex.light();
     if (light >= 0 && max_component(vertex.emitted()) > 0) {
       const bool sampled = shadow_rays_[static_cast<std::size_t>(light)];
-      float weight = sampled && path.skips_sampled ? 0 : 1;
+      float weight = sampled && path.leaves_out_sampled() ? 0 : 1;
       if (sampled && path.pdf > 0)
         weight *= path.pdf / (path.pdf + world_.lights[static_cast<std::size_t>(light)].surface_pdf(
                                              *met, path.direction));
@@ -121,13 +127,15 @@ bool SceneTracer::collide(Path& path, const Collision& hit) const {
       world_.medium.phases[static_cast<std::size_t>(hit.volume->phase_index)];
   const Vec3f point = path.ray().at(hit.t);
   ++path.scatterings;
-  path.add(lights_at_collision(path, point, phase, path.rng) * path.throughput);
+  if (path.all_light)
+    path.add(lights_at_collision(path, point, phase, path.rng) * path.throughput);
   const float u_lobe = path.rng.uniform(), u = path.rng.uniform(), v = path.rng.uniform();
   const Vec3f direction = phase.sample(path.direction, u_lobe, u, v);
   path.pdf = phase.evaluate(dot(path.direction, direction));
   path.origin = Vec3d(point);
   path.direction = direction;
   path.skips_sampled = false;
+  path.from_surface = false;
   return true;
 }
 
@@ -148,6 +156,7 @@ bool SceneTracer::bounce(Path& path, const SurfaceVertex& vertex) const {
   path.origin = vertex.hit().leave(next.wi);
   path.direction = next.wi;
   path.skips_sampled = false;
+  path.from_surface = !material.is_specular();
   return true;
 }
 
@@ -212,7 +221,7 @@ Rgb SceneTracer::lights_met(const Path& path, float t_end) const {
   Rgb sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     const Light& light = world_.lights[i];
-    if (light.is_delta() || light.surface() >= 0 || (path.skips_sampled && shadow_rays_[i]))
+    if (light.is_delta() || light.surface() >= 0 || (path.leaves_out_sampled() && shadow_rays_[i]))
       continue;
     float weight = 1;
     if (shadow_rays_[i] && path.pdf > 0)

@@ -26,7 +26,10 @@ public:
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces) {}
 
   /// Radiance that leaves a surface against `direction`, along which a camera ray meets it.
-  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng) const;
+  /// `all_light`: or without what reaches its last diffuse or rough surface from a light with
+  /// shadow rays by way of mirrors, smooth glass or the medium, which photons on the surface bring.
+  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                   bool all_light = true) const;
 
   /// Light of a path that scatters first at ray.origin, coming along ray.direction, but for what
   /// comes there straight from lights with shadow rays (direct_light).

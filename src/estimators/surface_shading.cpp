@@ -1,5 +1,6 @@
 #include "estimators/surface_shading.h"
 
+#include "estimators/caught_shadow.h"
 #include "estimators/direct_light.h"
 #include "estimators/profile_shading.h"
 #include "transport/emission.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr int paths_per_ray = 4;
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
+/// Of photons that arrive along the surface itself nobody knows the side.
+constexpr float least_cosine = 1e-5f;
 
 /// The ray that leaves a surface, up to the next.
 CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& direction) {
@@ -29,33 +32,29 @@ CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& directi
   return ray;
 }
 
-/// Lights that shadow rays look for from surfaces: whatever the medium's photons bring, a path from
-/// a surface may not meet a light.
-std::vector<bool> lights_of_surfaces(const EstimatorInput& input) {
-  std::vector<bool> lights = input.shadow_ray_lights();
-  for (std::size_t i = 0; i < input.plan.shadow_ray_lights.size(); ++i)
-    lights[i] = lights[i] || input.world.lights.traits(i).wants_shadow_rays;
-  return lights;
-}
-
 } // namespace
 
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                                GatherAlong gather)
     : world_(photons.world()), photons_(photons), gather_(std::move(gather)),
       tracer_(world_, lights_of_surfaces(input), input.settings.max_bounces),
+      photons_on_surfaces_(input.plan.needs(Stage::surface_photons)),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
 
-Rgb SurfaceShading::radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel,
-                             RenderStatistics& counts) const {
+SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+                                 RenderStatistics& counts) const {
   if (!camera.hit)
     return {};
+  if (world_.surfaces->material(*camera.hit).is_shadow_catcher()) {
+    Rng rng(key, RngStage::surface, pixel * paths_per_ray);
+    return {{}, caught_shadow(world_, camera, rng)};
+  }
   Rgb sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
     sum += follow(*camera.hit, camera.ray().direction, rng, counts);
   }
-  return sum / static_cast<float>(paths_per_ray);
+  return {sum / static_cast<float>(paths_per_ray)};
 }
 
 Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
@@ -68,7 +67,7 @@ Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
   for (;;) {
     const SurfaceVertex vertex(*world_.surfaces, hit, direction);
     if (!vertex.material().is_specular() || vertex.material().is_black())
-      return sum + tracer_.from_surface(hit, direction, rng) * throughput;
+      return sum + at_end(vertex, direction, rng) * throughput;
     const MaterialSample next = vertex.sample(Carried::radiance, rng);
     throughput *= vertex.absorbed() * next.weight;
     refraction *= next.refraction;
@@ -90,6 +89,22 @@ Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
     hit = *ray.hit;
     direction = next.wi;
   }
+}
+
+/// What leaves a surface that is no mirror and no glass.
+Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const {
+  const bool by_photons = photons_on_surfaces_ && vertex.material().takes_photons();
+  Rgb sum = tracer_.from_surface(vertex.hit(), direction, rng, !by_photons);
+  if (!by_photons)
+    return sum;
+  const Rgb absorbed = vertex.absorbed();
+  photons_.surface_map().visit_disc(
+      Vec3f(vertex.hit().position), [&](const Vec3f& from, const Rgb& irradiance) {
+        const float cosine = std::abs(dot(from, vertex.hit().normal));
+        if (cosine > least_cosine)
+          sum += vertex.evaluate(-from) * irradiance * absorbed / cosine;
+      });
+  return sum;
 }
 
 /// Light that the medium scatters into the ray: once, by shadow rays; else by photons.

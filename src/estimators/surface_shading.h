@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/photon_pass.h"
+#include "estimators/profile_shading.h"
 #include "estimators/scene_tracer.h"
 
 #include <functional>
@@ -16,19 +17,20 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 /// Behind mirrors and smooth glass the camera ray goes on, reflected or refracted at random, and
 /// photons are gathered along each of its segments: light that glass throws into the medium is seen
 /// there too. At any other surface path tracing goes on (SceneTracer), which finds all of its light
-/// but what only specular surfaces bring from lights that no ray can meet.
+/// but what mirrors, glass or the medium, met first of all, send on from lights: caustics, the glow
+/// of fog about a lamp, and whatever becomes of them. Photons that lie on the surface bring these.
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.
   SurfaceShading(const EstimatorInput& input, const PhotonPass& photons, GatherAlong gather);
 
-  /// Radiance that leaves the surface at which the camera ray ends, against the ray: the mean over
-  /// a few random paths.
-  Rgb radiance(const CameraRay& camera, const RngKey& key, std::size_t pixel,
-               RenderStatistics& counts) const;
+  /// What is seen of the surface at which the camera ray ends: the mean over a few random paths.
+  SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+                   RenderStatistics& counts) const;
 
 private:
   Rgb follow(SurfaceHit hit, Vec3f direction, Rng& rng, RenderStatistics& counts) const;
+  Rgb at_end(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
   Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
                    RenderStatistics& counts) const;
 
@@ -36,6 +38,7 @@ private:
   const PhotonPass& photons_;
   GatherAlong gather_;
   SceneTracer tracer_;
+  bool photons_on_surfaces_;
   float cutoff_;
 };
 

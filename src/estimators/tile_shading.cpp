@@ -35,7 +35,7 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
 } // namespace
 
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
-               const TileRays::PixelRay& ray, const Rgb& surface, const RngKey& key,
+               const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
                std::size_t target, PassImage& image, RenderStatistics& counts) {
   const World& world = photons.world();
   counts.depth_profiles += ray.profile.empty() ? 0 : 1;
@@ -70,8 +70,9 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     scratch.statistics.profile += watch.restart();
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
-        const Rgb surface =
-            surfaces ? surfaces->radiance(ray.camera, key, ray.pixel, scratch.statistics) : Rgb();
+        const SeenSurface surface =
+            surfaces ? surfaces->seen(ray.camera, key, ray.pixel, scratch.statistics)
+                     : SeenSurface();
         shade_ray(input, photons, ray, surface, key, ray.pixel, image, scratch.statistics);
       }
     scratch.statistics.direct += watch.restart();

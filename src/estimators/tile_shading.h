@@ -17,7 +17,7 @@ struct TileScratch {
 /// what is seen through the medium. Goes to pixel `target` of `image`. `surface`: radiance of the
 /// surface at which the ray ends, if it does.
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
-               const TileRays::PixelRay& ray, const Rgb& surface, const RngKey& key,
+               const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
                std::size_t target, PassImage& image, RenderStatistics& counts);
 
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,

@@ -17,16 +17,39 @@ double another(float u) {
 } // namespace
 
 SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface,
-                           const Rgb& radiance, bool two_sided)
-    : surfaces_(std::move(surfaces)), surface_(surface), radiance_(radiance),
-      two_sided_(two_sided) {
+                           const Rgb& radiance, bool two_sided, const SolidAngleShape& seen_as)
+    : surfaces_(std::move(surfaces)), surface_(surface), radiance_(radiance), two_sided_(two_sided),
+      seen_as_(seen_as) {
   const auto index = static_cast<std::size_t>(surface);
   center_ = surfaces_->bounds(index).center();
   power_ = Rgb(Vec3d(radiance) *
                (surfaces_->area(index) * static_cast<double>(pi) * (two_sided ? 2 : 1)));
 }
 
+std::optional<SolidAnglePoint> SurfaceLight::sample_solid_angle(const Vec3d& point, float u,
+                                                                float v) const {
+  const auto x = static_cast<double>(u), y = static_cast<double>(v);
+  if (const auto* ball = std::get_if<Ball>(&seen_as_))
+    return ball->sample(point, x, y);
+  if (const auto* rectangle = std::get_if<Rectangle>(&seen_as_))
+    return rectangle->sample(point, x, y);
+  return std::nullopt;
+}
+
+double SurfaceLight::solid_angle(const Vec3d& point) const {
+  if (const auto* ball = std::get_if<Ball>(&seen_as_))
+    return ball->solid_angle(point);
+  const auto* rectangle = std::get_if<Rectangle>(&seen_as_);
+  return rectangle ? rectangle->solid_angle(point) : 0;
+}
+
 IncidentSample SurfaceLight::sample_incident(const Vec3f& point, float u, float v) const {
+  if (const auto seen = sample_solid_angle(Vec3d(point), u, v)) {
+    const Vec3f wi(seen->wi);
+    const auto pdf = static_cast<float>(seen->pdf);
+    const bool lit = shines(Vec3f(seen->normal), -wi);
+    return {wi, static_cast<float>(seen->distance), lit ? radiance_ / pdf : Rgb(), pdf};
+  }
   const SurfacePoint on =
       surfaces_->sample(static_cast<std::size_t>(surface_), static_cast<double>(u), another(u),
                         static_cast<double>(v));
@@ -47,6 +70,8 @@ float SurfaceLight::surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const {
   const float cosine = std::abs(dot(hit.normal, wi)), t = static_cast<float>(hit.t);
   if (!(cosine > 0) || !shines(hit.normal, -wi))
     return 0;
+  if (const double whole = solid_angle(hit.position - Vec3d(wi) * hit.t); whole > 0)
+    return static_cast<float>(1 / whole);
   return surfaces_->sample_pdf(static_cast<std::size_t>(surface_), hit.normal) * t * t / cosine;
 }
 

@@ -2,17 +2,20 @@
 
 #include "geometry/surface_set.h"
 #include "lights/light.h"
+#include "lights/solid_angle.h"
 
 #include <memory>
 
 namespace vdbeam {
 
 /// A surface that shines: the same radiance in all directions, from its front or from both sides.
-/// Points on it are drawn uniformly by area; its photons leave by Lambert's cosine law.
+/// Points on balls and rectangles are drawn uniformly by solid angle, on others by area; photons
+/// leave by Lambert's cosine law.
 class SurfaceLight final : public Light {
 public:
+  /// `seen_as`: what the surface is, where it can be drawn by solid angle.
   SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface, const Rgb& radiance,
-               bool two_sided);
+               bool two_sided, const SolidAngleShape& seen_as = {});
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
   float incident_pdf(const Vec3f& point, const Vec3f& wi) const override;
@@ -26,6 +29,9 @@ public:
   float surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const override;
 
 private:
+  std::optional<SolidAnglePoint> sample_solid_angle(const Vec3d& point, float u, float v) const;
+  /// What it fills as seen from `point`; 0 where points on it are drawn by area.
+  double solid_angle(const Vec3d& point) const;
   bool shines(const Vec3f& normal, const Vec3f& away) const {
     return two_sided_ ? dot(normal, away) != 0 : dot(normal, away) > 0;
   }
@@ -34,6 +40,7 @@ private:
   int surface_;
   Rgb radiance_;
   bool two_sided_;
+  SolidAngleShape seen_as_;
   Vec3d center_;
   Rgb power_;
 };

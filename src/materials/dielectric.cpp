@@ -38,6 +38,9 @@ private:
 } // namespace
 
 std::unique_ptr<Material> make_dielectric(const MaterialSettings& settings, double scale) {
+  // Facets of index 1 bend no light, whatever their slope.
+  if (roughness_of(settings) > 0 && std::abs(settings.ior - 1) > 1e-4)
+    return make_rough_dielectric(settings, scale);
   return std::make_unique<Dielectric>(settings, scale);
 }
 

@@ -1,35 +1,6 @@
-#include "materials/material.h"
-
-#include <cmath>
+#include "materials/diffuse.h"
 
 namespace vdbeam {
-namespace {
-
-/// Lambert's law on both sides: f = albedo / pi.
-class Diffuse final : public Material {
-public:
-  explicit Diffuse(const MaterialSettings& settings)
-      : Material(MaterialType::diffuse), albedo_(settings.albedo) {}
-
-  Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const override {
-    return wo.z * wi.z > 0 ? albedo_ * (std::abs(wi.z) / pi) : Rgb();
-  }
-  float pdf(const Vec3f& wo, const Vec3f& wi) const override {
-    return wo.z * wi.z > 0 ? std::abs(wi.z) / pi : 0;
-  }
-  MaterialSample sample(const Vec3f& wo, Carried, Rng& rng) const override {
-    const float u = rng.uniform_positive(), phi = 2 * pi * rng.uniform();
-    const float cosine = std::sqrt(u), sine = std::sqrt(std::max(0.0f, 1 - u));
-    const Vec3f wi{sine * std::cos(phi), sine * std::sin(phi), std::copysign(cosine, wo.z)};
-    return {wi, albedo_, cosine / pi, 1};
-  }
-  bool is_black() const override { return max_component(albedo_) <= 0; }
-
-private:
-  Rgb albedo_;
-};
-
-} // namespace
 
 std::unique_ptr<Material> make_diffuse(const MaterialSettings& settings, double) {
   return std::make_unique<Diffuse>(settings);

@@ -35,6 +35,9 @@ public:
   virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
   /// `evaluate` is 0 for all directions: shadow rays are no use.
   virtual bool is_specular() const { return false; }
+  /// Photons that arrive tell what light it reflects: it spreads light so far that some of them
+  /// come from where it shows it from.
+  virtual bool takes_photons() const { return !is_specular() && !is_black(); }
   /// Nothing leaves it but what it emits.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back.
@@ -48,6 +51,8 @@ public:
   virtual bool is_solid() const { return false; }
   /// Light ends here and the picture is transparent.
   virtual bool is_holdout() const { return false; }
+  /// The camera sees nothing of it but shadows.
+  virtual bool is_shadow_catcher() const { return false; }
   MaterialType type() const { return type_; }
 
 protected:
@@ -73,7 +78,9 @@ std::unique_ptr<Material> make_diffuse(const MaterialSettings&, double scale);
 std::unique_ptr<Material> make_mirror(const MaterialSettings&, double scale);
 std::unique_ptr<Material> make_conductor(const MaterialSettings&, double scale);
 std::unique_ptr<Material> make_dielectric(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_rough_dielectric(const MaterialSettings&, double scale);
 std::unique_ptr<Material> make_emissive(const MaterialSettings&, double scale);
+std::unique_ptr<Material> make_shadow_catcher(const MaterialSettings&, double scale);
 std::unique_ptr<Material> make_holdout(const MaterialSettings&, double scale);
 
 } // namespace vdbeam

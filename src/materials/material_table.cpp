@@ -12,6 +12,7 @@ const std::vector<MaterialKind>& material_table() {
       {MaterialType::dielectric, "dielectric", make_dielectric},
       {MaterialType::emissive, "emissive", make_emissive},
       {MaterialType::holdout, "holdout", make_holdout},
+      {MaterialType::shadow_catcher, "shadow_catcher", make_shadow_catcher},
   };
   return table;
 }

@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <bit>
 #include <cmath>
 
 namespace vdbeam {
@@ -59,6 +60,51 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedP
   };
   tbb::parallel_for(std::size_t(0), blocks.block_count(), fill_block);
   return blocks;
+}
+
+/// K_2D(d, r) r^2 at s = d^2 / r^2 < 1 (docs/physics.md, "Kernels").
+float disc_kernel(KernelShape shape, float s) {
+  switch (shape) {
+  case KernelShape::constant:
+    return 1 / pi;
+  case KernelShape::epanechnikov:
+    return 2 / pi * (1 - s);
+  case KernelShape::biweight:
+    return 3 / pi * (1 - s) * (1 - s);
+  case KernelShape::fourth_order:
+    return 6 / pi * (1 - s) * (1 - 2 * s);
+  }
+  return 0;
+}
+
+/// Of the boxes of a group, those that a point is so near to that a sphere in them may hold it.
+std::uint32_t boxes_around(const Vec3f& point, const BoxGroup& group) {
+  std::uint32_t mask = 0;
+  for (unsigned i = 0; i < 8; ++i) {
+    float square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float outside =
+          std::max({group.lower[axis][i] - point[axis], point[axis] - group.upper[axis][i], 0.0f});
+      square += outside * outside;
+    }
+    if (square <= group.radius[i] * group.radius[i])
+      mask |= 1u << i;
+  }
+  return mask;
+}
+
+/// Calls `visit(block)` for the blocks with such boxes, below a group of `level`.
+template <class Visit>
+void visit_blocks(const BlockTree& tree, std::size_t level, std::size_t group, const Vec3f& point,
+                  const Visit& visit) {
+  for (std::uint32_t mask = boxes_around(point, tree.levels[level][group]); mask != 0;
+       mask &= mask - 1) {
+    const std::size_t child = 8 * group + static_cast<unsigned>(std::countr_zero(mask));
+    if (level > 0)
+      visit_blocks(tree, level - 1, child, point, visit);
+    else
+      visit(child);
+  }
 }
 
 void divide_photon(PhotonBlocks& blocks, std::size_t photon, float divisor) {
@@ -200,6 +246,31 @@ QueryCounts PhotonMap::query(BeamTile& tile) const {
 
 QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const {
   return vdbeam::query_ray(data_->view(), profile, radiance);
+}
+
+void PhotonMap::visit_disc(
+    const Vec3f& point,
+    const std::function<void(const Vec3f& direction, const Rgb& power)>& visit) const {
+  const PhotonBlocks& blocks = data_->blocks;
+  const BlockTree& tree = data_->tree;
+  if (tree.levels.empty())
+    return;
+  visit_blocks(tree, tree.levels.size() - 1, 0, point, [&](std::size_t block) {
+    const std::size_t begin = block * PhotonBlocks::width;
+    const std::size_t end = std::min(begin + PhotonBlocks::width, blocks.count());
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3f to = point - blocks.position(i);
+      const float radius = blocks.at(i, PhotonBlocks::radius), area = radius * radius;
+      const float square = dot(to, to);
+      if (!(square < area))
+        continue;
+      const float kernel = disc_kernel(data_->shape, square / area) / area;
+      const int from = blocks.direction_field(), step = blocks.channels() > 1 ? 1 : 0;
+      const Rgb power(blocks.at(i, PhotonBlocks::power), blocks.at(i, PhotonBlocks::power + step),
+                      blocks.at(i, PhotonBlocks::power + 2 * step));
+      visit({blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)}, power * kernel);
+    }
+  });
 }
 
 QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,

@@ -103,6 +103,12 @@ public:
                           Rgb* first_flight = nullptr) const;
   bool has_first_flights() const; ///< photons that come straight from a light
 
+  /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. `visit`
+  /// is given the way each travels and its power times the disc kernel, K_2D(d, r): irradiance.
+  /// Requires photons with directions.
+  void visit_disc(const Vec3f& point,
+                  const std::function<void(const Vec3f& direction, const Rgb& power)>& visit) const;
+
 private:
   struct Data;
   std::unique_ptr<Data> data_;

@@ -96,6 +96,14 @@ private:
                       {render.store != PhotonStore::fluence, "it needs fluence photons"},
                       {needs_.specular, "photons are stored evenly"},
                       {true, "photons do not depend on the view"}}));
+    add(Stage::surface_photons, needs_.surface_photons,
+        first_reason(
+            {{needs_.surface_photons,
+              "mirrors, glass and the medium send light on to surfaces: photons bring it"},
+             {!needs_.specular, "no mirror and no glass"},
+             {!runs(Stage::surface_photons),
+              fmt::format("the {} estimator shoots no photons", estimator_.name)},
+             {true, "mirrors or glass send no light of a lamp on to surfaces that spread it"}}));
   }
 
   void add_map() {

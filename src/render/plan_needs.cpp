@@ -52,6 +52,7 @@ void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator,
   needs.colored = needs.colored || !is_grey(material.albedo) || !is_grey(material.reflectance) ||
                   !is_grey(material.absorption) || !is_grey(material.radiance);
   needs.specular = needs.specular || is_specular(material);
+  needs.receiver = needs.receiver || takes_photons(material);
   if (shines(material))
     needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||
                                       direct != DirectLight::photons);
@@ -83,6 +84,13 @@ PlanNeeds find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes
       needs.glows || !scene.surfaces.empty() ||
       std::find(needs.shadow_ray_lights.begin(), needs.shadow_ray_lights.end(), false) !=
           needs.shadow_ray_lights.end();
+  // A constant sky needs none: whichever way light comes from it, paths meet it.
+  bool lit_by_lamps = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                  [](const SurfaceSettings& s) { return shines(s.material); });
+  for (const LightSettings& light : scene.lights)
+    lit_by_lamps = lit_by_lamps || light_kind(light.type).wants_shadow_rays(light);
+  needs.surface_photons =
+      estimator.shoots_photons() && needs.specular && needs.receiver && lit_by_lamps;
   needs.photons = estimator.shoots_photons() && needs.scatters && (bounces > 1 || first_flight);
   return needs;
 }

@@ -155,7 +155,9 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
     scene.render.passes = usual_passes;
   if (scene.volumes.empty())
     scene.notes.push_back(path_ + ": there is no [[volume]]: only lights are rendered");
-  if (scene.lights.empty() && !scene.glows())
+  const bool shining = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                   [](const SurfaceSettings& s) { return shines(s.material); });
+  if (scene.lights.empty() && !scene.glows() && !shining)
     scene.notes.push_back(path_ + ": there is no [[light]]: the picture will be black");
   for (Scene& moment : scene.moments)
     moment.render = scene.render;

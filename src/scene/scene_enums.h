@@ -96,13 +96,14 @@ struct EnumNames<SurfaceShape> {
 };
 template <>
 struct EnumNames<MaterialType> {
-  static constexpr std::array<std::pair<MaterialType, std::string_view>, 6> table{
+  static constexpr std::array<std::pair<MaterialType, std::string_view>, 7> table{
       {{MaterialType::diffuse, "diffuse"},
        {MaterialType::mirror, "mirror"},
        {MaterialType::conductor, "conductor"},
        {MaterialType::dielectric, "dielectric"},
        {MaterialType::emissive, "emissive"},
-       {MaterialType::holdout, "holdout"}}};
+       {MaterialType::holdout, "holdout"},
+       {MaterialType::shadow_catcher, "shadow_catcher"}}};
 };
 template <>
 struct EnumNames<DirectLight> {

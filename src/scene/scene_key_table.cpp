@@ -102,13 +102,16 @@ void add_mesh(KeyTable& table) {
   using M = MaterialSettings;
   table.section(SceneSection::material);
   table.add("type", &M::type, R"(what it is made of; material = "NAME" is short for it)");
-  table.add("albedo", &M::albedo, "share of light reflected").within(0, 1).types({"diffuse"});
+  table.add("albedo", &M::albedo, "share of light reflected")
+      .within(0, 1)
+      .types({"diffuse", "shadow_catcher"});
   table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
       .within(0, 1)
       .types({"mirror", "conductor"});
-  table.add("roughness", &M::roughness, "0: a mirror; the width of the GGX lobe is its square")
+  table.add("roughness", &M::roughness, "0: smooth; the width of the GGX lobe is its square")
       .within(0, 1)
-      .types({"conductor"});
+      .types({"conductor", "dielectric"})
+      .absent("0.2 of a conductor, 0 of a dielectric");
   table.add("ior", &M::ior, "index inside over that outside").within(0.1, 10).types({"dielectric"});
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")

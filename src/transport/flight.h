@@ -16,12 +16,13 @@ struct Flight {
   Segment segment; ///< of the present flight, from the last scattering on
   int bounces = 0;
   LengthRoulette length;
-  std::optional<MediumTracker> tracker;
+  std::optional<MediumTracker> tracker; ///< none where there is no medium
 
   /// Begins a flight along `along`, before its first collision.
   void start(const Medium& medium, const Segment& along) {
     segment = along;
-    tracker.emplace(medium, along);
+    if (!medium.empty())
+      tracker.emplace(medium, along);
   }
   /// Draws the direction of travel after scattering from the phase function.
   Vec3f sample_direction(const PhaseFunction& phase) {
@@ -34,7 +35,7 @@ struct Flight {
 /// segment first, `walker.leave(walk)` says whether it goes on. False where it does not.
 template <class Walk, class Walker>
 bool advance_flight(Walk& walk, Walker& walker) {
-  while (!walk.tracker->advance(walk.rng))
+  while (!walk.tracker || !walk.tracker->advance(walk.rng))
     if (!walker.leave(walk))
       return false;
   return true;

@@ -26,6 +26,7 @@ struct LightPath : Flight {
   // Among surfaces:
   std::optional<SurfaceHit> end; ///< of the present flight
   bool met_surface = false;
+  bool for_surfaces = false; ///< stored at surfaces: of surface_photon_lights
   SurfaceRoulette surfaces;
 };
 
@@ -88,8 +89,11 @@ public:
       store(path, hit, path.throughput * hit.volume->albedo);
     if (!absorption_roulette(hit.volume->albedo, path.throughput, path.rng))
       return false;
-    ++path.bounces;
-    if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
+    if (++path.bounces == 1 && !path.met_surface)
+      path.for_surfaces = lights_surfaces(path.light);
+    // What has been scattered as often as it may counts no more but where it meets a surface.
+    if (settings_.max_bounces &&
+        path.bounces >= *settings_.max_bounces + (path.for_surfaces ? 1 : 0))
       return false;
     const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
     const Vec3f point = path.segment.ray.at(hit.t);
@@ -99,9 +103,9 @@ public:
     return paths > 0 && scatter(path, phase, point);
   }
   /// What leaves the scene is lost. At a surface the path goes on by its material.
-  bool leave(LightPath& path) const { return path.end && reflect(path); }
+  bool leave(LightPath& path) { return path.end && reflect(path); }
 
-  PhotonList photons;
+  PhotonList photons, surface_photons;
   std::uint64_t collisions = 0;
 
 private:
@@ -149,11 +153,15 @@ private:
   }
 
   /// False where the path ends at the surface.
-  bool reflect(LightPath& path) const {
+  bool reflect(LightPath& path) {
     const SurfaceVertex vertex(*world_.surfaces, *path.end, path.segment.ray.direction);
     if (vertex.material().is_black() ||
         !absorption_roulette(vertex.absorbed(), path.throughput, path.rng))
       return false;
+    if (path.for_surfaces && vertex.material().takes_photons())
+      store_at(vertex, path);
+    else if (!path.met_surface && path.bounces == 0)
+      path.for_surfaces = vertex.material().is_specular() && lights_surfaces(path.light);
     const MaterialSample next = vertex.sample(Carried::power, path.rng);
     if (!absorption_roulette(next.weight, path.throughput, path.rng) ||
         !path.surfaces.survive(path.throughput, path.rng))
@@ -165,6 +173,8 @@ private:
 
   /// Shadow rays find what comes straight from their light, and nothing that a surface sent on.
   bool may_store(const LightPath& path) const {
+    if (settings_.max_bounces && path.bounces >= *settings_.max_bounces)
+      return false;
     return path.bounces > 0 || path.met_surface || !settings_.skip_first_flight[path.light];
   }
 
@@ -180,7 +190,8 @@ private:
     const EmittedPhoton photon = world_.lights[light].emit(start.place, rng);
     const Rgb flux =
         photon.flux / static_cast<float>(static_cast<double>(light_paths) * start.density);
-    if (!(max_component(flux) > 0) || (settings_.max_bounces && *settings_.max_bounces <= 0))
+    if (!(max_component(flux) > 0) ||
+        (settings_.max_bounces && *settings_.max_bounces <= 0 && !lights_surfaces(light)))
       return;
     path.emplace(rng, flux);
     path->light = light;
@@ -188,6 +199,16 @@ private:
     begin_flight(*path, Vec3d(photon.ray.origin), photon.ray.direction);
     if (!advance_flight(*path, *this))
       path.reset();
+  }
+
+  bool lights_surfaces(std::size_t light) const {
+    return !settings_.surface_photon_lights.empty() && settings_.surface_photon_lights[light];
+  }
+
+  void store_at(const SurfaceVertex& vertex, const LightPath& path) {
+    surface_photons.position.emplace_back(vertex.hit().position);
+    surface_photons.direction.push_back(path.segment.ray.direction);
+    surface_photons.power.push_back(path.throughput);
   }
 
   /// Rate of tentative collisions at the point: the majorants of overlapping volumes add.
@@ -257,23 +278,23 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
   const auto& [paths, store, store_probability, store_probability_by_cell, truncation_order,
-               skip_first_flight, max_bounces, directions, albedo, guide, path_numbers, key, stop] =
-      a;
+               skip_first_flight, max_bounces, surface_photon_lights, directions, albedo, guide,
+               path_numbers, key, stop] = a;
   static_cast<void>(stop);
   const bool same_cells = store_probability_by_cell == b.store_probability_by_cell ||
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
   const bool same_guide = guide == b.guide || (guide && b.guide && *guide == *b.guide);
   return same_cells && same_guide && path_numbers == b.path_numbers && paths == b.paths &&
-         store == b.store && store_probability == b.store_probability &&
-         truncation_order == b.truncation_order && skip_first_flight == b.skip_first_flight &&
-         max_bounces == b.max_bounces && directions == b.directions && albedo == b.albedo &&
-         key == b.key;
+         surface_photon_lights == b.surface_photon_lights && store == b.store &&
+         store_probability == b.store_probability && truncation_order == b.truncation_order &&
+         skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
+         directions == b.directions && albedo == b.albedo && key == b.key;
 }
 
 TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings) {
   TracedPhotons pass;
-  if (world.medium.empty() || settings.paths == 0)
+  if ((world.medium.empty() && settings.surface_photon_lights.empty()) || settings.paths == 0)
     return pass;
   const std::vector<std::uint64_t> first =
       share_paths(world.lights, settings.paths, settings.guide.get());
@@ -297,8 +318,10 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
   pass.photons.power.reserve(stored);
   pass.photons.first_flight.reserve(stored);
   pass.photons.path.reserve(settings.path_numbers ? stored : 0);
-  for (PathTracer& tracer : tracers)
+  for (PathTracer& tracer : tracers) {
     pass.photons.append(tracer.photons);
+    pass.surface_photons.append(tracer.surface_photons);
+  }
   pass.mean_collisions =
       paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
   return pass;

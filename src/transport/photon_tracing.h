@@ -13,7 +13,7 @@ namespace vdbeam {
 struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
-  /// With which probability a storable collision is stored, its power divided by it; > 0.
+  /// With which probability a storable collision is stored, its power divided by it; 0: none is.
   float store_probability = 1;
   /// Where given, in place of `store_probability`: the probability by cell, each > 0.
   std::shared_ptr<const CellTables> store_probability_by_cell;
@@ -22,6 +22,10 @@ struct PhotonPassSettings {
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;
+  /// Per light: what it sends to surfaces by way of mirrors, of smooth glass or of the medium, one
+  /// of which is the first that it meets, is stored where it arrives at other surfaces, whatever
+  /// happened to it in between. Empty: nothing is.
+  std::vector<bool> surface_photon_lights;
   bool directions = true; ///< false: no phase function needs them
   Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
   /// Where given: what decides where light paths begin, end and split.
@@ -43,6 +47,7 @@ bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
 struct TracedPhotons {
   PhotonList photons;         ///< power divided by the number of paths already
+  PhotonList surface_photons; ///< of `surface_photon_lights`; power is flux [W]; with directions
   double mean_collisions = 0; ///< storable collisions per path, before thinning
 };
 

@@ -145,6 +145,26 @@ void add_volume_lights(World& world) {
       world.lights.add(std::make_unique<VolumeLight>(emitter));
 }
 
+/// What a surface is, where lights can be drawn by solid angle: a sphere that is not stretched, or
+/// a quad with perpendicular edges.
+SolidAngleShape solid_angle_shape(const SurfaceSettings& settings, const RenderSpace& space) {
+  const Affine map = space.map().after(Affine::from_matrix(settings.transform));
+  const Vec3d x = map.vector({1, 0, 0}), y = map.vector({0, 1, 0}), z = map.vector({0, 0, 1});
+  const auto perpendicular = [](const Vec3d& a, const Vec3d& b) {
+    return std::abs(dot(a, b)) < 1e-9 * length(a) * length(b);
+  };
+  if (settings.shape == SurfaceShape::quad && perpendicular(x, y)) {
+    const Vec3d normal = normalize(cross(x, y)) * std::copysign(1.0, map.determinant());
+    return Rectangle{map.translation - x - y, x * 2.0, y * 2.0, normal};
+  }
+  const double radius = length(x), most = 1e-9 * radius;
+  const bool round = perpendicular(x, y) && perpendicular(y, z) && perpendicular(z, x) &&
+                     std::abs(length(y) - radius) < most && std::abs(length(z) - radius) < most;
+  if (settings.shape == SurfaceShape::sphere && round)
+    return Ball{map.translation, radius};
+  return {};
+}
+
 /// Adds every surface that shines as a light.
 void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& world) {
   auto surfaces = std::make_shared<Surfaces>(*world.surfaces);
@@ -154,7 +174,8 @@ void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& wor
       continue;
     surfaces->lights[i] = static_cast<int>(world.lights.size());
     world.lights.add(std::make_unique<SurfaceLight>(surfaces->set, static_cast<int>(i),
-                                                    material.radiance, material.two_sided),
+                                                    material.radiance, material.two_sided,
+                                                    solid_angle_shape(settings[i], world.space)),
                      {settings[i].visible, false});
   }
   world.surfaces = std::move(surfaces);

@@ -22,8 +22,9 @@ std::unique_ptr<Material> diffuse(const Rgb& albedo) {
   settings.albedo = albedo;
   return make_material(settings, 1);
 }
-std::unique_ptr<Material> glass(double ior) {
+std::unique_ptr<Material> glass(double ior, double roughness = 0) {
   MaterialSettings settings;
+  settings.roughness = roughness;
   settings.type = MaterialType::dielectric;
   settings.ior = ior;
   return make_material(settings, 1);
@@ -61,6 +62,63 @@ TEST(Materials, sampled_and_evaluated_reflectance_agree) {
       test::expect_same_mean(furnace(*diffuse(Rgb(0.7f)), wo, Carried::power),
                              uniform_furnace(*diffuse(Rgb(0.7f)), wo));
     }
+}
+
+/// Rough glass reflects and refracts; the bright peak of transmission takes the most samples.
+TEST(Materials, rough_glass_is_sampled_as_it_is_evaluated) {
+  for (const float side : {1.0f, -1.0f})
+    for (const double angle : {0.0, 40.0, 75.0})
+      for (const double roughness : {0.6, 0.9}) {
+        const auto rough = glass(1.5, roughness);
+        test::expect_same_mean(furnace(*rough, at_angle(angle, side), Carried::radiance),
+                               uniform_furnace(*rough, at_angle(angle, side)));
+      }
+}
+
+/// What facets send a second way is lost, and nothing else: little where they are smooth. Of
+/// radiance that goes in, the square of the index is taken back as it comes out.
+TEST(Materials, rough_glass_keeps_light) {
+  for (const double angle : {0.0, 30.0, 60.0})
+    for (const double ior : {0.5, 1.5, 4.0})
+      for (const float side : {1.0f, -1.0f})
+        for (const double roughness : {0.05, 0.3, 1.0}) {
+          const auto rough = glass(ior, roughness);
+          const double light = furnace(*rough, at_angle(angle, side), Carried::power).mean();
+          EXPECT_LE(light, 1 + 1e-5);
+          EXPECT_GT(light, roughness < 0.1   ? 0.99
+                           : roughness < 0.5 ? 0.8
+                                             : 0.2)
+              << angle << " " << ior << " " << side << " " << roughness;
+        }
+}
+
+/// Helmholtz reciprocity: f(a, b) / eta^2 is the same both ways (Veach 1997, 5.2).
+TEST(Materials, directions_can_be_exchanged_through_rough_glass) {
+  Rng rng({}, RngStage::test, 5);
+  int through = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const float u1 = rng.uniform(), v1 = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
+    const Vec3f a = sample_sphere(u1, v1), b = sample_sphere(u2, v2);
+    const auto rough = glass(1.5, 0.8);
+    float ab = rough->evaluate(a, b).y / std::abs(b.z);
+    const float ba = rough->evaluate(b, a).y / std::abs(a.z);
+    if (a.z * b.z < 0) // ab is of light that comes from b's side
+      ab *= a.z > 0 ? 2.25f : 1 / 2.25f;
+    EXPECT_NEAR(ab, ba, 2e-3f * (ab + ba) + 1e-6f);
+    through += a.z * b.z < 0 && ab > 0;
+  }
+  EXPECT_GT(through, 100);
+}
+
+/// As roughness goes to 0, Fresnel's share of smooth glass.
+TEST(Materials, nearly_smooth_glass_reflects_as_smooth_glass) {
+  Rng rng({}, RngStage::test, 6);
+  const auto rough = glass(1.5, 0.03);
+  const Vec3f wo = at_angle(60);
+  test::Samples reflected;
+  for (int i = 0; i < 100000; ++i)
+    reflected.add(rough->sample(wo, Carried::power, rng).wi.z > 0 ? 1 : 0);
+  test::expect_mean(reflected, 0.0891867, 1e-3);
 }
 
 TEST(Materials, nothing_gives_more_light_than_it_gets) {
@@ -128,6 +186,8 @@ TEST(Materials, directions_are_drawn_by_the_stated_density) {
   for (const double angle : {10.0, 60.0}) {
     EXPECT_GT(sampling_p_value(*diffuse(Rgb(1)), at_angle(angle)), 1e-4);
     EXPECT_GT(sampling_p_value(*conductor(0.7), at_angle(angle)), 1e-4) << angle;
+    EXPECT_GT(sampling_p_value(*glass(1.5, 0.8), at_angle(angle)), 1e-4) << angle;
+    EXPECT_GT(sampling_p_value(*glass(1.5, 0.9), at_angle(angle, -1)), 1e-4) << angle;
     EXPECT_GT(sampling_p_value(*conductor(1), at_angle(angle, -1)), 1e-4) << angle;
   }
 }

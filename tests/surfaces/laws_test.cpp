@@ -50,6 +50,14 @@ TEST(SurfaceFurnace, mirror_glass_and_white_vanish) {
   }
 }
 
+/// A shell without thickness: light goes in and comes out through rough facets.
+TEST(SurfaceFurnace, nearly_smooth_rough_glass) {
+  MaterialSettings material = white_glass();
+  material.roughness = 0.1;
+  const PassMeans means = render_passes(furnace(material, true), EstimatorType::path, 64);
+  expect_mean(means.total[0], 1, 0.005);
+}
+
 TEST(SurfaceFurnace, glass_of_index_1_changes_nothing) {
   MemoryScene scene = furnace(white_glass(1), true);
   scene.scene.lights.clear();

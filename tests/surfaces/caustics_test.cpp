@@ -1,0 +1,118 @@
+// Light that mirrors and glass send on to other surfaces, which shadow rays do not find.
+#include "support/render_passes.h"
+#include "support/surface_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using test::expect_mean;
+using test::expect_power;
+using test::MemoryScene;
+using test::PassMeans;
+using test::render_passes;
+using namespace test::surfaces;
+
+constexpr double albedo = 0.6, intensity = 4;
+
+MaterialSettings grey() {
+  MaterialSettings material;
+  material.albedo = Rgb(static_cast<float>(albedo));
+  return material;
+}
+
+/// A floor at z = 0, of which the camera sees the middle, from -0.15 to 0.15.
+MemoryScene floor_from_above() {
+  MemoryScene scene;
+  add_surface(scene, SurfaceShape::quad, scaled(1), grey());
+  scene.scene.render.photons = 20000;
+  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.15 / 1000) * 180 / M_PI, 16, 16);
+  return scene;
+}
+
+void add_point_light(MemoryScene& scene, const Vec3d& position) {
+  LightSettings& light = scene.add_light(LightType::point);
+  light.position = position;
+  light.intensity = Rgb(static_cast<float>(intensity));
+}
+
+/// The mean radiance of what the camera sees of the floor, lit by a point light, by quadrature.
+double lit_floor(const Vec3d& light) {
+  constexpr int steps = 200;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const Vec3d to =
+          light - Vec3d{0.3 * ((i + 0.5) / steps - 0.5), 0.3 * ((j + 0.5) / steps - 0.5), 0};
+      sum += light.z / std::pow(dot(to, to), 1.5);
+    }
+  return albedo / M_PI * intensity * sum / (steps * steps);
+}
+
+class Caustics : public ::testing::TestWithParam<EstimatorType> {};
+
+/// Glass of index 1 stops shadow rays but bends no light: photons bring all of it.
+TEST_P(Caustics, glass_of_index_1_casts_no_shadow) {
+  MemoryScene scene = floor_from_above();
+  MaterialSettings glass = of_type(MaterialType::dielectric);
+  glass.ior = 1;
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.3), {0, 0, 0.5}), glass).visible = false;
+  add_point_light(scene, {0, 0, 1.5});
+  const double expected = lit_floor({0, 0, 1.5});
+  const PassMeans means = render_passes(scene, GetParam(), 32);
+  expect_power(means.total[0], 0.01 * expected);
+  expect_mean(means.total[0], expected, 0.01 * expected);
+}
+
+/// The same by way of fog, with light that the fog scatters before and after the glass: as without.
+TEST_P(Caustics, in_fog) {
+  const auto floor = [&](bool glass) {
+    MemoryScene scene = floor_from_above();
+    scene.add_box({-1, -1, 0}, {1, 1, 1.2}).extinction = 0.7;
+    MaterialSettings material = of_type(MaterialType::dielectric);
+    material.ior = 1;
+    if (glass)
+      add_surface(scene, SurfaceShape::sphere, moved(scaled(0.3), {0, 0, 0.5}), material).visible =
+          false;
+    add_point_light(scene, {0, 0, 1.5});
+    return render_passes(scene, GetParam(), 32).background[0];
+  };
+  const test::Samples clear = floor(false);
+  const test::Samples with_glass = floor(true);
+  expect_power(with_glass, 0.01 * clear.mean());
+  test::expect_same_mean(with_glass, clear, 0.015 * clear.mean());
+}
+
+/// A mirror beside a floor: the light that shines on the floor once more, from its image.
+TEST_P(Caustics, a_mirror_doubles_a_lamp) {
+  MemoryScene scene = floor_from_above();
+  SurfaceSettings& mirror =
+      add_surface(scene, SurfaceShape::quad, scaled(1), of_type(MaterialType::mirror));
+  mirror.transform = {0, 0, 1, -0.5, 1, 0, 0, 0, 0, 1, 0, 1.001};
+  add_point_light(scene, {0.3, 0, 1});
+  const double expected = lit_floor({0.3, 0, 1}) + lit_floor({-1.3, 0, 1});
+  const PassMeans means = render_passes(scene, GetParam(), 32);
+  expect_mean(means.total[0], expected, 0.01 * expected);
+}
+
+/// A lamp so wide that path tracing meets it through a ball of glass: region by region the same.
+TEST_P(Caustics, under_a_ball_of_glass) {
+  MemoryScene scene = floor_from_above();
+  scene.look({0, 1.2, 1.2}, {0, 0, 0}, 40, 16, 16);
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.3), {0, 0, 0.5}),
+              of_type(MaterialType::dielectric));
+  add_surface(scene, SurfaceShape::disk, moved(scaled(0.3), {0, 0, 1.5}, true), shining(10));
+  scene.scene.render.photons = 40000;
+  const PassMeans path = render_passes(scene, EstimatorType::path, 256);
+  const PassMeans mine = render_passes(scene, GetParam(), 48);
+  EXPECT_EQ(test::regions_apart(mine, path, 0.02), 0)
+      << mine.total[0].mean() << " against " << path.total[0].mean();
+}
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, Caustics,
+                         ::testing::Values(EstimatorType::beam, EstimatorType::march),
+                         [](const auto& estimator) { return std::string(estimator.param.name); });
+
+} // namespace
+} // namespace vdbeam
