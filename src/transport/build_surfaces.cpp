@@ -80,6 +80,9 @@ std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings
   }
   const double reach = static_cast<double>(length(medium.center) + medium.radius);
   surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach);
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    if (surfaces->materials[i]->is_solid())
+      surfaces->solids.push_back(surfaces->set->bounds(i));
   return surfaces;
 }
 

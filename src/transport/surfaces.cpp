@@ -2,9 +2,28 @@
 
 #include "math/sampling.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdbeam {
+
+bool Surfaces::inside_solid(SurfaceHit end, const Vec3f& direction) const {
+  for (;;) {
+    if (material(end).is_solid())
+      return dot(end.normal, direction) > 0;
+    const Vec3d& p = end.position;
+    const bool maybe = std::any_of(solids.begin(), solids.end(), [&](const Boxd& box) {
+      return p.x > box.lower.x && p.y > box.lower.y && p.z > box.lower.z && p.x < box.upper.x &&
+             p.y < box.upper.y && p.z < box.upper.z;
+    });
+    const auto next = maybe ? set->intersect(end.leave(direction), Vec3d(direction), 0,
+                                             static_cast<double>(infinity))
+                            : std::nullopt;
+    if (!next)
+      return false;
+    end = *next;
+  }
+}
 
 SurfaceVertex::SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit,
                              const Vec3f& direction)

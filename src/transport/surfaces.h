@@ -17,14 +17,19 @@ struct Surfaces {
   const Material& material(const SurfaceHit& hit) const {
     return *materials[static_cast<std::size_t>(hit.surface)];
   }
+  std::vector<Boxd> solids; ///< bounds of the surfaces inside of which there is no medium
+
   /// How far from its beginning a flight that ends there meets the medium. Within a solid, whose
-  /// surface the flight meets from the back, there is none.
+  /// surface is the next of a solid that the flight, or its continuation, meets, and from the back,
+  /// there is none.
   float medium_end(const std::optional<SurfaceHit>& end, const Vec3f& direction) const {
     if (!end)
       return infinity;
-    const bool inside = dot(end->normal, direction) > 0 && material(*end).is_solid();
-    return inside ? 0 : static_cast<float>(end->t);
+    return !solids.empty() && inside_solid(*end, direction) ? 0 : static_cast<float>(end->t);
   }
+
+private:
+  bool inside_solid(SurfaceHit end, const Vec3f& direction) const;
 };
 
 /// A path at a surface: where it came along `direction`.

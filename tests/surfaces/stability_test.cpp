@@ -62,6 +62,53 @@ TEST(SurfaceStability, a_lamp_on_a_wall) {
   test::expect_same_mean(floor_with_lamp_at(0), floor_with_lamp_at(1e-4), 1e-3);
 }
 
+/// In a solid there is no medium, also where a lamp stands in it.
+TEST(SurfaceStability, a_lamp_inside_a_solid) {
+  for (const EstimatorType& estimator : {EstimatorType::path, EstimatorType::beam}) {
+    MemoryScene scene;
+    VolumeSettings& fog = scene.add_box(Vec3d(-1), Vec3d(1));
+    fog.extinction = 2;
+    fog.albedo = Rgb(0);
+    MaterialSettings solid = glass();
+    solid.ior = 1;
+    solid.solid = true;
+    add_surface(scene, SurfaceShape::sphere, scaled(0.5), solid);
+    add_surface(scene, SurfaceShape::sphere, scaled(0.2), shining(3));
+    scene.look({0, 0, 1000}, {0, 0, 0}, 1e-3, 4, 4);
+    // Half a unit of fog before the solid, none in it.
+    expect_mean(render_passes(scene, estimator, 4).total[0], 3 * std::exp(-2 * 0.5), 1e-3);
+  }
+}
+
+/// Rays that are totally reflected for ever bring nothing, and end.
+TEST(SurfaceStability, light_that_cannot_leave_glass) {
+  MemoryScene scene;
+  scene.add_light(LightType::environment).radiance = Rgb(1);
+  MaterialSettings diamond = glass();
+  diamond.ior = 4;
+  add_surface(scene, SurfaceShape::sphere, scaled(1), diamond);
+  scene.look({0.9, 0, 0}, {0.9, 0, -1}, 10, 4, 4);
+  for (const Rgb& pixel : render_passes(scene, EstimatorType::path, 8).pixels)
+    EXPECT_EQ(max_component(pixel), 0);
+}
+
+/// Two walls in one place: the first counts, and no light comes between them.
+TEST(SurfaceStability, coplanar_walls) {
+  const auto lit = [](bool twice) {
+    MemoryScene scene;
+    scene.add_light(LightType::environment).radiance = Rgb(1);
+    MaterialSettings grey;
+    grey.albedo = Rgb(0.5f);
+    add_surface(scene, SurfaceShape::quad, scaled(1), grey);
+    if (twice)
+      add_surface(scene, SurfaceShape::quad, scaled(1), of_type(MaterialType::mirror));
+    scene.look({0, 0, 2}, {0, 0, 0}, 40, 4, 4);
+    return render_passes(scene, EstimatorType::path, 64).total[0];
+  };
+  expect_mean(lit(true), 0.5);
+  test::expect_same_mean(lit(true), lit(false));
+}
+
 /// The same scene at any scale and place gives the same picture.
 TEST(SurfaceStability, scale_and_place_do_not_matter) {
   const auto render_at = [](double scale, const Vec3d& at) {
