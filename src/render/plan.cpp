@@ -100,10 +100,9 @@ private:
         first_reason(
             {{needs_.surface_photons,
               "mirrors, glass and the medium send light on to surfaces: photons bring it"},
-             {!needs_.specular, "no mirror and no glass"},
              {!runs(Stage::surface_photons),
               fmt::format("the {} estimator shoots no photons", estimator_.name)},
-             {true, "mirrors or glass send no light of a lamp on to surfaces that spread it"}}));
+             {true, "paths find what mirrors, glass and the medium send on to surfaces"}}));
   }
 
   void add_map() {

@@ -58,6 +58,19 @@ void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator,
                                       direct != DirectLight::photons);
 }
 
+/// Light comes to surfaces in ways that paths from there find rarely: by mirrors and glass, or by a
+/// medium that a lamp stands in or near to. From a constant sky paths find all.
+bool bring_light(const Scene& scene, const PlanNeeds& needs) {
+  bool lamps = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                           [](const SurfaceSettings& s) { return shines(s.material); });
+  bool sampled = lamps;
+  for (const LightSettings& light : scene.lights) {
+    lamps = lamps || light.type == LightType::point || light.type == LightType::spot;
+    sampled = sampled || light_kind(light.type).wants_shadow_rays(light);
+  }
+  return (needs.specular && sampled) || (needs.scatters && lamps);
+}
+
 } // namespace
 
 bool PlanNeeds::shadow_rays() const {
@@ -84,13 +97,7 @@ PlanNeeds find_needs(const Scene& scene, const std::vector<VolumeFacts>& volumes
       needs.glows || !scene.surfaces.empty() ||
       std::find(needs.shadow_ray_lights.begin(), needs.shadow_ray_lights.end(), false) !=
           needs.shadow_ray_lights.end();
-  // A constant sky needs none: whichever way light comes from it, paths meet it.
-  bool lit_by_lamps = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
-                                  [](const SurfaceSettings& s) { return shines(s.material); });
-  for (const LightSettings& light : scene.lights)
-    lit_by_lamps = lit_by_lamps || light_kind(light.type).wants_shadow_rays(light);
-  needs.surface_photons =
-      estimator.shoots_photons() && needs.specular && needs.receiver && lit_by_lamps;
+  needs.surface_photons = estimator.shoots_photons() && needs.receiver && bring_light(scene, needs);
   needs.photons = estimator.shoots_photons() && needs.scatters && (bounces > 1 || first_flight);
   return needs;
 }
