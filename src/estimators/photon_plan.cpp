@@ -142,7 +142,7 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.truncation_order = world.medium.peak ? world.medium.peak->order : 0;
   // Without its peak a medium may be isotropic where the scene's is not.
   settings.directions = input.plan.needs(Stage::photon_directions) && !world.medium.isotropic();
-  if (plan.albedo_in_power && settings.store == PhotonStore::fluence)
+  if (plan.albedo_in_power && settings.store == PhotonStore::fluence && !world.medium.empty())
     settings.albedo = world.medium.volumes[0].albedo;
   settings.key = {input.settings.seed, input.frame, pass};
   settings.stop = input.stop;

@@ -30,7 +30,7 @@ albedo = {albedo}
 type = "sphere"
 scale = 0.4
 translate = [0.1, 0.5, 0.1]
-material = {{ type = "{ball}", albedo = 0 }}
+material = {ball}
 [[mesh]]
 type = "quad"
 scale = 20
@@ -69,7 +69,7 @@ class Compositing(unittest.TestCase):
         return self.file(name)
 
     def render_meshes(self, name, *options, **values):
-        values = {"cloud": SCENE.parent / "cloud.vdb", "albedo": "0.9", "ball": "diffuse", "ground": "diffuse",
+        values = {"cloud": SCENE.parent / "cloud.vdb", "albedo": "0.9", "ball": "{ type = 'diffuse', albedo = 0 }", "ground": "diffuse",
                   "ground_visible": "true", "sky": "0.3", "sky_visible": "true"} | values
         scene = Path(self.file(name + ".toml"))
         scene.write_text(MESHES.format(**values), encoding="utf-8")
@@ -110,7 +110,7 @@ class Compositing(unittest.TestCase):
                 options = ("--estimator", estimator)
                 # The ground, which the camera does not see in any, lights all three alike.
                 values = {"ground_visible": "false"}
-                element = self.render_meshes("element.exr", *options, ball="holdout", sky_visible="false", **values)
+                element = self.render_meshes("element.exr", *options, ball='"holdout"', sky_visible="false", **values)
                 plate = self.render_meshes("plate.exr", *options, "--set", "volume.0.extinction=0", **values)
                 truth = self.render_meshes("truth.exr", *options, **values)
                 self.assert_over(element, plate, truth, estimator)
