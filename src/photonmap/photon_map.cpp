@@ -1,6 +1,7 @@
 #include "photonmap/photon_map.h"
 
 #include "machine/stopwatch.h"
+#include "photonmap/clear_weight.h"
 #include "photonmap/kernel_radii.h"
 #include "photonmap/map_queries.h"
 #include "photonmap/photon_blocks.h"
@@ -167,11 +168,11 @@ void PhotonMap::keep_clear(const Clearance& clearance) {
   PhotonBlocks& blocks = data_->blocks;
   tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
     float& radius = blocks.at(i, PhotonBlocks::radius);
-    constexpr float far = 3, nearest = 0.1f, near = 0.3f; // distances in units of the radius
+    constexpr float far = clear_weights.back().ratio;
     const float clear = clearance(blocks.position(i), far * radius), ratio = clear / radius;
     if (!(ratio < far))
       return;
-    const float factor = ratio < nearest ? 0 : ratio < near ? near / (near - nearest) : 1;
+    const float factor = clear_weight(ratio);
     radius = factor > 0 ? clear / std::sqrt(1 + ratio * ratio) : 0;
     for (int c = 0; c < blocks.channels(); ++c)
       blocks.at(i, PhotonBlocks::power + c) *= factor;

@@ -108,10 +108,13 @@ void add_mesh(KeyTable& table) {
   table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
       .within(0, 1)
       .types({"mirror", "conductor"});
-  table.add("roughness", &M::roughness, "0: smooth; the width of the GGX lobe is its square")
+  table
+      .add("roughness", &M::roughness,
+           "0: smooth; the width of the GGX lobe is its square; auto: 0.2 of a conductor, 0 of a "
+           "dielectric")
       .within(0, 1)
       .types({"conductor", "dielectric"})
-      .absent("0.2 of a conductor, 0 of a dielectric");
+      .absent("auto");
   table.add("ior", &M::ior, "index inside over that outside").within(0.1, 10).types({"dielectric"});
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")
