@@ -34,6 +34,9 @@ struct ImageSettings {
   PixelFilter filter = PixelFilter::box;
   double filter_width = 0; ///< pixels; 0: automatic
   Compression compression = Compression::zip;
+  bool deep = false;        ///< a deep picture beside the flat one
+  double deep_alpha = 0.05; ///< most opacity that one of its samples adds
+  double deep_depth = 0;    ///< greatest length of a sample [world]; 0: automatic
 
   /// The picture and its overscan.
   int raster_width() const { return width + 2 * overscan; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/deep_image.h"
 #include "vdbeam/image.h"
 
 #include <string>
@@ -9,6 +10,11 @@ namespace vdbeam {
 /// Writes an EXR (ZIP, half colour, float data) under a temporary name beside `path`, syncs and
 /// renames, so that `path` is never half written. Throws FrameError (disk full, no permission).
 void write_exr(const Image& image, const std::string& path);
+
+/// Writes a deep EXR of scan lines (ZIPS, half colour, float A, Z and ZBack) in the same way, with
+/// the windows and attributes of `attributes`. Returns its size in bytes. Throws FrameError.
+std::uint64_t write_deep_exr(const DeepImage& deep, const Image& attributes,
+                             const std::string& path);
 
 /// Reads every channel of a flat EXR as float, or an RGBE .hdr as R, G, B. Throws InputError for
 /// anything that is not such a file, within bounded memory.

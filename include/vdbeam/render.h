@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/deep_image.h"
 #include "vdbeam/image.h"
 #include "vdbeam/pass_record.h"
 #include "vdbeam/pixel_region.h"
@@ -18,7 +19,8 @@ namespace vdbeam {
 
 /// Everything a render gives back.
 struct RenderResult {
-  Image image; ///< R, G, B, A and the AOVs
+  Image image;                   ///< R, G, B, A and the AOVs
+  std::optional<DeepImage> deep; ///< of the medium alone, where the scene asks for it
   std::vector<PassRecord> passes;
   RenderStatistics statistics;
   RenderPlan plan;
@@ -89,6 +91,7 @@ struct MergeSettings {
   bool allow_gaps = false;   ///< join also where passes are missing
   std::optional<int> passes; ///< passes 0 to passes - 1 must be there, and no others
   std::string partial;       ///< write the joined passes as a partial image too; empty: no
+  std::string deep;          ///< write the deep picture too, where the parts hold one; empty: no
 };
 
 /// Joins partial images of one scene, frame and region into the image of all their passes, bit for

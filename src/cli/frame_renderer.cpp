@@ -185,6 +185,7 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   }
   MergeSettings settings;
   settings.passes = loaded.scene.render.passes;
+  settings.deep = side_file(output(loaded.frame()), "deep");
   Image image = merge_partials(paths, settings);
   image.metadata["vdbeam:sceneHash"] = loaded.hash; // the parts' may have another number of passes
   if (options_.region)
@@ -215,6 +216,9 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     } catch (const FrameError& problem) {
       lost_preview = problem;
     }
+    if (result.deep && !options_.pass_range)
+      context.deep_bytes =
+          write_deep_exr(*result.deep, result.image, side_file(context.output, "deep"));
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
     if (!result.quick_look)
@@ -243,6 +247,13 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
     result.image.full_height = size.height;
   }
   add_metadata(result.image, loaded, result);
+  if (loaded.scene.image.deep) {
+    DeepImage deep;
+    deep.width = result.image.width;
+    deep.height = result.image.height;
+    deep.counts.assign(result.image.channels.front().data.size(), 0);
+    write_deep_exr(deep, result.image, side_file(output(loaded.frame()), "deep"));
+  }
   write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
   if (!options_.files.preview.empty())
     write_image(result.image, substitute_frame(options_.files.preview, loaded.frame()),

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/file_claims.h"
+#include "cli/frame_renderer.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
 #include "cli/view_option.h"
@@ -36,7 +37,9 @@ int run_merge(const MergeOptions& options) {
   claims.output("--preview", options.preview);
   if (options.settings.passes && *options.settings.passes < 1)
     throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
-  const Image image = merge_partials(options.partials, options.settings);
+  MergeSettings settings = options.settings;
+  settings.deep = side_file(options.output, "deep");
+  const Image image = merge_partials(options.partials, settings);
   if (!options.preview.empty())
     write_image(image, options.preview, {options.exposure, options.view});
   write_image(image, options.output, {options.exposure, options.view});

@@ -2,6 +2,7 @@
 
 #include "estimators/beam_weights.h"
 #include "estimators/blur_probe.h"
+#include "estimators/deep_tile.h"
 #include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
 
@@ -38,6 +39,8 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
       }
     blur.probe(scratch.rays, scratch.tile,
                [&](int i) { return light_of(scratch.tile.radiance, i); });
+    if (image.deep_layout)
+      gather_pieces(world, photons_.map(), scratch.rays, scratch.tile, image);
   };
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
     std::vector<float> table;

@@ -93,9 +93,9 @@ class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
               const std::vector<bool>& sampled, const ShadowLattices& shadows, Rng& rng,
-              std::uint64_t& shadow_rays)
+              std::uint64_t& shadow_rays, const DeepRay& deep, float share)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
-        rng_(rng), shadow_rays_(shadow_rays) {
+        rng_(rng), shadow_rays_(shadow_rays), deep_(deep), share_(share) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampled[l])
         continue;
@@ -127,6 +127,7 @@ public:
       const float other = light.near ? light.near->pdf(point.t) : 0;
       sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
     }
+    deep_.add_light_at(point.t, sum * share_);
     return sum;
   }
 
@@ -152,7 +153,7 @@ public:
       // By the medium alone, the piece is drawn with its share of the opacity.
       const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
       if (point.pdf > 0)
-        sum += scattered(point, light.index) * (share / drawn);
+        sum += take_down(point, scattered(point, light.index) * (share / drawn));
     }
     return sum;
   }
@@ -166,7 +167,7 @@ public:
       const ScatterPoint point = distances_.at(light.near->sample(u));
       const float other = light.near->pdf(point.t);
       if (point.pdf > 0)
-        sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
+        sum += take_down(point, scattered(point, light.index) * (point.pdf / (point.pdf + other)));
     }
     return sum;
   }
@@ -206,6 +207,12 @@ private:
       piece.weight += least * piece.opacity;
   }
 
+  /// Light of one of the samples, which adds so much to the deep picture.
+  const Rgb& take_down(const ScatterPoint& point, const Rgb& light) {
+    deep_.add_light_at(point.t, light * share_);
+    return light;
+  }
+
   /// Balance heuristic (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
   Rgb scattered(const ScatterPoint& point, std::size_t light) {
     const Medium& medium = world_.medium;
@@ -242,6 +249,8 @@ private:
   DistanceSampler distances_;
   Rng& rng_;
   std::uint64_t& shadow_rays_;
+  const DeepRay& deep_;
+  float share_; ///< of one sample
   std::vector<SampledLight> lights_;
 };
 
@@ -249,12 +258,12 @@ private:
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
-                 std::uint64_t& shadow_rays, const ShadowLattices& shadows) {
+                 std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep) {
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
-  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays);
   const float share = 1 / static_cast<float>(samples);
+  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, share);
   for (int i = 0; i < samples; ++i) {
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
     if (!shadows.empty())

@@ -16,7 +16,8 @@ struct Group {
         bool with_emission)
       : world(from.world), plan(from.plan), input{world,     from.camera, from.settings,
                                                   plan,      from.frame,  from.window,
-                                                  from.stop, nullptr,     from.blur_pixels} {
+                                                  from.stop, nullptr,     from.blur_pixels,
+                                                  from.deep} {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();
@@ -87,6 +88,9 @@ private:
     add(image.indirect, part.indirect);
     add(image.background, part.background);
     add_blur(image.blur, part.blur);
+    for (std::size_t i = 0; i < image.deep.size(); ++i)
+      if (i % DeepLayout::values_per_piece < 3) // every part has the medium's opacity
+        image.deep[i] += part.deep[i];
     if (image.emission.empty())
       image.emission = part.emission;
     else

@@ -1,5 +1,6 @@
 #include "estimators/march.h"
 
+#include "estimators/deep_ray.h"
 #include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
 
@@ -24,7 +25,7 @@ public:
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
   /// lights.
   Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
-            RenderStatistics& counts, Rgb& straight) {
+            RenderStatistics& counts, Rgb& straight, const DeepRay& deep = {}) {
     const Medium& medium = world_.medium;
     const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
     const float end = std::min(profile.back() + reach_, camera.whole().t_end);
@@ -48,7 +49,9 @@ public:
                                                          straight_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
-        sum += weigh(before, after, step, gathered_);
+        const Rgb light = weigh(before, after, step, gathered_);
+        sum += light;
+        deep.add_light_at(t, light);
         if (photons_.map().has_first_flights())
           straight += weigh(before, after, step, straight_);
       }
@@ -103,7 +106,8 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
       Rng rng(key, RngStage::march, ray.pixel);
       Rgb straight;
       image.indirect[ray.pixel] =
-          marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight);
+          marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
+                        DeepRay(photons_.world(), ray.camera, ray.pixel, image));
       image.move_to_direct(ray.pixel, straight);
     }
   };

@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/caught_shadow.h"
+#include "estimators/deep_ray.h"
 #include "estimators/direct_light.h"
 #include "estimators/estimator_table.h"
 #include "estimators/pixel_tiles.h"
@@ -81,14 +82,17 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   const Ray ray{point.position, camera.ray().direction};
   const Rgb throughput = weight * (total / mean_component(weight));
   const PhaseFunction& phase = medium.phases[medium.volumes[volume].phase_index];
+  const DeepRay deep(input_.world, camera, target, image);
   if (!scene_tracer_) {
     scratch.walks.push_back(tracer_.start(target, walk_rng, ray, throughput, phase));
+    scratch.walks.back().piece = deep ? deep.piece(point.t) : 0;
     return;
   }
   Rng numbers = walk_rng;
   const ScatteredLight light = scene_tracer_->from_medium(ray, throughput, phase, numbers);
   image.direct[target] += light.direct / static_cast<float>(walks_per_ray_);
   image.indirect[target] += light.indirect / static_cast<float>(walks_per_ray_);
+  deep.add_light_at(point.t, (light.direct + light.indirect) / static_cast<float>(walks_per_ray_));
 }
 
 /// What is seen of the surface at which a camera ray ends, the mean over a few paths.
@@ -122,8 +126,9 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
-  image.direct[target] = direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_,
-                                      rng, scratch.counts.shadow_rays);
+  image.direct[target] =
+      direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_, rng,
+                   scratch.counts.shadow_rays, {}, DeepRay(world, camera, target, image));
   DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < walks_per_ray_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);
@@ -151,6 +156,16 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   take_turns(scratch, walks_under_way, image);
 }
 
+/// The light of a walk that has ended, at the depth where it began.
+void PathEstimator::add_deep_light(const PathWalk& walk, float share, PassImage& image) {
+  if (image.deep_layout->count(walk.target) == 0)
+    return;
+  float* values = &image.deep[(image.deep_layout->first[walk.target] + walk.piece) *
+                              DeepLayout::values_per_piece];
+  for (int c = 0; c < 3; ++c)
+    values[c] += (walk.direct[c] + walk.indirect[c]) * share;
+}
+
 /// Lets the walks take turns until no more than `most` are under way. Walks of several pixels:
 /// while one waits for its voxels to come from memory, others compute.
 void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& image) const {
@@ -168,6 +183,8 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
       }
       image.direct[walk.target] += walk.direct * share;
       image.indirect[walk.target] += walk.indirect * share;
+      if (image.deep_layout)
+        add_deep_light(walk, share, image);
       if (&walk != &walks.back())
         walk = std::move(walks.back());
       walks.pop_back();
@@ -212,7 +229,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const Stopwatch watch;
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(pass);
-  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty());
+  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep);
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, image, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();

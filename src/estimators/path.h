@@ -37,6 +37,7 @@ private:
   void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
                   const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
   SeenSurface seen_surface(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
+  static void add_deep_light(const PathWalk& walk, float share, PassImage& image);
   void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
 
   EstimatorInput input_;

@@ -1,5 +1,6 @@
 #include "estimators/profile_shading.h"
 
+#include "estimators/deep_ray.h"
 #include "transport/emission.h"
 
 namespace vdbeam {
@@ -82,6 +83,12 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
     ++emission_rays;
     image.emission[pixel] = emission_along(world.medium, camera.segment, profile,
                                            static_cast<float>(input.settings.cutoff));
+  }
+  if (const DeepRay deep(world, camera, pixel, image); deep) {
+    deep.add_opacity(world.medium, profile);
+    if (!camera.segment.empty())
+      deep.add_emission(world.medium, camera.segment, profile,
+                        static_cast<float>(input.settings.cutoff));
   }
 }
 

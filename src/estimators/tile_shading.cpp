@@ -1,5 +1,6 @@
 #include "estimators/tile_shading.h"
 
+#include "estimators/deep_ray.h"
 #include "estimators/direct_light.h"
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
@@ -11,11 +12,29 @@ namespace vdbeam {
 
 namespace {
 
+/// Where on the ray the peak scatters light last that comes along it from behind: at the distance t
+/// the light is `radiance` times 1 - exp(-excess(t)) in all so far.
+void add_light_of_the_peak(const World& world, const DepthProfile& profile, const Rgb& radiance,
+                           const DeepRay& deep) {
+  ProfileCursor cursor(profile);
+  Rgb before;
+  for (std::size_t i = 0; i < deep.count(); ++i) {
+    cursor.move_to(std::min(deep.end(i), profile.back()));
+    Rgb after, light;
+    for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
+      after += world.medium.peak->excess[v] * cursor.tau(v);
+    for (int c = 0; c < 3; ++c)
+      light[c] = radiance[c] * std::exp(-before[c]) * -std::expm1(before[c] - after[c]);
+    deep.add_light(i, light);
+    before = after;
+  }
+}
+
 /// Light of surrounding lights that only the peak of the phase function scattered on its way along
 /// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
 /// with shadow rays have theirs from these.
 Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
-                      const std::vector<bool>& sampled_lights) {
+                      const std::vector<bool>& sampled_lights, const DeepRay& deep) {
   Rgb radiance;
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
@@ -27,8 +46,13 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   Rgb excess;
   for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
     excess += world.medium.peak->excess[v] * ray.profile.tau(last, v);
-  for (int c = 0; c < 3; ++c)
+  Rgb through;
+  for (int c = 0; c < 3; ++c) {
+    through[c] = radiance[c] * std::exp(-tau[c]);
     radiance[c] *= std::exp(-tau[c]) * -std::expm1(-excess[c]);
+  }
+  if (deep)
+    add_light_of_the_peak(world, ray.profile, through, deep);
   return radiance;
 }
 
@@ -45,10 +69,11 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   else
     shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
   Rng rng(key, RngStage::direct, ray.pixel);
+  const DeepRay deep(world, ray.camera, target, image);
   image.direct[target] =
-      light_of_the_peak(world, ray, photons.plan().sampled_lights) +
+      light_of_the_peak(world, ray, photons.plan().sampled_lights, deep) +
       direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
-                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows());
+                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows(), deep);
 }
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
@@ -57,7 +82,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
                  const GatherAlong& gather_along) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
-  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty());
+  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep);
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
   if (world.surfaces)

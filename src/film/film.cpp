@@ -23,27 +23,9 @@ void for_each_block(std::size_t pixels, const Body& body) {
   });
 }
 
-/// a + b exactly, as a rounded sum and its error: Knuth, The Art of Computer Programming 2, section
-/// 4.2.2, theorem B. Needs arithmetic without re-association.
-struct Sum {
-  double rounded, error;
-};
-inline Sum two_sum(double a, double b) {
-  const double s = a + b, t = s - a;
-  return {s, (a - (s - t)) + (b - t)};
-}
-
 static_assert(sizeof(Rgb) == 3 * sizeof(float));
 const float* components(const std::vector<Rgb>& colours) {
   return reinterpret_cast<const float*>(colours.data());
-}
-
-// On the bits, since comparisons of floats may trap and so keep compilers from vectorising.
-inline std::uint32_t is_finite(float value) {
-  return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) != 0x7f800000u ? 1 : 0;
-}
-inline float finite_or_zero(float value) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) & (0u - is_finite(value)));
 }
 
 /// Adds values [begin, end), of one block, and returns how many were not finite.
@@ -65,27 +47,13 @@ void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size
 
 } // namespace
 
-inline void CompensatedSums::add(std::size_t i, double value) {
-  const Sum sum = two_sum(high_[i], value);
-  const Sum renormalised = two_sum(sum.rounded, low_[i] + sum.error);
-  high_[i] = renormalised.rounded;
-  low_[i] = static_cast<float>(renormalised.error);
-}
-
-inline void CompensatedSums::merge(std::size_t i, const CompensatedSums& other) {
-  const Sum sum = two_sum(high_[i], other.high_[i]);
-  const double low = double{low_[i]} + other.low_[i] + sum.error;
-  const Sum renormalised = two_sum(sum.rounded, low);
-  high_[i] = renormalised.rounded;
-  low_[i] = static_cast<float>(renormalised.error);
-}
-
-Film::Film(int width, int height, bool glows, std::vector<std::string> groups)
+Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
+           std::optional<DeepFilm> deep)
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
       depth_(pixels()), group_names_(std::move(groups)),
       groups_(group_names_.size(), CompensatedSums(3 * pixels())), squares_(3 * pixels()),
-      history_(width, height) {}
+      deep_(std::move(deep)), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -123,13 +91,16 @@ void Film::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
     invalid[block] = add_pixels(pass, begin, end);
   });
   invalid_values_ = std::accumulate(invalid.begin(), invalid.end(), invalid_values_);
+  if (deep_)
+    deep_->add(pass);
   history_.add(pass, probes);
   ++passes_;
 }
 
 void Film::merge(const Film& other) {
   check_size(other.width_, other.height_);
-  if (glows_ != other.glows_ || group_names_ != other.group_names_)
+  if (glows_ != other.glows_ || group_names_ != other.group_names_ ||
+      deep_.has_value() != other.deep_.has_value())
     throw std::invalid_argument("a film with emission or groups of lights and one without, or with "
                                 "others, cannot be merged");
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -145,6 +116,8 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
       squares_[i] += other.squares_[i];
   });
+  if (deep_)
+    deep_->merge(*other.deep_);
   history_.merge(other.history_);
   statistics_.reset();
   passes_ += other.passes_;
@@ -171,6 +144,9 @@ std::vector<ImagePlane> Film::planes() {
   }
   add("opacity", opacity_, 1, 0);
   add("depth", depth_, 1, 0);
+  if (deep_)
+    for (ImagePlane& plane : deep_->planes())
+      planes.push_back(std::move(plane));
   const auto add_history = [&](const char* name, auto& values) {
     for (std::size_t first = 0; first < values.size(); first += pixels())
       planes.push_back({fmt::format("history.{}.{}", name, first / pixels()), &values[first], 1});
@@ -250,6 +226,12 @@ Image Film::develop() const {
           {fmt::format("light_{}.{}", group_names_[g], "RGB"[c]), std::move(data)});
     }
   return image;
+}
+
+std::optional<DeepImage> Film::develop_deep() const {
+  if (!deep_)
+    return std::nullopt;
+  return deep_->develop(passes_, width_, height_);
 }
 
 void Film::add_layer(const std::string& name, Image& image) const {

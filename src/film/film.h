@@ -1,5 +1,7 @@
 #pragma once
 
+#include "film/compensated_sums.h"
+#include "film/deep_film.h"
 #include "film/error_estimate.h"
 #include "film/pass_history.h"
 #include "image/pass_image.h"
@@ -13,28 +15,6 @@
 
 namespace vdbeam {
 
-/// One sum per value, each a double and a float of what the double rounded off: 77 bits, 12 bytes.
-/// 100,000 floats of like size need 41 bits, so sums are exact, and the same for any order and
-/// grouping, unless values differ by more than 2^36; beyond that the error is 2^-77 of the sum.
-class CompensatedSums {
-public:
-  static constexpr std::size_t bytes_per_value = sizeof(double) + sizeof(float);
-
-  explicit CompensatedSums(std::size_t count) : high_(count), low_(count) {}
-
-  void add(std::size_t i, double value);
-  /// Adds another's sum `i`.
-  void merge(std::size_t i, const CompensatedSums& other);
-  double high(std::size_t i) const { return high_[i]; }
-  float low(std::size_t i) const { return low_[i]; }
-  double* high_data() { return high_.data(); }
-  float* low_data() { return low_.data(); }
-
-private:
-  std::vector<double> high_;
-  std::vector<float> low_;
-};
-
 /// The depth of a pixel without any medium: far behind everything, the value that Blender writes.
 constexpr float empty_depth = 1e10f;
 
@@ -46,8 +26,10 @@ constexpr float empty_depth = 1e10f;
 /// invalid_values().
 class Film {
 public:
-  /// `glows`: passes may hold emission. `groups`: names of the groups of lights of passes.
-  Film(int width, int height, bool glows = false, std::vector<std::string> groups = {});
+  /// `glows`: passes may hold emission. `groups`: names of the groups of lights of passes. `deep`:
+  /// where rays are cut for a deep picture.
+  Film(int width, int height, bool glows = false, std::vector<std::string> groups = {},
+       std::optional<DeepFilm> deep = std::nullopt);
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
@@ -89,6 +71,10 @@ public:
   /// pass.
   /// Groups of lights come as light_NAME.
   Image develop() const;
+  /// The deep picture; nullopt where the film holds none.
+  std::optional<DeepImage> develop_deep() const;
+  DeepFilm* deep() { return deep_ ? &*deep_ : nullptr; }
+  const DeepFilm* deep() const { return deep_ ? &*deep_ : nullptr; }
   /// Adds one of the layers that develop() leaves out, or nothing: background, transmittance, and
   /// variance, that of the mean of the passes (float).
   void add_layer(const std::string& name, Image& image) const;
@@ -121,6 +107,7 @@ private:
   std::vector<std::string> group_names_;
   std::vector<CompensatedSums> groups_; ///< 3 per pixel and group of lights
   std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
+  std::optional<DeepFilm> deep_;
   PassHistory history_;
   struct HistoryStatistics {
     std::size_t batches;

@@ -76,6 +76,10 @@ FilmFileInfo parse_info(Image header, const std::string& path) {
     if (channel.name.starts_with(before) && channel.name.ends_with(after))
       info.groups.push_back(
           channel.name.substr(before.size(), channel.name.size() - before.size() - after.size()));
+  for (const ImageChannel& channel : header.channels) {
+    info.deep_edge_planes += channel.name.starts_with("film.deep.edges.") ? 1 : 0;
+    info.deep_piece_planes += channel.name.starts_with("film.deep.rests.") ? 1 : 0;
+  }
   header.channels.clear();
   info.header = std::move(header);
   return info;
@@ -104,6 +108,9 @@ void write_film(const FilmFileInfo& info, Film& film, const std::string& path) {
   picture.numbers["vdbeam:passes"] = static_cast<double>(info.passes.size());
   picture.integers.insert({"vdbeam:frame", "vdbeam:unbiased", "vdbeam:passes"});
   picture.numbers.erase("vdbeam:complete");
+  if (film.deep())
+    picture.numbers["vdbeam:deepAlphaError"] =
+        static_cast<double>(film.deep()->layout().alpha_error);
   Image developed = film.develop();
   for (ImageChannel& channel : developed.channels)
     if (channel.name.size() == 1) // R, G, B and A: what viewers show
@@ -116,8 +123,17 @@ FilmFileInfo read_film_info(const std::string& path) {
 }
 
 Film read_film(const std::string& path, const FilmFileInfo& info) {
-  Film film(info.header.width, info.header.height, info.glows, info.groups);
+  std::optional<DeepFilm> deep;
+  if (info.deep_piece_planes > 0)
+    deep.emplace(static_cast<std::size_t>(info.header.width) * info.header.height,
+                 info.deep_edge_planes, info.deep_piece_planes);
+  Film film(info.header.width, info.header.height, info.glows, info.groups, std::move(deep));
   if (!read_planes(path, info.header.width, info.header.height, file_planes(film)))
+    fail_damaged(path);
+  const auto error = info.header.numbers.find("vdbeam:deepAlphaError");
+  const float alpha_error =
+      error == info.header.numbers.end() ? 0 : static_cast<float>(error->second);
+  if (film.deep() && !film.deep()->finish_reading(alpha_error))
     fail_damaged(path);
   film.set_counts(static_cast<int>(info.passes.size()), info.invalid_values);
   return film;

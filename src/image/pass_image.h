@@ -1,5 +1,6 @@
 #pragma once
 
+#include "image/deep_layout.h"
 #include "vdbeam/vec.h"
 
 #include <cmath>
@@ -29,6 +30,10 @@ struct PassImage {
   /// Tr sigma_t t dt (mean over channels). Its sum over the passes divided by the sum of opacity is
   /// the depth of the medium.
   std::vector<float> depth;
+  /// Where rays are cut for a deep picture; null where nobody asks for one.
+  const DeepLayout* deep_layout = nullptr;
+  /// Per piece of the layout, the light of the medium (R, G, B) and the opacity that it adds.
+  std::vector<float> deep;
   /// At some pixels: what the kernels of the pass gave less what kernels of the same photons give
   /// that are `blur_narrowing` times as wide.
   std::vector<PixelValue> blur;
@@ -39,7 +44,7 @@ struct PassImage {
   static constexpr int tile_width = 16;
 
   /// `glows`: there is something to hold in `emission`.
-  void resize(int w, int h, bool glows = false) {
+  void resize(int w, int h, bool glows = false, const DeepLayout* layout = nullptr) {
     width = w;
     height = h;
     const std::size_t n = static_cast<std::size_t>(w) * h;
@@ -50,6 +55,8 @@ struct PassImage {
     groups.clear();
     opacity.assign(n, 0);
     depth.assign(n, 0);
+    deep_layout = layout;
+    deep.assign(layout ? layout->pieces() * DeepLayout::values_per_piece : 0, 0);
     finished_tiles.assign(static_cast<std::size_t>(tile_columns()) *
                               static_cast<std::size_t>((h + tile_width - 1) / tile_width),
                           0);

@@ -42,6 +42,13 @@ std::uint64_t granted_memory() {
   return bytes;
 }
 
+void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t granted) {
+  if (bytes > granted)
+    refuse(scene, "image.deep: its samples", bytes, granted,
+           "ask for fewer by greater image.deep_alpha and image.deep_depth, or for a smaller "
+           "picture");
+}
+
 void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t granted) {
   const std::uint64_t photons = scene.render.photons.value_or(0);
   if (plan.needs(Stage::photons) && (plan.photon_bytes > granted || photons > most_photons))

@@ -4,6 +4,7 @@
 #include "report/image_metadata.h"
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
+#include "vdbeam/image_file.h"
 #include "vdbeam/render.h"
 
 #include <fmt/format.h>
@@ -135,7 +136,10 @@ Image merge_partials(const std::vector<std::string>& paths, const MergeSettings&
     film.merge(read_film(partials[i].path, partials[i].info));
   if (!settings.partial.empty())
     write_film(info, film, settings.partial);
-  return finish_image(film, info);
+  Image image = finish_image(film, info);
+  if (const std::optional<DeepImage> deep = film.develop_deep(); deep && !settings.deep.empty())
+    write_deep_exr(*deep, image, settings.deep);
+  return image;
 }
 
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #include "render/pass_loop.h"
 
 #include "estimators/light_groups.h"
+#include "estimators/make_deep_layout.h"
 #include "film/clamp.h"
 #include "film/layers.h"
 #include "render/arithmetic.h"
@@ -53,7 +54,21 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
 }
 
 Film PassLoop::make_film() const {
-  return {window_.width(), window_.height(), scene_.glows(), light_group_names(scene_)};
+  std::optional<DeepFilm> deep;
+  if (deep_layout_)
+    deep.emplace(cut_out(*deep_layout_, scene_.image.raster_width(), window_));
+  return {window_.width(), window_.height(), scene_.glows(), light_group_names(scene_),
+          std::move(deep)};
+}
+
+void PassLoop::gather_deep(const DeepLayout& layout) {
+  deep_layout_ = &layout;
+  const bool fits = film_.deep() && film_.deep()->layout().first == layout.first;
+  if (film_.passes() == 0)
+    film_ = make_film();
+  else if (!fits)
+    throw FrameError(
+        fmt::format("{}: holds other deep samples; delete it", frame_.checkpoint.path));
 }
 
 /// Rendering time [s] that the passes may take; infinite without a limit.
@@ -299,6 +314,7 @@ void PassLoop::write_checkpoint() {
 
 void PassLoop::develop() {
   result_.image = develop_layers(film_, scene_.layers);
+  result_.deep = film_.develop_deep();
   if (!whole_ || scene_.image.overscan > 0)
     place(result_.image);
 }

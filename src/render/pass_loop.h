@@ -16,6 +16,9 @@ public:
   PassLoop(const Scene& scene, const FrameSettings& frame, const RenderHooks& hooks,
            const PixelRegion& window, RenderResult& result);
 
+  /// Before any pass: the film is to hold a deep picture too.
+  void gather_deep(const DeepLayout& layout);
+
   /// What the estimator's input is to have as its `stop`.
   const StopToken& stop_token() const { return stop_; }
   /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
@@ -60,6 +63,7 @@ private:
   PixelRegion window_;
   bool whole_;
   RenderResult& result_;
+  const DeepLayout* deep_layout_ = nullptr; ///< null without a deep picture
   Film film_;
   int first_pass_ = 0;
   /// Seconds count from here, so that what an estimator tries out before its first pass is in them.

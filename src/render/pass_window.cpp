@@ -33,6 +33,7 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }
+  part.deep = pass.deep; // no pixel beyond the window has any pieces
   for (const PixelValue& value : pass.blur) {
     const int x = static_cast<int>(value.pixel % pass.width) - window.x0;
     const int y = static_cast<int>(value.pixel / pass.width) - window.y0;

@@ -4,6 +4,8 @@
 #include "estimators/choose_estimator.h"
 #include "estimators/estimator.h"
 #include "estimators/light_groups.h"
+#include "estimators/make_deep_layout.h"
+#include "film/deep_film.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "render/limit_notes.h"
@@ -34,6 +36,14 @@ PixelRegion choose_window(const ImageSettings& image, const std::optional<PixelR
                                  window.x0, window.y0, window.x1, window.y1, image.width,
                                  image.height, o > 0 ? " and its overscan" : ""));
   return {window.x0 + o, window.y0 + o, window.x1 + o, window.y1 + o};
+}
+
+/// Greatest length of a deep sample [world].
+double deep_depth(const ImageSettings& image, const World& world) {
+  constexpr double pieces = 16; // of the medium's diameter
+  return image.deep_depth > 0
+             ? image.deep_depth
+             : 2 * static_cast<double>(world.region.radius) / world.space.scale / pieces;
 }
 
 void check_range(const std::optional<PassRange>& range) {
@@ -88,6 +98,13 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   if (result.plan.needs(Stage::bias) && result.plan.needs(Stage::beam_query)) {
     blur_pixels = choose_blur_pixels(window, camera.width(), loop.probe_pixels());
     input.blur_pixels = &blur_pixels;
+  }
+  DeepLayout deep;
+  if (scene.image.deep) {
+    deep = make_deep_layout(input, scene.image.deep_alpha, deep_depth(scene.image, world));
+    check_deep_memory(scene, deep.pieces() * DeepFilm::bytes_per_piece(), granted_memory());
+    loop.gather_deep(deep);
+    input.deep = &deep;
   }
   const RenderPlan path_plan = plan_paths(scene, volumes);
   const EstimatorInput path_input = input.with(path_plan);

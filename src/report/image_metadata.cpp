@@ -136,6 +136,11 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.numbers["vdbeam:clampTotal"] = result.statistics.clamp_total;
     image.numbers["vdbeam:clampedPixels"] = static_cast<double>(result.statistics.clamped_pixels);
   }
+  if (result.deep) {
+    image.numbers["vdbeam:deepSamples"] = static_cast<double>(result.deep->z.size());
+    image.numbers["vdbeam:deepAlphaError"] = static_cast<double>(result.deep->alpha_error);
+    image.integers.insert("vdbeam:deepSamples");
+  }
   image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
   for (const char* name : {"vdbeam:frame", "vdbeam:complete", "vdbeam:seed", "vdbeam:passes",
                            "vdbeam:photonsStored", "vdbeam:clampedPixels"})

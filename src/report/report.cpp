@@ -161,6 +161,10 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
     clamp["removed_fraction"] = statistics.clamped_fraction();
     clamp["pixels"] = statistics.clamped_pixels;
   }
+  if (result.deep)
+    report["deep"] = {{"samples", result.deep->z.size()},
+                      {"bytes", context.deep_bytes},
+                      {"alpha_error", number(static_cast<double>(result.deep->alpha_error))}};
   report["stopped_by"] = result.stopped_by;
   report["quick_look"] = result.quick_look;
   report["resumed_passes"] = result.resumed_passes;

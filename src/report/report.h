@@ -10,8 +10,9 @@ namespace vdbeam {
 /// What a report says beside the result of the render.
 struct ReportContext {
   std::string scene_hash;
-  std::string output;    ///< path of the image
-  std::string reference; ///< path of the reference, or empty
+  std::string output;           ///< path of the image
+  std::string reference;        ///< path of the reference, or empty
+  std::uint64_t deep_bytes = 0; ///< size of the deep picture's file
 };
 
 /// Every key of the scene, as nested objects named like in a scene file.

@@ -26,6 +26,17 @@ void add_image_keys(KeyTable& table) {
   table.add("compression", &I::compression, "of the EXR; dwaa and dwab lose digits")
       .keeps_picture()
       .keeps_world();
+  table.add("deep", &I::deep, "whether a deep EXR with the medium's samples is written too")
+      .keeps_world();
+  table.add("deep_alpha", &I::deep_alpha, "the most that a deep sample adds to the opacity")
+      .within(0.001, 1)
+      .keeps_world();
+  table
+      .add_auto("deep_depth", &I::deep_depth,
+                "greatest length of a deep sample; auto: a 16th of the medium's size")
+      .unit("world")
+      .above(0)
+      .keeps_world();
   table.add("pixel_aspect", &I::pixel_aspect, "width of a pixel over its height")
       .within(0.01, 100)
       .keeps_world();

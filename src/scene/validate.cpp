@@ -144,6 +144,8 @@ public:
       fail("render.estimator", fmt::format("is \"{}\", which cannot render a [[mesh]] yet: write "
                                            "estimator = \"path\"",
                                            render.estimator.name));
+    if (scene_.image.deep && render.clamp)
+      fail("image.deep", "excludes render.clamp");
     if (render.kernel == KernelRadius::fixed && render.radius == 0)
       fail("render.kernel", "is \"fixed\": render.radius is needed too");
     if (render.min_radius > 0 && render.max_radius > 0 && render.min_radius > render.max_radius)

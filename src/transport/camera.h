@@ -35,6 +35,11 @@ public:
 
   /// The ray through a pixel position and the middle of the lens.
   EyeRay ray(double px, double py) const;
+  /// Depth along the camera's axis over distance, for the ray through a pixel position; 1 for a
+  /// panorama.
+  double depth_over_distance(double px, double py) const {
+    return along_axis(ray(px, py).direction);
+  }
   /// A random ray of the pixel (x, y), by its filter and through the lens.
   EyeRay sample(int x, int y, Rng& rng) const;
   /// Unit direction of the ray of the picture that comes nearest to a point.
