@@ -56,9 +56,8 @@ class Deep(unittest.TestCase):
         common = ("--passes", "24", "--set", "volume.0.extinction=12", "--set", "image.deep_alpha=0.02")
         self.render("whole.exr", *common)
         self.render("near.exr", *common, "--set", "camera.far=6.5")
-        code, text = run("oiiotool", self.file("near.exr"), "--ch", "volume.R=0,volume.G=0,volume.B=0,volume.A=1,Z=6.5",
-                         "--chnames", "R,G,B,A,Z", "--mulc", "0,0,0,0,1", "--addc", "0,0,0,1,0", "--deepen", "-o",
-                         self.file("object.exr"))
+        code, text = run("oiiotool", self.file("near.exr"), "--ch", "R=0,G=0,B=0,A=1,Z=6.5,ZBack=6.5",
+                         "--deepen", "-o", self.file("object.exr"))
         self.assertEqual(code, 0, text)
         code, text = run("oiiotool", self.file("whole.deep.exr"), self.file("object.exr"), "--deepmerge", "--flatten",
                          "--ch", "R,G,B", "-o", self.file("composed.exr"))

@@ -52,7 +52,9 @@ TEST_P(Flattened, IsTheFlatPicture) {
           << channels[c] << " of pixel " << i;
       sum += static_cast<double>(expected[i]);
     }
-    EXPECT_GT(sum, 0);
+    if (c < 3) {
+      EXPECT_GT(sum, 0);
+    }
   }
 }
 
@@ -77,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FlatCase{"FireWithoutSmoke", "fire.toml", {"volume.0.extinction=0"}},
                     FlatCase{"FireByPaths", "fire.toml", {"render.estimator=path"}},
                     FlatCase{"Overscan", "sunlit_cloud.toml", {"image.overscan=3"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 /// What lies before a plane, of which samples that it cuts give their homogeneous share, as OpenEXR
 /// defines it (Interpreting OpenEXR Deep Pixels, "Splitting a volume sample").
@@ -103,9 +105,12 @@ class CutByAPlane : public testing::TestWithParam<const char*> {};
 
 /// An opaque black object behind which nothing is seen is the far plane of the camera: over it lies
 /// what of the deep picture is nearer, in light and opacity, all over the picture and in its parts.
-TEST_P(CutByAPlane, IsAPictureWithAFarPlane) {
+TEST_P(CutByAPlane, SlowIsAPictureWithAFarPlane) {
   const std::vector<std::string> common{std::string("render.estimator=") + GetParam(),
-                                        "render.passes=48", "image.deep_alpha=0.02",
+                                        "render.passes=32",
+                                        "render.forward_peak=kept",
+                                        "render.photons=40000",
+                                        "image.deep_alpha=0.02",
                                         "volume.0.extinction=12"};
   const RenderResult deep = render(sample_scene("sunlit_cloud.toml", common));
   for (const float plane_z : {6.3f, 6.6f}) {
@@ -125,31 +130,38 @@ TEST_P(CutByAPlane, IsAPictureWithAFarPlane) {
         squares += std::pow(static_cast<double>(front[i][c] - truth[i]), 2);
       }
       const auto pixels = static_cast<double>(truth.size());
-      // Noise of 48 passes, and half of what a sample adds at most.
+      // Both have the noise of 32 passes, and kernels blur light across the plane.
       EXPECT_NEAR(sum, expected_sum, 0.03 * expected_sum) << channels[c] << " before " << plane_z;
-      EXPECT_LT(std::sqrt(squares / pixels), 0.1 * expected_sum / pixels) << channels[c];
+      EXPECT_LT(std::sqrt(squares / pixels), 0.2 * expected_sum / pixels) << channels[c];
       EXPECT_LT(expected_sum, 0.9 * whole_sum) << "the plane cuts nothing off";
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Deep, CutByAPlane, testing::Values("path", "beam", "march"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(Deep, SamplesAreInOrderAndNoLongerThanAskedFor) {
   const RenderResult result =
       render(sample_scene("sunlit_cloud.toml", {"image.deep_depth=0.05", "image.deep_alpha=0.1"}));
   const DeepImage& deep = *result.deep;
   std::size_t sample = 0;
+  double opacity = 0, opacity_of_long = 0;
   for (const std::uint32_t count : deep.counts)
     for (std::size_t i = 0; i < count; ++i, ++sample) {
       EXPECT_LT(deep.z[sample], deep.z_back[sample]);
-      if (i > 0)
+      if (i > 0) {
         EXPECT_GE(deep.z[sample], deep.z_back[sample - 1]);
+      }
+      const auto alpha = static_cast<double>(deep.a[sample]);
+      opacity += alpha;
+      opacity_of_long += deep.z_back[sample] - deep.z[sample] > 0.05f + 1e-5f ? alpha : 0;
       EXPECT_GE(deep.a[sample], 0);
       EXPECT_LE(deep.a[sample], 1);
     }
   EXPECT_EQ(sample, deep.z.size());
+  // Where the rays that make the layout met nothing, and that of a pass does.
+  EXPECT_LT(opacity_of_long, 0.03 * opacity);
   EXPECT_GT(deep.alpha_error, 0);
   EXPECT_LT(deep.alpha_error, 0.1f);
 }

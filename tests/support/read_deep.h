@@ -47,6 +47,7 @@ inline DeepImage read_deep(const std::string& path) {
                                       sizeof(float*) * width, sizeof(float)));
   }
   file.setFrameBuffer(frame);
+  file.readPixelSampleCounts(window.min.y, window.max.y);
   file.readPixels(window.min.y, window.max.y);
   return image;
 }
