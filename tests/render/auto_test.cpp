@@ -5,6 +5,7 @@
 #include "vdbeam/scene_file.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace vdbeam {
 namespace {
@@ -20,7 +21,9 @@ Scene small_cloud(EstimatorType estimator) {
 Scene haze(EstimatorType estimator) {
   Scene scene = small_cloud(estimator);
   scene.volumes[0].extinction = 0.2;
-  scene.lights = {LightSettings{.type = LightType::environment}};
+  LightSettings sky;
+  sky.type = LightType::environment;
+  scene.lights = {sky};
   return scene;
 }
 
