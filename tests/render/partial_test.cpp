@@ -60,9 +60,9 @@ TEST_F(Partial, MergesToTheUndividedImage) {
   const std::string a = render_range(0, 0), b = render_range(1, 3), c = render_range(4, 5);
   expect_same_pixels(merge_partials({c, a, b}), whole);
   // In a tree: (b + c) + a.
-  const MergeSettings inner{true, std::nullopt, folder_.file("bc.exr")};
+  const MergeSettings inner{true, std::nullopt, folder_.file("bc.exr"), ""};
   merge_partials({b, c}, inner);
-  expect_same_pixels(merge_partials({a, inner.partial}, {false, 6, ""}), whole);
+  expect_same_pixels(merge_partials({a, inner.partial}, {false, 6, "", ""}), whole);
 }
 
 TEST_F(Partial, OpensInAViewer) {
@@ -90,9 +90,9 @@ TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
   EXPECT_NE(error_of({a, b}).find("passes 1 are there twice"), std::string::npos);
   EXPECT_NE(error_of({a, d}).find("passes 2,3 are missing"), std::string::npos);
   EXPECT_NE(error_of({b}).find("passes 0 are missing"), std::string::npos);
-  EXPECT_NE(error_of({a}, {false, 6, ""}).find("passes 2-5 are missing"), std::string::npos);
-  EXPECT_NE(error_of({a}, {false, 1, ""}).find("passes 1 are more than"), std::string::npos);
-  EXPECT_TRUE(error_of({a, d}, {true, std::nullopt, ""}).empty());
+  EXPECT_NE(error_of({a}, {false, 6, "", ""}).find("passes 2-5 are missing"), std::string::npos);
+  EXPECT_NE(error_of({a}, {false, 1, "", ""}).find("passes 1 are more than"), std::string::npos);
+  EXPECT_TRUE(error_of({a, d}, {true, std::nullopt, "", ""}).empty());
   const std::string other = render_range(2, 3, small_cloud({"render.seed=9"}));
   EXPECT_NE(error_of({a, other}).find("the scenes differ"), std::string::npos);
   const std::string smaller = render_range(3, 3, small_cloud({"image.width=39"}));
