@@ -11,6 +11,7 @@ packages=(
   # the other libraries
   libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev libembree-dev libassimp-dev
+  libopencolorio-dev
   # tests and benchmarks
   libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools
   # tools

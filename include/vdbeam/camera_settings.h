@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/color_space.h"
 #include "vdbeam/layer_settings.h"
 #include "vdbeam/vec.h"
 
@@ -34,6 +35,9 @@ struct ImageSettings {
   PixelFilter filter = PixelFilter::box;
   double filter_width = 0; ///< pixels; 0: automatic
   Compression compression = Compression::zip;
+  ColorSpace working_space = ColorSpace::rec709; ///< in which light is rendered
+  std::string output_space; ///< of the EXR; empty: the working space (docs/scene.md)
+  bool cryptomatte = false; ///< ids of volumes and meshes
   bool deep = false;        ///< a deep picture beside the flat one
   double deep_alpha = 0.05; ///< most opacity that one of its samples adds
   double deep_depth = 0;    ///< greatest length of a sample [world]; 0: automatic

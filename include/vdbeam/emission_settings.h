@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdbeam/vec.h"
+#include "vdbeam/color_space.h"
 
 #include <string>
 
@@ -20,6 +20,8 @@ struct EmissionSettings {
   EmissionLaw law = EmissionLaw::planck;
   double reference = 1500; ///< the temperature [K] at which the blackbody's luminance is 1
   Rgb color{1, 1, 1};
+  std::string ramp; ///< colours by value, "x:r,g,b ...", instead of a black body's; empty: none
+  ColorSpace color_space = ColorSpace::rec709; ///< of black bodies; no key: the working space
   double scale = 1; ///< radiance per world unit where intensity, color and black body are all 1
 
   /// True where the settings can give any emission.

@@ -30,9 +30,11 @@ enum class Stage {
   march,
   paths,
   bias,
-  environment
+  environment,
+  moments,
+  deep
 };
-inline constexpr std::size_t stage_count = 20;
+inline constexpr std::size_t stage_count = 22;
 
 /// A stage as plans and reports call it, e.g. "photon importance".
 constexpr std::string_view stage_name(Stage stage) {
@@ -55,7 +57,9 @@ constexpr std::string_view stage_name(Stage stage) {
                                                             "march",
                                                             "paths",
                                                             "bias",
-                                                            "environment"};
+                                                            "environment",
+                                                            "moments",
+                                                            "deep"};
   return names[static_cast<std::size_t>(stage)];
 }
 
@@ -95,6 +99,10 @@ struct RenderPlan {
   /// The mean of the passes is the true picture; else its bias vanishes only in the limit.
   bool unbiased = false;
   std::uint64_t volume_bytes = 0, photon_bytes = 0, film_bytes = 0; ///< estimates
+  /// Of the moving volumes at two moments; those at more are kept while they take less than a
+  /// quarter of the memory.
+  std::uint64_t moment_bytes = 0;
+  std::uint64_t deep_bytes = 0; ///< of a deep picture's samples, a third of the most there can be
 
   bool needs(Stage stage) const {
     for (const PlanStage& s : stages)

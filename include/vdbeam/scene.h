@@ -31,6 +31,7 @@ struct PhaseSettings {
 };
 
 struct VolumeSettings {
+  std::string name;    ///< in Cryptomatte; empty: volume0, volume1, ...
   std::string file;    ///< path, frame pattern already substituted
   bool present = true; ///< false: this frame lies outside its sequence; nothing is there
   std::string density = "density"; ///< grid name
@@ -41,6 +42,7 @@ struct VolumeSettings {
   EmissionSettings emission;
   VelocitySettings velocity;
   DensityRemap remap;
+  Interpolation interpolation = Interpolation::linear; ///< of density and emission
   std::string mask;               ///< name of a grid whose values multiply the density; empty: none
   std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]
   std::optional<Vec3d> box_upper;
@@ -58,18 +60,20 @@ enum class DirectLight { automatic, sampled, photons };
 
 struct LightSettings {
   LightType type = LightType::distant;
-  Vec3d direction{0, -1, 0};         ///< distant, spot: the way the light travels
-  Rgb irradiance{1, 1, 1};           ///< distant: on a plane that faces the light [W m^-2]
-  double angular_radius = 0;         ///< distant: half angle of the disc, degrees
-  Vec3d position{0, 0, 0};           ///< point, spot
-  Rgb intensity{1, 1, 1};            ///< point, spot [W sr^-1]
-  double cone_angle = 30;            ///< spot: half angle where the light ends, degrees
-  double cone_falloff = 5;           ///< spot: width of the smooth edge inside it, degrees
-  Rgb radiance{1, 1, 1};             ///< environment: constant, or the image's factor; sky: factor
-  Rgb zenith{0.07f, 0.19f, 0.52f};   ///< sky: radiance straight up
-  Rgb horizon{0.44f, 0.56f, 0.72f};  ///< sky: radiance at the horizon
-  Rgb ground{0.15f, 0.15f, 0.145f};  ///< sky: radiance from below the horizon
-  std::string image;                 ///< environment: lat-long EXR or HDR, empty for constant
+  Vec3d direction{0, -1, 0};        ///< distant, spot: the way the light travels
+  Rgb irradiance{1, 1, 1};          ///< distant: on a plane that faces the light [W m^-2]
+  double angular_radius = 0;        ///< distant: half angle of the disc, degrees
+  Vec3d position{0, 0, 0};          ///< point, spot
+  Rgb intensity{1, 1, 1};           ///< point, spot [W sr^-1]
+  double cone_angle = 30;           ///< spot: half angle where the light ends, degrees
+  double cone_falloff = 5;          ///< spot: width of the smooth edge inside it, degrees
+  Rgb radiance{1, 1, 1};            ///< environment: constant, or the image's factor; sky: factor
+  Rgb zenith{0.07f, 0.19f, 0.52f};  ///< sky: radiance straight up
+  Rgb horizon{0.44f, 0.56f, 0.72f}; ///< sky: radiance at the horizon
+  Rgb ground{0.15f, 0.15f, 0.145f}; ///< sky: radiance from below the horizon
+  std::string image;                ///< environment: lat-long EXR or HDR, empty for constant
+  /// Into which images are converted; no key: the working space.
+  ColorSpace color_space = ColorSpace::rec709;
   double rotation = 0;               ///< environment: about the up axis, degrees
   bool visible = true;               ///< to the camera; a hidden light still lights the medium
   std::string group;                 ///< of lights that share a layer; empty: none

@@ -66,6 +66,7 @@ inline bool takes_photons(const MaterialSettings& material) {
 enum class SurfaceShape { file, sphere, quad, disk };
 
 struct SurfaceSettings {
+  std::string name; ///< in Cryptomatte; empty: mesh0, mesh1, ...
   SurfaceShape shape = SurfaceShape::file;
   std::string file; ///< path, frame pattern already substituted
   MaterialSettings material;

@@ -22,16 +22,22 @@ struct VelocitySettings {
   double time = 0; ///< by which the volume is moved from the moment that its file shows [seconds]
 };
 
+/// What a grid is between its lattice points.
+enum class Interpolation { linear, cubic };
+
 /// What becomes of a grid's values v > 0: x = scale * v + offset; 0 where x < least or x <= 0,
-/// otherwise min(x, most) ^ power.
+/// otherwise curve(min(x, most) ^ power).
 struct DensityRemap {
   double scale = 1;
   double offset = 0;
   double least = 0;
   std::optional<double> most;
   double power = 1;
+  std::string curve; ///< points "x:y x:y ...", linear in between; empty: none
 
-  bool changes() const { return scale != 1 || offset != 0 || least != 0 || most || power != 1; }
+  bool changes() const {
+    return scale != 1 || offset != 0 || least != 0 || most || power != 1 || !curve.empty();
+  }
 };
 
 } // namespace vdbeam

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/streams.h"
+#include "image/color_conversion.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -14,6 +15,13 @@
 
 namespace vdbeam::cli {
 namespace {
+
+/// What the metrics are defined for.
+Image read_in_rec709(const std::string& path) {
+  Image image = read_image(path);
+  convert_colors(image, {});
+  return image;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -53,8 +61,8 @@ std::string error_text(const ImageError& error) {
 
 /// Against two noisy references: free of their noise.
 int compare_with_two(const CompareOptions& options) {
-  const Image image = read_image(options.image), reference = read_image(options.reference),
-              second = read_image(options.second);
+  const Image image = read_in_rec709(options.image), reference = read_in_rec709(options.reference),
+              second = read_in_rec709(options.second);
   const ImageError error = naming(options.image, options.reference,
                                   [&] { return image_error(image, reference, second); });
   const std::string text =
@@ -70,7 +78,7 @@ int compare_with_two(const CompareOptions& options) {
 }
 
 int compare_stills(const CompareOptions& options) {
-  const Image image = read_image(options.image), reference = read_image(options.reference);
+  const Image image = read_in_rec709(options.image), reference = read_in_rec709(options.reference);
   const ImageError error =
       naming(options.image, options.reference, [&] { return compare_images(image, reference); });
   if (!options.json) {
@@ -91,7 +99,7 @@ public:
   void add(int frame) {
     const std::string image = substitute_frame(options_.image, frame);
     const std::string reference = substitute_frame(options_.reference, frame);
-    Pair pair{read_image(image), read_image(reference)};
+    Pair pair{read_in_rec709(image), read_in_rec709(reference)};
     const ImageError error =
         naming(image, reference, [&] { return compare_images(pair.image, pair.reference); });
     Json entry{{"frame", frame}};

@@ -4,6 +4,7 @@
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "film/film_file.h"
+#include "image/color_conversion.h"
 #include "image/output_formats.h"
 #include "machine/stopwatch.h"
 #include "report/image_metadata.h"
@@ -37,6 +38,7 @@ Image read_reference(const std::string& path, const ImageSettings& size) {
   for (const char* channel : {"R", "G", "B"})
     if (!reference.find(channel))
       throw InputError(fmt::format("--reference {}: has no channel {}", path, channel));
+  convert_colors(reference, chromaticities_of(size.working_space));
   return reference;
 }
 
@@ -241,6 +243,7 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
   const ImageSettings& size = loaded.scene.image;
   Film film(size.raster_width(), size.raster_height());
   result.image = film.develop();
+  result.image.primaries = chromaticities_of(size.working_space);
   if (size.overscan > 0) {
     result.image.x = result.image.y = -size.overscan;
     result.image.full_width = size.width;

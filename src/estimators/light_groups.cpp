@@ -17,7 +17,7 @@ struct Group {
       : world(from.world), plan(from.plan), input{world,     from.camera, from.settings,
                                                   plan,      from.frame,  from.window,
                                                   from.stop, nullptr,     from.blur_pixels,
-                                                  from.deep} {
+                                                  from.deep, from.objects} {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();

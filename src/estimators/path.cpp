@@ -229,7 +229,8 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const Stopwatch watch;
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(pass);
-  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep);
+  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep,
+               input_.object_count());
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, image, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();

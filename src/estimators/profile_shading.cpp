@@ -35,6 +35,31 @@ void end_at_surface(const World& world, const CameraRay& camera, std::size_t pix
   image.opacity[pixel] = 1;
 }
 
+/// How much of the pixel each object covers: the integral of Tr sigma_t dt of a volume, and what is
+/// left of the ray for the surface at its end. Together they are the opacity.
+void add_coverage(const EstimatorInput& input, const CameraRay& camera, const DepthProfile& profile,
+                  float left, std::size_t pixel, PassImage& image) {
+  const Medium& medium = input.world.medium;
+  std::vector<float> sums(medium.volumes.size());
+  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot) {
+    const Rgb before = profile.channels(medium, knot - 1), after = profile.channels(medium, knot);
+    for (int c = 0; c < 3; ++c) {
+      const float piece = after[c] - before[c];
+      if (!(piece > 0))
+        continue;
+      const float added = std::exp(-before[c]) * -std::expm1(-piece) / (3 * piece);
+      for (std::size_t v = 0; v < sums.size(); ++v)
+        sums[v] += added * medium.volumes[v].channel_scale[c] *
+                   (profile.tau(knot, v) - profile.tau(knot - 1, v));
+    }
+  }
+  const SceneObjects& objects = *input.objects;
+  for (std::size_t v = 0; v < sums.size(); ++v)
+    image.coverage[objects.of_volume[medium.volumes[v].setting]][pixel] += sums[v];
+  if (camera.hit)
+    image.coverage[objects.of_mesh[static_cast<std::size_t>(camera.hit->surface)]][pixel] += left;
+}
+
 } // namespace
 
 Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
@@ -84,6 +109,8 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
     image.emission[pixel] = emission_along(world.medium, camera.segment, profile,
                                            static_cast<float>(input.settings.cutoff));
   }
+  if (!image.coverage.empty())
+    add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep) {
     deep.add_opacity(world.medium, profile);
     if (!camera.segment.empty())

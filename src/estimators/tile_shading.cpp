@@ -82,7 +82,8 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
                  const GatherAlong& gather_along) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
-  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep);
+  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep,
+               input.object_count());
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
   if (world.surfaces)

@@ -1,5 +1,7 @@
 #include "film/film.h"
 
+#include "film/cryptomatte.h"
+
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -48,12 +50,12 @@ void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size
 } // namespace
 
 Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
-           std::optional<DeepFilm> deep)
+           std::optional<DeepFilm> deep, std::vector<std::string> objects)
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
       depth_(pixels()), group_names_(std::move(groups)),
-      groups_(group_names_.size(), CompensatedSums(3 * pixels())), squares_(3 * pixels()),
-      deep_(std::move(deep)), history_(width, height) {}
+      groups_(group_names_.size(), CompensatedSums(3 * pixels())), object_names_(std::move(objects)), coverage_(object_names_.size(), CompensatedSums(pixels())),
+      squares_(3 * pixels()), deep_(std::move(deep)), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)
@@ -73,6 +75,8 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
     invalid += add_values(emission_, emission, 3 * begin, 3 * end);
   for (std::size_t g = 0; g < groups_.size() && g < pass.groups.size(); ++g)
     add_values(groups_[g], components(pass.groups[g]), 3 * begin, 3 * end);
+  for (std::size_t i = 0; i < coverage_.size() && i < pass.coverage.size(); ++i)
+    add_values(coverage_[i], pass.coverage[i].data(), begin, end);
   invalid += add_values(opacity_, pass.opacity.data(), begin, end);
   invalid += add_values(depth_, pass.depth.data(), begin, end);
   for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
@@ -100,7 +104,7 @@ void Film::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
 void Film::merge(const Film& other) {
   check_size(other.width_, other.height_);
   if (glows_ != other.glows_ || group_names_ != other.group_names_ ||
-      deep_.has_value() != other.deep_.has_value())
+      object_names_ != other.object_names_ || deep_.has_value() != other.deep_.has_value())
     throw std::invalid_argument("a film with emission or groups of lights and one without, or with "
                                 "others, cannot be merged");
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -111,6 +115,8 @@ void Film::merge(const Film& other) {
       merge_values(emission_, other.emission_, 3 * begin, 3 * end);
     for (std::size_t g = 0; g < groups_.size(); ++g)
       merge_values(groups_[g], other.groups_[g], 3 * begin, 3 * end);
+    for (std::size_t i = 0; i < coverage_.size(); ++i)
+      merge_values(coverage_[i], other.coverage_[i], begin, end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
@@ -142,6 +148,8 @@ std::vector<ImagePlane> Film::planes() {
       add("group." + group_names_[g] + "." + channel, groups_[g], 3, c);
     planes.push_back({"squares." + channel, squares_.data() + c, 3});
   }
+  for (std::size_t i = 0; i < coverage_.size(); ++i)
+    add("object." + object_names_[i], coverage_[i], 1, 0);
   add("opacity", opacity_, 1, 0);
   add("depth", depth_, 1, 0);
   if (deep_)
@@ -225,6 +233,13 @@ Image Film::develop() const {
       image.channels.push_back(
           {fmt::format("light_{}.{}", group_names_[g], "RGB"[c]), std::move(data)});
     }
+  if (!object_names_.empty())
+    add_cryptomatte(
+        object_names_,
+        [&](std::size_t object, std::size_t pixel) {
+          return static_cast<float>(std::min(1.0, coverage_[object].high(pixel) / passes));
+        },
+        image);
   return image;
 }
 

@@ -27,9 +27,9 @@ constexpr float empty_depth = 1e10f;
 class Film {
 public:
   /// `glows`: passes may hold emission. `groups`: names of the groups of lights of passes. `deep`:
-  /// where rays are cut for a deep picture.
+  /// where rays are cut for a deep picture. `objects`: names of those whose coverage passes hold.
   Film(int width, int height, bool glows = false, std::vector<std::string> groups = {},
-       std::optional<DeepFilm> deep = std::nullopt);
+       std::optional<DeepFilm> deep = std::nullopt, std::vector<std::string> objects = {});
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
@@ -47,6 +47,10 @@ public:
   /// What a film takes for each pixel, beside its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 14 : 11) * CompensatedSums::bytes_per_value + 3 * sizeof(double);
+  }
+  /// And for each object whose coverage it holds, with that of a pass and the largest layers.
+  static constexpr std::size_t bytes_per_pixel_of_object() {
+    return CompensatedSums::bytes_per_value + sizeof(float);
   }
   /// And for each group of lights.
   static constexpr std::size_t bytes_per_pixel_of_group() {
@@ -69,7 +73,7 @@ public:
   /// glows, volume_emission (half), and depth.Z (float): the mean distance [world] of the medium,
   /// weighted by opacity, or empty_depth where there is none. Everything is black before the first
   /// pass.
-  /// Groups of lights come as light_NAME.
+  /// Groups of lights come as light_NAME, and objects as Cryptomatte (cryptomatte.h).
   Image develop() const;
   /// The deep picture; nullopt where the film holds none.
   std::optional<DeepImage> develop_deep() const;
@@ -106,6 +110,8 @@ private:
   CompensatedSums opacity_, depth_;
   std::vector<std::string> group_names_;
   std::vector<CompensatedSums> groups_; ///< 3 per pixel and group of lights
+  std::vector<std::string> object_names_;
+  std::vector<CompensatedSums> coverage_; ///< 1 per pixel and object
   std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
   std::optional<DeepFilm> deep_;
   PassHistory history_;

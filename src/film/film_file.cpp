@@ -4,6 +4,7 @@
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -71,11 +72,17 @@ FilmFileInfo parse_info(Image header, const std::string& path) {
   info.frame = static_cast<int>(frame);
   info.unbiased = number("vdbeam:unbiased") == 1;
   info.glows = header.find("film.emission.R.sum.low") != nullptr;
-  const std::string before = "film.group.", after = ".R.sum.low";
-  for (const ImageChannel& channel : header.channels)
-    if (channel.name.starts_with(before) && channel.name.ends_with(after))
-      info.groups.push_back(
-          channel.name.substr(before.size(), channel.name.size() - before.size() - after.size()));
+  const auto names_between = [&](const std::string& before, const std::string& after) {
+    std::vector<std::string> names;
+    for (const ImageChannel& channel : header.channels)
+      if (channel.name.starts_with(before) && channel.name.ends_with(after))
+        names.push_back(
+            channel.name.substr(before.size(), channel.name.size() - before.size() - after.size()));
+    return names;
+  };
+  info.groups = names_between("film.group.", ".R.sum.low");
+  info.objects = names_between("film.object.", ".sum.low");
+  std::sort(info.objects.begin(), info.objects.end());
   for (const ImageChannel& channel : header.channels) {
     info.deep_edge_planes += channel.name.starts_with("film.deep.edges.") ? 1 : 0;
     info.deep_piece_planes += channel.name.starts_with("film.deep.rests.") ? 1 : 0;
@@ -127,7 +134,8 @@ Film read_film(const std::string& path, const FilmFileInfo& info) {
   if (info.deep_piece_planes > 0)
     deep.emplace(static_cast<std::size_t>(info.header.width) * info.header.height,
                  info.deep_edge_planes, info.deep_piece_planes);
-  Film film(info.header.width, info.header.height, info.glows, info.groups, std::move(deep));
+  Film film(info.header.width, info.header.height, info.glows, info.groups, std::move(deep),
+            info.objects);
   if (!read_planes(path, info.header.width, info.header.height, file_planes(film)))
     fail_damaged(path);
   const auto error = info.header.numbers.find("vdbeam:deepAlphaError");

@@ -14,7 +14,7 @@ const std::vector<std::string>& usual_names() {
   static const std::vector<std::string> names{"beauty",        "alpha",           "volume",
                                               "volume_direct", "volume_indirect", "volume_emission",
                                               "depth",         "background",      "transmittance",
-                                              "variance",      "lights"};
+                                              "variance",      "lights",          "cryptomatte"};
   return names;
 }
 
@@ -26,6 +26,8 @@ bool holds(const std::string& layer, const std::string& channel) {
     return channel == "A";
   if (layer == "lights")
     return channel.starts_with("light_");
+  if (layer == "cryptomatte")
+    return channel.starts_with("CryptoObject");
   return channel.starts_with(layer + ".");
 }
 
@@ -58,6 +60,9 @@ Image develop_layers(const Film& film, const std::vector<LayerSettings>& layers)
       channel.half = wanted->precision == LayerPrecision::half;
     image.channels.push_back(std::move(channel));
   }
+  if (!image.find("CryptoObject00.R"))
+    std::erase_if(image.metadata,
+                  [](const auto& attribute) { return attribute.first.starts_with("cryptomatte/"); });
   return image;
 }
 

@@ -14,6 +14,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfRationalAttribute.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTimeCodeAttribute.h>
 #include <ImfVecAttribute.h>
@@ -41,6 +42,12 @@ void check_attribute_sizes(const std::string& path) {
 }
 
 void copy_attributes(const Imf::Header& header, Image& image) {
+  if (Imf::hasChromaticities(header)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    const auto number = [](float x) { return static_cast<double>(x); };
+    image.primaries = {number(c.red.x),  number(c.red.y),  number(c.green.x), number(c.green.y),
+                       number(c.blue.x), number(c.blue.y), number(c.white.x), number(c.white.y)};
+  }
   for (auto it = header.begin(); it != header.end(); ++it) {
     const Imf::Attribute& attribute = it.attribute();
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))

@@ -49,6 +49,14 @@ bool fits_half(const ImageChannel& channel) {
   return largest == 0 || (largest <= HALF_MAX && largest >= 16 * HALF_NRM_MIN);
 }
 
+Imf::Chromaticities exr_chromaticities(const Chromaticities& c) {
+  const auto point = [](double x, double y) {
+    return Imath::V2f(static_cast<float>(x), static_cast<float>(y));
+  };
+  return {point(c.red_x, c.red_y), point(c.green_x, c.green_y), point(c.blue_x, c.blue_y),
+          point(c.white_x, c.white_y)};
+}
+
 /// Hours, minutes, seconds and frames, as "01:02:03:04"; any other text is left out.
 void add_time_code(Imf::Header& header, const std::string& text) {
   int part[4] = {};
@@ -68,7 +76,8 @@ Imf::Header exr_header(const Image& image, const std::string& path) {
                            : data;
   Imf::Header header(display, data);
   header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709, D65
+  if (image.primaries)
+    Imf::addChromaticities(header, exr_chromaticities(*image.primaries));
   for (const auto& [name, text] : image.metadata) {
     if (name == "timeCode")
       add_time_code(header, text);

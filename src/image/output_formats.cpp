@@ -1,5 +1,6 @@
 #include "image/output_formats.h"
 
+#include "image/color_conversion.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -16,7 +17,13 @@ namespace {
 constexpr OutputFormat formats[] = {
     {".exr", "OpenEXR, every channel, linear", true,
      [](const Image& image, const std::string& path, const WriteOptions&) {
-       write_exr(image, path);
+       const auto space = image.metadata.find("vdbeam:outputSpace");
+       if (space == image.metadata.end())
+         return write_exr(image, path);
+       Image converted = image;
+       converted.metadata.erase("vdbeam:outputSpace");
+       convert_to_output_space(converted, space->second);
+       write_exr(converted, path);
      }},
     {".png", "8-bit sRGB preview", false,
      [](const Image& image, const std::string& path, const WriteOptions& options) {

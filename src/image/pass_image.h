@@ -30,6 +30,9 @@ struct PassImage {
   /// Tr sigma_t t dt (mean over channels). Its sum over the passes divided by the sum of opacity is
   /// the depth of the medium.
   std::vector<float> depth;
+  /// Per object of the scene, how much of each pixel it covers: what it adds to the opacity of the
+  /// ray. Empty where nobody asks for it.
+  std::vector<std::vector<float>> coverage;
   /// Where rays are cut for a deep picture; null where nobody asks for one.
   const DeepLayout* deep_layout = nullptr;
   /// Per piece of the layout, the light of the medium (R, G, B) and the opacity that it adds.
@@ -44,7 +47,8 @@ struct PassImage {
   static constexpr int tile_width = 16;
 
   /// `glows`: there is something to hold in `emission`.
-  void resize(int w, int h, bool glows = false, const DeepLayout* layout = nullptr) {
+  void resize(int w, int h, bool glows = false, const DeepLayout* layout = nullptr,
+              std::size_t objects = 0) {
     width = w;
     height = h;
     const std::size_t n = static_cast<std::size_t>(w) * h;
@@ -53,6 +57,7 @@ struct PassImage {
     background.assign(n, {});
     emission.assign(glows ? n : 0, {});
     groups.clear();
+    coverage.assign(objects, std::vector<float>(n));
     opacity.assign(n, 0);
     depth.assign(n, 0);
     deep_layout = layout;

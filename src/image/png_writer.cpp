@@ -1,3 +1,4 @@
+#include "image/color_conversion.h"
 #include "image/view_transform.h"
 #include "machine/atomic_file.h"
 #include "vdbeam/error.h"
@@ -52,8 +53,14 @@ std::vector<unsigned char> encode_pixels(const Image& image, const std::string& 
 
 } // namespace
 
-void write_png(const Image& image, const std::string& path, double exposure,
+void write_png(const Image& picture, const std::string& path, double exposure,
                const std::string& view) {
+  Image shown;
+  if (picture.primaries && !picture.primaries->is_near({})) {
+    shown = picture;
+    convert_colors(shown, {}); // to those of a screen
+  }
+  const Image& image = shown.channels.empty() ? picture : shown;
   const std::vector<unsigned char> pixels =
       encode_pixels(image, path, exposure, view_transform(view));
   png_image png{};

@@ -1,3 +1,4 @@
+#include "image/color_conversion.h"
 #include "lights/entry_sampler.h"
 #include "lights/environment_image.h"
 #include "lights/light_table.h"
@@ -41,7 +42,9 @@ std::unique_ptr<Light> make_environment_light(const LightSettings& settings,
                                               const LightContext& context) {
   if (settings.image.empty())
     return std::make_unique<ConstantEnvironment>(settings.radiance, context.region);
-  return make_environment_image(read_image(settings.image), settings.image, settings, context);
+  Image image = read_image(settings.image);
+  convert_colors(image, chromaticities_of(settings.color_space));
+  return make_environment_image(image, settings.image, settings, context);
 }
 
 constexpr std::string_view environment_keys[] = {"radiance", "image", "rotation"};

@@ -91,11 +91,13 @@ Image finish_image(const Film& film, const FilmFileInfo& info) {
   Image image =
       develop_layers(film, layers == header.metadata.end() ? std::vector<LayerSettings>{}
                                                            : layers_of_text(layers->second));
+  image.primaries = header.primaries;
   image.x = header.x;
   image.y = header.y;
   image.full_width = header.full_width;
   image.full_height = header.full_height;
-  image.metadata = header.metadata;
+  for (const auto& [name, text] : header.metadata)
+    image.metadata[name] = text; // beside those of Cryptomatte
   image.numbers = header.numbers;
   image.integers = header.integers;
   image.matrices = header.matrices;

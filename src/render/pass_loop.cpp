@@ -58,7 +58,8 @@ Film PassLoop::make_film() const {
   if (deep_layout_)
     deep.emplace(cut_out(*deep_layout_, scene_.image.raster_width(), window_));
   return {window_.width(), window_.height(), scene_.glows(), light_group_names(scene_),
-          std::move(deep)};
+          std::move(deep),
+          scene_.image.cryptomatte ? scene_objects(scene_).names : std::vector<std::string>()};
 }
 
 void PassLoop::gather_deep(const DeepLayout& layout) {
@@ -314,6 +315,7 @@ void PassLoop::write_checkpoint() {
 
 void PassLoop::develop() {
   result_.image = develop_layers(film_, scene_.layers);
+  result_.image.primaries = chromaticities_of(scene_.image.working_space);
   result_.deep = film_.develop_deep();
   if (!whole_ || scene_.image.overscan > 0)
     place(result_.image);
@@ -329,6 +331,7 @@ void PassLoop::place(Image& image) const {
 
 FilmFileInfo PassLoop::file_info() const {
   FilmFileInfo info;
+  info.header.primaries = chromaticities_of(scene_.image.working_space);
   info.arithmetic = arithmetic_fingerprint();
   info.header.width = window_.width();
   info.header.height = window_.height();

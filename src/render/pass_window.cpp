@@ -16,6 +16,7 @@ bool is_finished(const PassImage& pass, const PixelRegion& window) {
 PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
   PassImage part;
   part.resize(window.width(), window.height(), !pass.emission.empty());
+  part.coverage.assign(pass.coverage.size(), std::vector<float>(part.direct.size()));
   part.groups.assign(pass.groups.size(), std::vector<Rgb>(part.direct.size()));
   for (int y = 0; y < window.height(); ++y) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
@@ -30,6 +31,8 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
       copy(pass.emission, part.emission);
     for (std::size_t g = 0; g < pass.groups.size(); ++g)
       copy(pass.groups[g], part.groups[g]);
+    for (std::size_t i = 0; i < pass.coverage.size(); ++i)
+      copy(pass.coverage[i], part.coverage[i]);
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }

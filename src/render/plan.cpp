@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/light_groups.h"
+#include "film/cryptomatte.h"
 #include "film/film.h"
 #include "photonmap/photon_map.h"
 #include "render/plan_needs.h"
@@ -43,6 +44,13 @@ public:
     add_bias();
     add(Stage::environment, needs_.surrounded,
         needs_.surrounded ? "a light surrounds the scene" : "no light surrounds the scene");
+    const bool moves = !scene_.moments.empty();
+    add(Stage::moments, moves,
+        moves ? "the shutter is open: passes see moments of their own"
+              : "nothing moves, or the shutter is open for no time");
+    add(Stage::deep, scene_.image.deep,
+        scene_.image.deep ? "image.deep: light and opacity are told apart by depth"
+                          : "no deep picture is asked for");
     return std::move(stages_);
   }
 
@@ -166,6 +174,23 @@ std::uint64_t volume_memory(const std::vector<VolumeFacts>& volumes) {
   return bytes;
 }
 
+/// Volumes that are seen at several moments, and may have a velocity.
+bool may_move(const Scene& scene) {
+  for (const VolumeSettings& volume : scene.volumes)
+    if (!scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
+        volume.velocity.scale != 0)
+      return true;
+  return false;
+}
+
+/// A ray that ends in opaque matter after the whole medium has the most pieces.
+std::uint64_t deep_memory(const ImageSettings& image) {
+  constexpr double by_depth = 16, share = 1.0 / 3;
+  const double pieces = share * (1 / image.deep_alpha + by_depth);
+  return static_cast<std::uint64_t>(pieces * image.raster_width() * image.raster_height() *
+                                    static_cast<double>(DeepFilm::bytes_per_piece()));
+}
+
 /// The largest number stands for whatever does not fit in 64 bits.
 std::uint64_t photon_memory(std::uint64_t photons, int channels, bool directions) {
   const std::uint64_t bytes = PhotonMap::build_bytes_per_photon(channels, directions);
@@ -188,9 +213,14 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);
+  if (may_move(scene))
+    plan.moment_bytes = 2 * plan.volume_bytes;
+  if (scene.image.deep)
+    plan.deep_bytes = deep_memory(scene.image);
   plan.film_bytes =
       film_memory(scene.image, scene.image.raster_width(), scene.image.raster_height(),
-                  scene.glows(), light_group_names(scene).size());
+                  scene.glows(), light_group_names(scene).size(),
+                  scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
   return plan;
 }
 
@@ -210,11 +240,14 @@ RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes) {
 }
 
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows,
-                          std::size_t groups) {
+                          std::size_t groups, std::size_t objects) {
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
-  return PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
+  constexpr std::size_t cryptomatte = 2 * CryptomatteWriter::ranks * sizeof(float);
+  return (objects > 0 ? cryptomatte : 0) * pixels(width, height) +
+         objects * Film::bytes_per_pixel_of_object() * pixels(width, height) +
+         PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
          groups * sizeof(Rgb) * pixels(image.raster_width(), image.raster_height()) +
          (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows) +
           groups * Film::bytes_per_pixel_of_group()) *

@@ -27,8 +27,9 @@ RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes);
 RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes);
 
 /// Bytes of a pass over the picture, and of the film and the picture developed from it where only
-/// `width` x `height` pixels are wanted. `glows`: with emission; `groups`: of lights.
+/// `width` x `height` pixels are wanted. `glows`: with emission; `groups`: of lights;
+/// `objects`: whose coverage is asked for.
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows = false,
-                          std::size_t groups = 0);
+                          std::size_t groups = 0, std::size_t objects = 0);
 
 } // namespace vdbeam

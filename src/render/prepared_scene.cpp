@@ -4,6 +4,7 @@
 #include "render/memory_check.h"
 #include "render/read_volumes.h"
 #include "scene/scene_keys.h"
+#include "scene/working_space.h"
 
 #include <fmt/format.h>
 
@@ -64,7 +65,10 @@ std::string moved_world_settings(const Scene& moment, const PreparedScene& prepa
   return text;
 }
 
-PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
+namespace {
+
+/// The same of a scene whose colours are in its working space.
+PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   Stopwatch watch;
   auto prepared = std::make_shared<PreparedScene>();
   prepared->world_settings =
@@ -110,6 +114,14 @@ PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previ
         prepared->world->medium.volumes[static_cast<std::size_t>(read.index)].limited)
       read.identity.clear(); // another frame's extinction may ask for other limits
   return prepared;
+}
+
+} // namespace
+
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
+  if (scene.image.working_space == ColorSpace::rec709)
+    return prepare(scene, previous);
+  return prepare(in_working_space(scene), previous);
 }
 
 } // namespace vdbeam

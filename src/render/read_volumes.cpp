@@ -4,6 +4,7 @@
 #include "scene/scene_keys.h"
 #include "volume/edited_field.h"
 #include "volume/moved_field.h"
+#include "volume/refined_grid.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -30,8 +31,9 @@ std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& 
 /// The settings that edit a volume's density, as text.
 std::string edits_text(const VolumeSettings& volume) {
   const DensityRemap& r = volume.remap;
-  return fmt::format("|{}|{}|{}|{}|{}|{}", volume.mask, r.scale, r.offset, r.least,
-                     r.most.value_or(-1), r.power);
+  return fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}", volume.mask, r.scale, r.offset, r.least,
+                     r.most.value_or(-1), r.power, r.curve,
+                     static_cast<int>(volume.interpolation));
 }
 
 /// The box that a volume is clipped to, and what places it there.
@@ -59,6 +61,8 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
 /// The density as its file has it, times its mask.
 DensityGrid read_density(const VolumeSettings& volume) {
   DensityGrid grid = read_density_grid(volume.file, volume.density);
+  if (volume.interpolation == Interpolation::cubic)
+    grid = refined_grid(grid, volume.file, granted_memory());
   if (volume.mask.empty())
     return grid;
   const DensityGrid mask = read_density_grid(volume.file, volume.mask, {}, Background::ignored);
@@ -72,7 +76,9 @@ DensityGrid read_density(const VolumeSettings& volume) {
 
 /// Everything that decides an emission field but the contents of the file; its strength does not.
 std::string emission_identity(const VolumeSettings& volume) {
-  std::string text = file_identity(volume.file) + box_text(volume);
+  std::string text = file_identity(volume.file) + box_text(volume) +
+                     fmt::format("|{}|{}", static_cast<int>(volume.emission.color_space),
+                                 static_cast<int>(volume.interpolation));
   Scene scene;
   scene.volumes.push_back(volume);
   for (const SceneKey& key : scene_keys())
@@ -130,13 +136,15 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
       for (const ReadVolume& known : previous->volumes)
         if (known.emission_identity == read.emission_identity)
           return known.emission;
-    if (!volume.box_lower)
+    if (!volume.box_lower && volume.interpolation == Interpolation::linear)
       return read_emission_grid(volume.file, volume.emission);
   }
   const auto take = [&](const std::string& name) -> DensityGrid {
     if (name.empty())
       return {};
     DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored);
+    if (volume.interpolation == Interpolation::cubic)
+      grid = refined_grid(grid, volume.file, granted_memory());
     if (motion)
       grid = moved_grid(grid, *motion, volume.file, granted_memory());
     grid.field = edited_field(grid.field, edits_of(volume, grid, false));

@@ -86,7 +86,8 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());
   result.plan = plan_stages(scene, volumes);
   result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows(),
-                                       light_group_names(scene).size());
+                                       light_group_names(scene).size(),
+                                       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
   check_memory(scene, result.plan, granted_memory());
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
@@ -98,6 +99,11 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   if (result.plan.needs(Stage::bias) && result.plan.needs(Stage::beam_query)) {
     blur_pixels = choose_blur_pixels(window, camera.width(), loop.probe_pixels());
     input.blur_pixels = &blur_pixels;
+  }
+  SceneObjects objects;
+  if (scene.image.cryptomatte) {
+    objects = scene_objects(scene);
+    input.objects = &objects;
   }
   DeepLayout deep;
   if (scene.image.deep) {

@@ -1,12 +1,15 @@
 #include "render/shutter.h"
 
+#include "estimators/beam_plan.h"
 #include "estimators/light_groups.h"
+#include "estimators/photon_pass.h"
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/prepared_scene.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace vdbeam {
 namespace {
@@ -35,7 +38,7 @@ Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
                              from.frame,       from.window, from.stop,     prepared->photons.get(),
-                             from.blur_pixels, from.deep},
+                             from.blur_pixels, from.deep, from.objects},
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
@@ -76,6 +79,25 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   return {*renderer.estimator, renderer.probe.get()};
 }
 
+/// The kernels depend on the scene alone, never on which moment came first.
+const EstimatorInput& Shutter::moved_input() {
+  if (moved_input_)
+    return *moved_input_;
+  moved_settings_ = input_.settings;
+  moved_plan_ = input_.plan;
+  if (input_.plan.needs(Stage::kernel_pilot) && light_group_names(scene_).empty()) {
+    const PhotonPass pilot(input_, plan_beam_photons, KernelDomain::disc);
+    moved_settings_.neighbours = static_cast<int>(std::lround(pilot.plan().neighbours));
+    for (PlanStage& stage : moved_plan_.stages)
+      if (stage.stage == Stage::kernel_pilot)
+        stage.needed = false;
+  }
+  moved_input_.emplace(EstimatorInput{input_.world, input_.camera, moved_settings_, moved_plan_,
+                                      input_.frame, input_.window, input_.stop, input_.photons,
+                                      input_.blur_pixels, input_.deep, input_.objects});
+  return *moved_input_;
+}
+
 Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
   const std::string key = &moment == &scene_ ? "" : moved_world_settings(moment, *prepared_);
   std::unique_ptr<MomentRenderer>& renderer = renderers_[key];
@@ -83,7 +105,8 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
     const PreparedScenePtr prepared =
         &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
     renderer = std::make_unique<MomentRenderer>(
-        prepared, Camera(moment.camera, scene_.image, prepared->world->space), input_, path_plan_);
+        prepared, Camera(moment.camera, scene_.image, prepared->world->space),
+        prepared->world == prepared_->world ? input_ : moved_input(), path_plan_);
     make_room();
     return *renderers_[key];
   }

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace vdbeam {
@@ -13,7 +14,8 @@ namespace vdbeam {
 /// scene in an order that spreads any number of passes over the shutter (van der Corput's
 /// sequence, shifted by the seed), a pure function of the pass' number. Where the camera alone
 /// moves all passes share one world; else worlds are built when they are first needed, and kept as
-/// far as memory goes.
+/// far as memory goes. The kernels that the scene's own moment asks for serve all of them: to try
+/// some at each would take longer than a pass.
 class Shutter {
 public:
   /// What renders a pass, until the next call of `at`.
@@ -50,12 +52,17 @@ private:
   };
 
   MomentRenderer& renderer_of(const Scene& moment);
+  const EstimatorInput& moved_input();
   void make_room();
 
   const Scene& scene_;
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
+  /// Settings, plan and input of the moments whose worlds are others than the scene's own.
+  RenderSettings moved_settings_;
+  RenderPlan moved_plan_;
+  std::optional<EstimatorInput> moved_input_;
   const std::vector<std::size_t>& probe_pixels_;
   std::unique_ptr<Estimator> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>

@@ -117,6 +117,8 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);
   if (scene.image.compression != Compression::zip)
     image.metadata["vdbeam:compression"] = enum_name(scene.image.compression);
+  if (!scene.image.output_space.empty())
+    image.metadata["vdbeam:outputSpace"] = scene.image.output_space;
   image.numbers["vdbeam:frame"] = scene.frame.number;
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "not one pass was finished";

@@ -114,7 +114,9 @@ Json plan_json(const RenderPlan& plan) {
           {"memory",
            {{"volumes", plan.volume_bytes},
             {"photons", plan.photon_bytes},
-            {"film", plan.film_bytes}}}};
+            {"film", plan.film_bytes},
+            {"moments", plan.moment_bytes},
+            {"deep", plan.deep_bytes}}}};
 }
 
 Json report_json(const Scene& scene, const RenderResult& result, const ReportContext& context) {

@@ -26,6 +26,17 @@ void add_image_keys(KeyTable& table) {
   table.add("compression", &I::compression, "of the EXR; dwaa and dwab lose digits")
       .keeps_picture()
       .keeps_world();
+  table.add("working_space", &I::working_space,
+            "linear RGB in which light is rendered; colours in scene files are of Rec.709");
+  table
+      .add(
+          "output_space", &I::output_space,
+          R"(colour space of the EXR: one of these, or of the OpenColorIO configuration; "": as rendered)")
+      .keeps_picture()
+      .keeps_world();
+  table
+      .add("cryptomatte", &I::cryptomatte, "whether the image has ids of volumes and meshes")
+      .keeps_world();
   table.add("deep", &I::deep, "whether a deep EXR with the medium's samples is written too")
       .keeps_world();
   table.add("deep_alpha", &I::deep_alpha, "the most that a deep sample adds to the opacity")

@@ -71,6 +71,19 @@ struct EnumNames<Compression> {
        {Compression::dwab, "dwab"}}};
 };
 template <>
+struct EnumNames<Interpolation> {
+  static constexpr std::array<std::pair<Interpolation, std::string_view>, 2> table{
+      {{Interpolation::linear, "linear"}, {Interpolation::cubic, "cubic"}}};
+};
+template <>
+struct EnumNames<ColorSpace> {
+  static constexpr std::array<std::pair<ColorSpace, std::string_view>, 4> table{
+      {{ColorSpace::rec709, "rec709"},
+       {ColorSpace::rec2020, "rec2020"},
+       {ColorSpace::acescg, "acescg"},
+       {ColorSpace::aces2065_1, "aces2065_1"}}};
+};
+template <>
 struct EnumNames<PhaseType> {
   static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
       {{PhaseType::isotropic, "isotropic"},

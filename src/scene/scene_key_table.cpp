@@ -30,6 +30,8 @@ void add_volume(KeyTable& table) {
   table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
       .within(0, 1)
       .always_written();
+  table.add("name", &V::name, R"(its name in Cryptomatte; "": volume0, volume1, ...)")
+      .keeps_world();
   add_placement(table, &V::transform);
 
   table.add("mask", &V::mask, R"(name of a grid whose values multiply the density; "": none)");
@@ -39,6 +41,10 @@ void add_volume(KeyTable& table) {
   table.add("density_min", &D::least, "what is less after that becomes 0").at_least(0);
   table.add("density_max", &D::most, "what is more becomes this").above(0).absent("none");
   table.add("density_power", &D::power, "what is left is raised to this power").above(0);
+  table.add("density_curve", &D::curve,
+            R"(and goes through this curve of points "x:y x:y ...", linear in between; "": none)");
+  table.add("interpolation", &V::interpolation,
+            "of density and emission between voxels; cubic takes ten times the memory");
   table.add("box_lower", &V::box_lower, "lower corner of a box outside of which nothing is seen")
       .unit("world")
       .absent("none");
@@ -80,6 +86,8 @@ void add_emission(KeyTable& table) {
   table.add("reference", &E::reference, "temperature at which a black body's luminance is 1")
       .unit("kelvin")
       .within(100, 100000);
+  table.add("ramp", &E::ramp,
+            R"(colours by the temperature's value, or else the intensity's: "x:r,g,b ..."; "": none)");
   table.add("color", &E::color, "factor per channel").at_least(0).scales_emission();
   table.add("scale", &E::scale, "radiance per world unit where all of the above are 1")
       .unit("radiance / world")
@@ -97,6 +105,7 @@ void add_mesh(KeyTable& table) {
       .kind(KeyKind::file)
       .types({"file"});
   table.add("visible", &S::visible, "whether the camera sees it; it stops light in any case");
+  table.add("name", &S::name, R"(its name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
   add_placement(table, &S::transform);
 
   using M = MaterialSettings;

@@ -3,8 +3,10 @@
 #include "estimators/estimator_table.h"
 #include "estimators/light_groups.h"
 #include "film/layers.h"
+#include "image/color_conversion.h"
 #include "lights/light_table.h"
 #include "scene/scene_keys.h"
+#include "text/curve.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
@@ -63,6 +65,10 @@ public:
   void check_volume(std::size_t index) const {
     check_transform(fmt::format("volume.{}.transform", index), scene_.volumes[index].transform);
     const VolumeSettings& volume = scene_.volumes[index];
+    if (const std::string why = why_no_curve(volume.remap.curve, 1); !why.empty())
+      fail(fmt::format("volume.{}.density_curve", index), why);
+    if (const std::string why = why_no_curve(volume.emission.ramp, 3); !why.empty())
+      fail(fmt::format("volume.{}.emission.ramp", index), why);
     if (volume.box_lower.has_value() != volume.box_upper.has_value())
       fail(fmt::format("volume.{}.{}", index, volume.box_lower ? "box_lower" : "box_upper"),
            "needs the other corner too: box_lower and box_upper");
@@ -144,6 +150,8 @@ public:
       fail("render.estimator", fmt::format("is \"{}\", which cannot render a [[mesh]] yet: write "
                                            "estimator = \"path\"",
                                            render.estimator.name));
+    if (const std::string why = why_no_output_space(scene_.image.output_space); !why.empty())
+      fail("image.output_space", why);
     if (scene_.image.deep && render.clamp)
       fail("image.deep", "excludes render.clamp");
     if (render.kernel == KernelRadius::fixed && render.radius == 0)

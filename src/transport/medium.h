@@ -23,6 +23,7 @@ struct Volume {
   float extinction = 1;       ///< per render unit, of the strongest channel
   Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
   Rgb albedo{1, 1, 1};
+  std::size_t setting = 0; ///< which volume of the scene it is
   int phase_index = 0;  ///< index into Medium::phases
   float voxel_size = 1; ///< smallest edge of a voxel, render units
   bool limited = false; ///< densities were reduced to what can be tracked

@@ -225,6 +225,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
     Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, found.notes);
+    volume.setting = i;
     volume.phase_index = phase_index_of(world.medium.phases, known, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));

@@ -78,14 +78,18 @@ struct Table {
   std::array<double, entries> log_luminance{};
   std::array<Vec3d, entries> color{};
 
-  Table() {
+  explicit Table(ColorSpace space) {
+    const ColorMatrix from_rec709 =
+        rgb_matrix(chromaticities_of(ColorSpace::rec709), chromaticities_of(space));
+    const ColorMatrix to_rec709 =
+        rgb_matrix(chromaticities_of(space), chromaticities_of(ColorSpace::rec709));
     for (std::size_t i = 0; i < entries; ++i) {
       const double kelvin =
           coldest * std::pow(hottest / coldest, static_cast<double>(i) / (entries - 1));
       const Vec3d xyz = scaled_xyz(kelvin);
       log_luminance[i] = std::log(xyz.y) - wien / kelvin;
-      const Vec3d rgb = max(xyz_to_rgb(xyz / xyz.y), Vec3d(0));
-      color[i] = rgb / luminance(rgb);
+      const Vec3d rgb = max(from_rec709.apply(xyz_to_rgb(xyz / xyz.y)), Vec3d(0));
+      color[i] = rgb / luminance(to_rec709.apply(rgb));
     }
   }
   /// The value between two entries; kelvin within the table's ends.
@@ -97,9 +101,13 @@ struct Table {
   }
 };
 
-const Table& table() {
-  static const Table instance;
-  return instance;
+const Table& table(ColorSpace space = ColorSpace::rec709) {
+  static const Table rec709(ColorSpace::rec709);
+  if (space == ColorSpace::rec709)
+    return rec709;
+  static const Table others[] = {Table(ColorSpace::rec2020), Table(ColorSpace::acescg),
+                                 Table(ColorSpace::aces2065_1)};
+  return others[space == ColorSpace::rec2020 ? 0 : space == ColorSpace::acescg ? 1 : 2];
 }
 
 double log_luminance(double kelvin) {
@@ -131,8 +139,8 @@ double luminance(const Vec3d& rgb) {
   return 0.2126729 * rgb.x + 0.7151522 * rgb.y + 0.0721750 * rgb.z;
 }
 
-Vec3d blackbody_color(double kelvin) {
-  return Table::read(table().color, std::clamp(kelvin, coldest, hottest));
+Vec3d blackbody_color(double kelvin, ColorSpace space) {
+  return Table::read(table(space).color, std::clamp(kelvin, coldest, hottest));
 }
 
 double blackbody_luminance(double kelvin, double reference) {

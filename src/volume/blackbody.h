@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdbeam/vec.h"
+#include "vdbeam/color_space.h"
 
 namespace vdbeam {
 
@@ -15,9 +15,10 @@ Vec3d xyz_to_rgb(const Vec3d& xyz);
 double luminance(const Vec3d& rgb);
 
 /// The colour of a black body with luminance 1. Below about 1900 K it lies outside of what Rec.709
-/// can show: components below 0 count as 0, and the luminance is made 1 again. Temperatures below
-/// 500 K and above 50,000 K have the colour of those.
-Vec3d blackbody_color(double kelvin);
+/// can show: components below 0 count as 0, and the luminance is made 1 again. The other spaces
+/// hold it down to 900 K and less. Temperatures below 500 K and above 50,000 K have the colour of
+/// those.
+Vec3d blackbody_color(double kelvin, ColorSpace space = ColorSpace::rec709);
 
 /// planck_xyz(kelvin).y / planck_xyz(reference).y, without overflow or underflow on the way. From
 /// a table with a relative error below 1e-4 from 500 to 50,000 K, with the laws of Wien and of

@@ -18,6 +18,8 @@ public:
     Affine shift;
     shift.translation = Vec3d(field.origin());
     to_world_ = edits.to_world.after(shift);
+    if (!edits.remap.curve.empty())
+      curve_.emplace(edits.remap.curve, 1);
     if (!edits.mask)
       return;
     Affine back;
@@ -56,7 +58,7 @@ private:
           if (entry >= 0 || (entry != DensityField::empty_cell && !stays_uniform(i, j, k)))
             target = static_cast<std::int32_t>(brick_count_++);
           else if (entry != DensityField::empty_cell) {
-            const float value = remapped(edits_.remap, field_.uniform_value(entry));
+            const float value = remapped(edits_.remap, curve(), field_.uniform_value(entry));
             if (value == 0)
               continue;
             target = DensityField::uniform_base - static_cast<std::int32_t>(uniform_.size());
@@ -87,7 +89,7 @@ private:
       return 0;
     if (edits_.mask)
       value *= edits_.mask->field.sample(Vec3f(to_mask_.point(local)));
-    return remapped(edits_.remap, value);
+    return remapped(edits_.remap, curve(), value);
   }
   /// Returns false where all values are 0.
   bool fill_brick(int i, int j, int k, float* brick) const {
@@ -106,8 +108,11 @@ private:
     return any;
   }
 
+  const Curve* curve() const { return curve_ ? &*curve_ : nullptr; }
+
   const DensityField& field_;
   const GridEdits& edits_;
+  std::optional<Curve> curve_;
   Affine to_world_, to_mask_;
   std::vector<std::int32_t> table_;
   std::vector<float> uniform_;
@@ -117,6 +122,13 @@ private:
 } // namespace
 
 float remapped(const DensityRemap& remap, float value) {
+  if (remap.curve.empty())
+    return remapped(remap, nullptr, value);
+  const Curve curve(remap.curve, 1);
+  return remapped(remap, &curve, value);
+}
+
+float remapped(const DensityRemap& remap, const Curve* curve, float value) {
   if (!(value > 0))
     return 0;
   double x = remap.scale * static_cast<double>(value) + remap.offset;
@@ -126,6 +138,8 @@ float remapped(const DensityRemap& remap, float value) {
     x = std::min(x, *remap.most);
   if (remap.power != 1)
     x = std::pow(x, remap.power);
+  if (curve)
+    x = curve->at(x);
   const auto result = static_cast<float>(x);
   return std::isfinite(result) ? result : 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "text/curve.h"
 #include "vdbeam/volume_edits.h"
 #include "volume/vdb_reader.h"
 
@@ -21,6 +22,8 @@ struct GridEdits {
 
 /// A value after the remapping; 0 stays 0.
 float remapped(const DensityRemap& remap, float value);
+/// The same with its curve read already; null: it has none.
+float remapped(const DensityRemap& remap, const Curve* curve, float value);
 
 /// Applies the edits to a field with this origin.
 DensityField edited_field(const DensityField& field, const GridEdits& edits);

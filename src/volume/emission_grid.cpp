@@ -1,9 +1,12 @@
 #include "volume/emission_grid.h"
 
+#include "text/curve.h"
 #include "vdbeam/error.h"
 #include "volume/blackbody.h"
 
 #include <fmt/format.h>
+
+#include <optional>
 
 namespace vdbeam {
 
@@ -17,8 +20,38 @@ Rgb blackbody_emission(const EmissionSettings& settings, float value) {
   else if (settings.law == EmissionLaw::stefan_boltzmann)
     brightness = std::pow(kelvin / settings.reference, 4);
   constexpr double most = 1e30; // far from the end of single precision
-  return Rgb(blackbody_color(kelvin) * std::min(brightness, most));
+  return Rgb(blackbody_color(kelvin, settings.color_space) * std::min(brightness, most));
 }
+
+namespace {
+
+/// What a value of the grid that tells the colour gives.
+class ColorLaw {
+public:
+  explicit ColorLaw(const EmissionSettings& settings) : settings_(settings) {
+    if (settings.ramp.empty())
+      return;
+    ramp_.emplace(settings.ramp, 3);
+    to_working_space_ = rgb_matrix(chromaticities_of(ColorSpace::rec709),
+                                   chromaticities_of(settings.color_space));
+  }
+  bool has_ramp() const { return ramp_.has_value(); }
+  Rgb at(float value) const {
+    if (!ramp_)
+      return blackbody_emission(settings_, value);
+    if (!(value > 0))
+      return {};
+    const auto x = static_cast<double>(value);
+    return Rgb(to_working_space_.apply({ramp_->at(x, 0), ramp_->at(x, 1), ramp_->at(x, 2)}));
+  }
+
+private:
+  const EmissionSettings& settings_;
+  std::optional<Curve> ramp_;
+  ColorMatrix to_working_space_;
+};
+
+} // namespace
 
 EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& intensity,
                            const DensityGrid& temperature, const std::string& label,
@@ -42,19 +75,22 @@ EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& 
                                  label, static_cast<double>(bytes) / (1 << 30),
                                  static_cast<double>(maximum_bytes) / (1 << 30)));
   EmissionField::Law law;
-  if (!hot)
+  const ColorLaw color(settings);
+  if (!hot && color.has_ramp())
+    law = [&](float value, const Vec3f&) { return color.at(value); };
+  else if (!hot)
     law = [](float value, const Vec3f&) { return Rgb(value); };
   else if (!intense)
-    law = [&](float value, const Vec3f&) { return blackbody_emission(settings, value); };
+    law = [&](float value, const Vec3f&) { return color.at(value); };
   else {
     Affine shift, back;
     shift.translation = Vec3d(shape.field.origin());
     back.translation = -Vec3d(temperature.field.origin());
     const Affine map =
         back.after(temperature.index_to_world.inverse()).after(shape.index_to_world).after(shift);
-    law = [&settings, &temperature, map](float value, const Vec3f& local) {
+    law = [&color, &temperature, map](float value, const Vec3f& local) {
       const float degrees = temperature.field.sample(Vec3f(map.point(Vec3d(local))));
-      return blackbody_emission(settings, degrees) * value;
+      return color.at(degrees) * value;
     };
   }
   auto field = std::make_shared<EmissionField>(shape.field, law, uniform);

@@ -16,7 +16,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 # What the library is made of (docs/architecture.md); header-only libraries leave no trace.
 LIBRARIES = {"openvdb", "tbb", "OpenEXR", "Imath", "png16", "fmt", "tomlplusplus", "hwy", "xxhash",
-             "embree3", "assimp"}
+             "embree3", "assimp", "OpenColorIO"}
 RUNTIME = {"stdc++", "m", "gcc_s", "c", "ld-linux-x86-64", "ld-linux-aarch64", "atomic"}
 SANITIZERS = {"asan", "ubsan", "tsan"}
 

@@ -57,6 +57,16 @@ TEST(EditedField, RemapsValues) {
   });
 }
 
+TEST(EditedField, FollowsACurve) {
+  const DensityGrid source = grid();
+  GridEdits edits;
+  edits.remap = {.scale = 2, .curve = "0.5:0 1:4 3:1"};
+  expect_points(source, edited_field(source.field, edits), [](double v, const Vec3d&) {
+    const double x = 2 * v;
+    return v <= 0 || x <= 0.5 ? 0 : x < 1 ? 8 * (x - 0.5) : std::max(1.0, 4 - 1.5 * (x - 1));
+  });
+}
+
 TEST(EditedField, ClipsToABox) {
   const DensityGrid source = grid();
   GridEdits edits;

@@ -29,6 +29,24 @@ EmissionSettings named(const char* intensity, const char* temperature) {
 
 constexpr std::uint64_t plenty = std::uint64_t(1) << 30;
 
+/// A ramp takes the place of a black body, and of an intensity without a temperature.
+TEST(EmissionRamp, GivesTheColours) {
+  const Vec3<int> cells{1, 1, 1};
+  const DensityGrid two = grid_of(uniform_field(cells, 2)), three = grid_of(uniform_field(cells, 3));
+  EmissionSettings settings = named("flame", "temperature");
+  settings.ramp = "0:0,0,0 4:4,8,0.4";
+  const EmissionGrid hot = make_emission(settings, two, three, "a.vdb", plenty);
+  const Rgb both = hot.field->sample_cell(hot.field->cell(0, 0, 0), Vec3f(4));
+  EXPECT_NEAR(both.x, 2 * 3, 1e-5);
+  EXPECT_NEAR(both.y, 2 * 6, 1e-5);
+  EXPECT_NEAR(both.z, 2 * 0.3f, 1e-5);
+  settings.temperature.clear();
+  const EmissionGrid flame = make_emission(settings, two, {}, "a.vdb", plenty);
+  const Rgb alone = flame.field->sample_cell(flame.field->cell(0, 0, 0), Vec3f(4));
+  EXPECT_NEAR(alone.x, 2, 1e-5);
+  EXPECT_NEAR(alone.y, 4, 1e-5);
+}
+
 TEST(BlackbodyEmission, FollowsItsLaw) {
   EmissionSettings settings = named("", "temperature");
   settings.kelvin = 1000;
