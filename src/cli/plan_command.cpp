@@ -36,7 +36,8 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan) {
   text += fmt::format("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
                       bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
                       bytes(plan.film_bytes));
-  for (const auto& [name, size] : {std::pair{"moments", plan.moment_bytes}, {"deep", plan.deep_bytes}})
+  for (const auto& [name, size] :
+       {std::pair{"moments", plan.moment_bytes}, {"deep", plan.deep_bytes}})
     if (size > 0)
       text += fmt::format("  {:<18} {}\n", name, bytes(size));
   return text;

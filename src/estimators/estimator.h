@@ -39,16 +39,18 @@ struct EstimatorInput {
   /// Pixels, in ascending order, where a pass is also to tell how much its kernels blur
   /// (PassImage::blur); null: nowhere.
   const std::vector<std::size_t>* blur_pixels = nullptr;
-  const DeepLayout* deep = nullptr; ///< where rays are cut for a deep picture; null: nowhere
+  const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera, settings, plan, frame, window, stop, photons, blur_pixels, deep, objects};
+    return {other, camera,  settings,    plan, frame,  window,
+            stop,  photons, blur_pixels, deep, objects};
   }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera, settings, other, frame, window, stop, photons, blur_pixels, deep, objects};
+    return {world, camera,  settings,    other, frame,  window,
+            stop,  photons, blur_pixels, deep,  objects};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a

@@ -16,12 +16,10 @@ SceneObjects scene_objects(const Scene& scene) {
   objects.names = volumes;
   objects.names.insert(objects.names.end(), meshes.begin(), meshes.end());
   std::sort(objects.names.begin(), objects.names.end());
-  objects.names.erase(std::unique(objects.names.begin(), objects.names.end()),
-                      objects.names.end());
+  objects.names.erase(std::unique(objects.names.begin(), objects.names.end()), objects.names.end());
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::size_t>(
-        std::lower_bound(objects.names.begin(), objects.names.end(), name) -
-        objects.names.begin());
+        std::lower_bound(objects.names.begin(), objects.names.end(), name) - objects.names.begin());
   };
   for (const std::string& name : volumes)
     objects.of_volume.push_back(index_of(name));

@@ -33,9 +33,7 @@ std::string quoted(const std::string& name) {
 } // namespace
 
 std::uint32_t murmur_hash(std::string_view text) {
-  const auto mixed = [](std::uint32_t k) {
-    return std::rotl(k * 0xcc9e2d51u, 15) * 0x1b873593u;
-  };
+  const auto mixed = [](std::uint32_t k) { return std::rotl(k * 0xcc9e2d51u, 15) * 0x1b873593u; };
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
   };
@@ -69,8 +67,8 @@ CryptomatteWriter::CryptomatteWriter(const std::vector<std::string>& names, Imag
   std::string manifest;
   for (const std::string& name : names) {
     ids_.push_back(object_id(name));
-    manifest += fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "" : ",", quoted(name),
-                            id_bits(name));
+    manifest +=
+        fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "" : ",", quoted(name), id_bits(name));
   }
   order_.resize(names.size());
   const std::string key =

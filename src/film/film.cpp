@@ -54,7 +54,8 @@ Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
       depth_(pixels()), group_names_(std::move(groups)),
-      groups_(group_names_.size(), CompensatedSums(3 * pixels())), object_names_(std::move(objects)), coverage_(object_names_.size(), CompensatedSums(pixels())),
+      groups_(group_names_.size(), CompensatedSums(3 * pixels())),
+      object_names_(std::move(objects)), coverage_(object_names_.size(), CompensatedSums(pixels())),
       squares_(3 * pixels()), deep_(std::move(deep)), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {

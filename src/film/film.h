@@ -112,7 +112,7 @@ private:
   std::vector<CompensatedSums> groups_; ///< 3 per pixel and group of lights
   std::vector<std::string> object_names_;
   std::vector<CompensatedSums> coverage_; ///< 1 per pixel and object
-  std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
+  std::vector<double> squares_;           ///< 3 per pixel: sums of what passes show, squared
   std::optional<DeepFilm> deep_;
   PassHistory history_;
   struct HistoryStatistics {

@@ -15,9 +15,9 @@ struct FilmFileInfo {
   int frame = 1;
   std::vector<int> passes; ///< sorted; which passes the film holds
   std::uint64_t invalid_values = 0;
-  double seconds = 0;              ///< spent on rendering them
-  bool glows = false;              ///< the film holds emission
-  std::vector<std::string> groups; ///< of lights that it tells apart
+  double seconds = 0;               ///< spent on rendering them
+  bool glows = false;               ///< the film holds emission
+  std::vector<std::string> groups;  ///< of lights that it tells apart
   std::vector<std::string> objects; ///< whose coverage it holds
   /// Planes of edges and of pieces of a film that holds a deep picture; 0: it does not.
   std::size_t deep_edge_planes = 0, deep_piece_planes = 0;

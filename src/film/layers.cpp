@@ -61,8 +61,9 @@ Image develop_layers(const Film& film, const std::vector<LayerSettings>& layers)
     image.channels.push_back(std::move(channel));
   }
   if (!image.find("CryptoObject00.R"))
-    std::erase_if(image.metadata,
-                  [](const auto& attribute) { return attribute.first.starts_with("cryptomatte/"); });
+    std::erase_if(image.metadata, [](const auto& attribute) {
+      return attribute.first.starts_with("cryptomatte/");
+    });
   return image;
 }
 

@@ -57,7 +57,10 @@ Film PassLoop::make_film() const {
   std::optional<DeepFilm> deep;
   if (deep_layout_)
     deep.emplace(cut_out(*deep_layout_, scene_.image.raster_width(), window_));
-  return {window_.width(), window_.height(), scene_.glows(), light_group_names(scene_),
+  return {window_.width(),
+          window_.height(),
+          scene_.glows(),
+          light_group_names(scene_),
           std::move(deep),
           scene_.image.cryptomatte ? scene_objects(scene_).names : std::vector<std::string>()};
 }

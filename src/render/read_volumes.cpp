@@ -32,8 +32,7 @@ std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& 
 std::string edits_text(const VolumeSettings& volume) {
   const DensityRemap& r = volume.remap;
   return fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}", volume.mask, r.scale, r.offset, r.least,
-                     r.most.value_or(-1), r.power, r.curve,
-                     static_cast<int>(volume.interpolation));
+                     r.most.value_or(-1), r.power, r.curve, static_cast<int>(volume.interpolation));
 }
 
 /// The box that a volume is clipped to, and what places it there.

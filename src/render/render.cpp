@@ -85,9 +85,9 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   const std::vector<VolumeFacts> volumes =
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());
   result.plan = plan_stages(scene, volumes);
-  result.plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows(),
-                                       light_group_names(scene).size(),
-                                       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
+  result.plan.film_bytes = film_memory(
+      scene.image, window.width(), window.height(), scene.glows(), light_group_names(scene).size(),
+      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
   check_memory(scene, result.plan, granted_memory());
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;

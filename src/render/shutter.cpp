@@ -38,7 +38,7 @@ Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
                              from.frame,       from.window, from.stop,     prepared->photons.get(),
-                             from.blur_pixels, from.deep, from.objects},
+                             from.blur_pixels, from.deep,   from.objects},
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,

@@ -34,8 +34,7 @@ void add_image_keys(KeyTable& table) {
           R"(colour space of the EXR: one of these, or of the OpenColorIO configuration; "": as rendered)")
       .keeps_picture()
       .keeps_world();
-  table
-      .add("cryptomatte", &I::cryptomatte, "whether the image has ids of volumes and meshes")
+  table.add("cryptomatte", &I::cryptomatte, "whether the image has ids of volumes and meshes")
       .keeps_world();
   table.add("deep", &I::deep, "whether a deep EXR with the medium's samples is written too")
       .keeps_world();

@@ -86,8 +86,9 @@ void add_emission(KeyTable& table) {
   table.add("reference", &E::reference, "temperature at which a black body's luminance is 1")
       .unit("kelvin")
       .within(100, 100000);
-  table.add("ramp", &E::ramp,
-            R"(colours by the temperature's value, or else the intensity's: "x:r,g,b ..."; "": none)");
+  table.add(
+      "ramp", &E::ramp,
+      R"(colours by the temperature's value, or else the intensity's: "x:r,g,b ..."; "": none)");
   table.add("color", &E::color, "factor per channel").at_least(0).scales_emission();
   table.add("scale", &E::scale, "radiance per world unit where all of the above are 1")
       .unit("radiance / world")

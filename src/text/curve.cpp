@@ -28,7 +28,8 @@ Curve::Curve(const std::string& text, std::size_t values) : count_(values) {
   for (std::string point; points >> point;) {
     const std::size_t colon = point.find(':');
     if (colon == std::string::npos)
-      throw InputError(fmt::format("must be points {} with spaces between, got \"{}\"", shape, point));
+      throw InputError(
+          fmt::format("must be points {} with spaces between, got \"{}\"", shape, point));
     const double x = number_of(point.substr(0, colon));
     if (!x_.empty() && !(x > x_.back()))
       throw InputError(fmt::format("must ascend, got {:g} after {:g}", x, x_.back()));
@@ -39,7 +40,8 @@ Curve::Curve(const std::string& text, std::size_t values) : count_(values) {
       if (values_.emplace_back(number_of(value)) < 0)
         throw InputError(fmt::format("must have no values below 0, got {}", value));
     if (count != values)
-      throw InputError(fmt::format("must be points {} with spaces between, got \"{}\"", shape, point));
+      throw InputError(
+          fmt::format("must be points {} with spaces between, got \"{}\"", shape, point));
   }
   if (x_.size() < 2)
     throw InputError(fmt::format("must have at least two points {}, got \"{}\"", shape, text));
@@ -50,7 +52,8 @@ double Curve::at(double x, std::size_t i) const {
     return values_[i];
   if (x >= x_.back())
     return values_[(x_.size() - 1) * count_ + i];
-  const auto after = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin());
+  const auto after =
+      static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin());
   const double share = (x - x_[after - 1]) / (x_[after] - x_[after - 1]);
   const double a = values_[(after - 1) * count_ + i], b = values_[after * count_ + i];
   return a + share * (b - a);

@@ -24,9 +24,9 @@ struct Volume {
   Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
   Rgb albedo{1, 1, 1};
   std::size_t setting = 0; ///< which volume of the scene it is
-  int phase_index = 0;  ///< index into Medium::phases
-  float voxel_size = 1; ///< smallest edge of a voxel, render units
-  bool limited = false; ///< densities were reduced to what can be tracked
+  int phase_index = 0;     ///< index into Medium::phases
+  float voxel_size = 1;    ///< smallest edge of a voxel, render units
+  bool limited = false;    ///< densities were reduced to what can be tracked
 
   Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
   Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }

@@ -32,8 +32,8 @@ public:
     if (settings.ramp.empty())
       return;
     ramp_.emplace(settings.ramp, 3);
-    to_working_space_ = rgb_matrix(chromaticities_of(ColorSpace::rec709),
-                                   chromaticities_of(settings.color_space));
+    to_working_space_ =
+        rgb_matrix(chromaticities_of(ColorSpace::rec709), chromaticities_of(settings.color_space));
   }
   bool has_ramp() const { return ramp_.has_value(); }
   Rgb at(float value) const {

@@ -52,7 +52,8 @@ public:
     if (2 * values * sizeof(float) > maximum_bytes)
       throw FrameError(fmt::format("{}: with interpolation = \"cubic\" it needs {:.2f} GiB, more "
                                    "than the limit of {:.2f} GiB",
-                                   label, static_cast<double>(2 * values * sizeof(float)) / (1 << 30),
+                                   label,
+                                   static_cast<double>(2 * values * sizeof(float)) / (1 << 30),
                                    static_cast<double>(maximum_bytes) / (1 << 30)));
     std::vector<std::int32_t> table;
     std::vector<float> bricks;
@@ -65,7 +66,8 @@ public:
       bricks.insert(bricks.end(), column.values.begin(), column.values.end());
       column = {};
     }
-    const Vec3<std::int64_t> origin = field_.origin() * std::int64_t{2} - Vec3<std::int64_t>(cell_width);
+    const Vec3<std::int64_t> origin =
+        field_.origin() * std::int64_t{2} - Vec3<std::int64_t>(cell_width);
     return DensityField(origin, counts_, std::move(table), std::move(bricks), {});
   }
 
@@ -126,7 +128,8 @@ private:
     std::array<float, b * w * w> by_y;
     for (int row = 0; row < b * b; ++row)
       for (int z = 0; z < w; ++z)
-        by_z[static_cast<std::size_t>(row * w + z)] = filtered(&block[static_cast<std::size_t>(row * b)], 1, z);
+        by_z[static_cast<std::size_t>(row * w + z)] =
+            filtered(&block[static_cast<std::size_t>(row * b)], 1, z);
     for (int x = 0; x < b; ++x)
       for (int y = 0; y < w; ++y)
         for (int z = 0; z < w; ++z)

@@ -49,7 +49,8 @@ TEST(Cryptomatte, SortsByCoverage) {
 TEST(Cryptomatte, AttributesTellTheNames) {
   Image image;
   image.width = image.height = 1;
-  add_cryptomatte({"smoke", "the \"dragon\""}, [](std::size_t, std::size_t) { return 0.5f; }, image);
+  add_cryptomatte(
+      {"smoke", "the \"dragon\""}, [](std::size_t, std::size_t) { return 0.5f; }, image);
   std::string manifest;
   for (const auto& [name, text] : image.metadata) {
     EXPECT_TRUE(name.starts_with("cryptomatte/")) << name;

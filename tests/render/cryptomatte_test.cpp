@@ -18,10 +18,9 @@ protected:
         << "[image]\nwidth = 24\nheight = 16\ncryptomatte = true\n"
            "[camera]\nposition = [0, 0.5, 8]\nlook_at = [0, 0.5, 0]\nfov = 24\n"
            "[[volume]]\nname = \"near\"\nfile = \"" VDBEAM_SOURCE_DIR
-           "/data/cloud.vdb\"\nextinction = 6\ntranslate = [0.6, 0, 1.5]\n"
-           "[[volume]]\nfile = \"" VDBEAM_SOURCE_DIR
-           "/data/cloud.vdb\"\nextinction = 12\n"
-           "[[mesh]]\nname = \"ball\"\ntype = \"sphere\"\ntranslate = [0, 0.5, -3]\n"
+           "/data/cloud.vdb\"\nextinction = 6\ntranslate = [0.6, 0, 3]\n"
+           "[[volume]]\nfile = \"" VDBEAM_SOURCE_DIR "/data/cloud.vdb\"\nextinction = 12\n"
+           "[[mesh]]\nname = \"ball\"\ntype = \"sphere\"\ntranslate = [-2.2, 1.8, -3]\n"
            "[[light]]\ntype = \"distant\"\ndirection = [-1, -1, -1]\n"
            "[render]\npasses = 3\nphotons = 2000\n";
     std::vector<std::string> overrides{"render.estimator=" + estimator};
@@ -89,8 +88,9 @@ TEST_F(CryptomatteOfAScene, PartsMerge) {
   for (const char* channel : {"CryptoObject00.R", "CryptoObject00.G", "CryptoObject01.A"})
     EXPECT_EQ(merged.find(channel)->data, whole.find(channel)->data) << channel;
   for (const auto& [name, text] : whole.metadata)
-    if (name.starts_with("cryptomatte/"))
+    if (name.starts_with("cryptomatte/")) {
       EXPECT_EQ(merged.metadata.at(name), text);
+    }
 }
 
 } // namespace

@@ -123,7 +123,9 @@ struct MemoryScene {
     if (length(cross(look_at - position, scene.camera.up)) < 1e-6 * length(look_at - position))
       scene.camera.up = {0, 0, 1};
     scene.camera.fov = fov;
-    scene.image = {width, height};
+    scene.image = {};
+    scene.image.width = width;
+    scene.image.height = height;
   }
   World world(WorldFacts* facts = nullptr) const {
     return build_world(scene, grids, emissions, facts);

@@ -50,7 +50,9 @@ TEST(CameraProjection, ShiftMovesThePictureByItsSize) {
 }
 
 TEST(CameraProjection, WidePixelsSeeWiderPictures) {
-  ImageSettings image{200, 100};
+  ImageSettings image;
+  image.width = 200;
+  image.height = 100;
   image.pixel_aspect = 2;
   const double tangent = std::tan(std::numbers::pi / 6);
   const Camera camera(forward_camera(), image, world_space);
@@ -61,7 +63,9 @@ TEST(CameraProjection, WidePixelsSeeWiderPictures) {
 }
 
 TEST(CameraProjection, OverscanAddsPixelsAround) {
-  ImageSettings image{200, 100};
+  ImageSettings image;
+  image.width = 200;
+  image.height = 100;
   const Camera plain(forward_camera(), image, world_space);
   image.overscan = 30;
   const Camera camera(forward_camera(), image, world_space);
@@ -206,7 +210,9 @@ TEST(CameraView, NeverDeniesWhatItSees) {
     settings.projection = i % 2 ? Projection::perspective : Projection::orthographic;
     settings.lens_radius = i % 4 == 1 ? number(0, 0.5) : 0;
     settings.focus_distance = number(1, 6);
-    ImageSettings image{40, 30};
+    ImageSettings image;
+    image.width = 40;
+    image.height = 30;
     image.filter = PixelFilter::gaussian;
     image.filter_width = 4;
     const Camera camera(settings, image, world_space);

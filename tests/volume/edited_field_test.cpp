@@ -50,7 +50,7 @@ void expect_points(const DensityGrid& source, const DensityField& edited, Expect
 TEST(EditedField, RemapsValues) {
   const DensityGrid source = grid();
   GridEdits edits;
-  edits.remap = {.scale = 2, .offset = -0.8, .least = 0.3, .most = 2.5, .power = 1.5};
+  edits.remap = {.scale = 2, .offset = -0.8, .least = 0.3, .most = 2.5, .power = 1.5, .curve = ""};
   expect_points(source, edited_field(source.field, edits), [](double v, const Vec3d&) {
     const double x = 2 * v - 0.8;
     return v <= 0 || x < 0.3 ? 0 : std::pow(std::min(x, 2.5), 1.5);
@@ -60,7 +60,8 @@ TEST(EditedField, RemapsValues) {
 TEST(EditedField, FollowsACurve) {
   const DensityGrid source = grid();
   GridEdits edits;
-  edits.remap = {.scale = 2, .curve = "0.5:0 1:4 3:1"};
+  edits.remap.scale = 2;
+  edits.remap.curve = "0.5:0 1:4 3:1";
   expect_points(source, edited_field(source.field, edits), [](double v, const Vec3d&) {
     const double x = 2 * v;
     return v <= 0 || x <= 0.5 ? 0 : x < 1 ? 8 * (x - 0.5) : std::max(1.0, 4 - 1.5 * (x - 1));

@@ -32,7 +32,8 @@ constexpr std::uint64_t plenty = std::uint64_t(1) << 30;
 /// A ramp takes the place of a black body, and of an intensity without a temperature.
 TEST(EmissionRamp, GivesTheColours) {
   const Vec3<int> cells{1, 1, 1};
-  const DensityGrid two = grid_of(uniform_field(cells, 2)), three = grid_of(uniform_field(cells, 3));
+  const DensityGrid two = grid_of(uniform_field(cells, 2)),
+                    three = grid_of(uniform_field(cells, 3));
   EmissionSettings settings = named("flame", "temperature");
   settings.ramp = "0:0,0,0 4:4,8,0.4";
   const EmissionGrid hot = make_emission(settings, two, three, "a.vdb", plenty);

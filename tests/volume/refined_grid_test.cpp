@@ -1,6 +1,7 @@
 #include "volume/refined_grid.h"
 
 #include "support/make_field.h"
+#include "support/memory_scene.h"
 #include "vdbeam/error.h"
 
 #include <gtest/gtest.h>
