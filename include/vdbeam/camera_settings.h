@@ -36,11 +36,11 @@ struct ImageSettings {
   double filter_width = 0; ///< pixels; 0: automatic
   Compression compression = Compression::zip;
   ColorSpace working_space = ColorSpace::rec709; ///< in which light is rendered
-  std::string output_space; ///< of the EXR; empty: the working space (docs/scene.md)
-  bool cryptomatte = false; ///< ids of volumes and meshes
-  bool deep = false;        ///< a deep picture beside the flat one
-  double deep_alpha = 0.05; ///< most opacity that one of its samples adds
-  double deep_depth = 0;    ///< greatest length of a sample [world]; 0: automatic
+  std::string output_space = {}; ///< of the EXR; empty: the working space (docs/scene.md)
+  bool cryptomatte = false;      ///< ids of volumes and meshes
+  bool deep = false;             ///< a deep picture beside the flat one
+  double deep_alpha = 0.05;      ///< most opacity that one of its samples adds
+  double deep_depth = 0;         ///< greatest length of a sample [world]; 0: automatic
 
   /// The picture and its overscan.
   int raster_width() const { return width + 2 * overscan; }

@@ -33,7 +33,7 @@ struct DensityRemap {
   double least = 0;
   std::optional<double> most;
   double power = 1;
-  std::string curve; ///< points "x:y x:y ...", linear in between; empty: none
+  std::string curve = {}; ///< points "x:y x:y ...", linear in between; empty: none
 
   bool changes() const {
     return scale != 1 || offset != 0 || least != 0 || most || power != 1 || !curve.empty();

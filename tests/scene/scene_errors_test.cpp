@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[image]\nzzz = 1\n",
                  "s.toml:2: unknown key image.zzz; its keys are width, height, fps, compression, "
                  "working_space, output_space, cryptomatte, deep, deep_alpha, deep_depth, "
-                 "pixel_aspect, overscan, filter and filter_width"},
+                 "pixel_aspect, overscan, ..."},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
                               "mesh, light, layer and render"}));
 
