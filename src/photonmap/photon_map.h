@@ -57,9 +57,9 @@ public:
   PhotonMap copy() const;
   /// Makes kernels end before surfaces: at a distance d from the nearest one the radius r becomes
   /// d / sqrt(1 + (d / r)^2), less than d, so that no light leaks through it, and no part of a
-  /// kernel is cut off, so that none is lost. Photons nearer than 0.08 r, whose kernels would be too
-  /// small, count as nothing; those further away count so much more or less that even light stays
-  /// even.
+  /// kernel is cut off, so that none is lost. Photons nearer than 0.08 r, whose kernels would be
+  /// too small, count as nothing; those further away count so much more or less that even light
+  /// stays even.
   void keep_clear(const Clearance& clearance);
   /// Divides every photon's power by its kernel's share; `share` may be empty, for 1 everywhere.
   void divide_power(const KernelShare& share);
