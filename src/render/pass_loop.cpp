@@ -46,8 +46,10 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
       result_(result), film_(make_film()), stop_(hooks.stop) {
   if (frame.pass_range)
     first_pass_ = frame.pass_range->first;
-  if (!frame.checkpoint.path.empty() || !frame.partial.empty())
+  if (!frame.checkpoint.path.empty() || !frame.partial.empty()) {
     pass_hash_ = pass_hash(scene);
+    scene_hash_ = scene_hash(scene);
+  }
   if (!frame.checkpoint.path.empty() && frame.checkpoint.resume)
     resume();
   set_deadline();
@@ -339,7 +341,7 @@ FilmFileInfo PassLoop::file_info() const {
   info.header.width = window_.width();
   info.header.height = window_.height();
   place(info.header);
-  add_image_metadata(info.header, scene_, result_, scene_hash(scene_));
+  add_image_metadata(info.header, scene_, result_, scene_hash_);
   info.pass_hash = pass_hash_;
   info.frame = scene_.frame.number;
   info.passes.resize(static_cast<std::size_t>(film_.passes()));

@@ -141,7 +141,8 @@ TEST_F(Usage, BadValuesNameTheirOption) {
        "--time soon: render.time must be seconds or a text like \"90s\", \"5m\" or \"1h30m\" or "
        "\"none\", got \"soon\"\n"},
       {{"--estimator", "beem"},
-       "--estimator beem: render.estimator must be beam, march or path, got \"beem\"; did you mean "
+       "--estimator beem: render.estimator must be auto, beam, march or path, got \"beem\"; did "
+       "you mean "
        "beam?\n"},
       {{"--resolution", "640"}, "--resolution 640: must look like 640x360\n"},
       {{"--resolution", "0x10"}, "--resolution 0x10: image.width must lie in [1, 65536], got 0\n"},

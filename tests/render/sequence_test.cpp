@@ -15,7 +15,7 @@ namespace {
 /// The sample cloud at a frame, small and quick.
 Scene small_cloud(int frame = 1, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=40", "image.height=23", "render.photons=3000",
-                                     "render.passes=3"};
+                                     "render.passes=3", "render.estimator=beam"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", frame, overrides);
 }
