@@ -42,9 +42,9 @@ struct SinglePhase {
   }
 
 private:
-  /// Up to 45 degrees all; from 75 on, where TMS is as good or better, nothing (docs/decisions.md).
+  /// Up to 10 degrees all; from 35 on, where TMS is about as good, nothing (docs/decisions.md).
   static float share_of_aureole(float cosine) {
-    constexpr float begin = 0.2588f, end = 0.7071f;
+    constexpr float begin = 0.8192f, end = 0.9848f;
     const float x = std::clamp((cosine - begin) / (end - begin), 0.0f, 1.0f);
     return x * x * (3 - 2 * x);
   }
