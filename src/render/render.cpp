@@ -122,7 +122,9 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     result.statistics.pilot += watch.seconds();
     scene.render.estimator = choice.type;
     if (choice.type == EstimatorType::path) {
+      const std::uint64_t film_bytes = result.plan.film_bytes; // of the window
       result.plan = path_plan;
+      result.plan.film_bytes = film_bytes;
       input.blur_pixels = nullptr;
     }
     result.plan.estimator = choice.type.name;
