@@ -35,6 +35,11 @@ struct ImageSettings {
   PixelFilter filter = PixelFilter::box;
   double filter_width = 0; ///< pixels; 0: automatic
   Compression compression = Compression::zip;
+  ImageParts parts = ImageParts::one;
+  int tile = 0; ///< width of the EXR's tiles [pixels]; 0: it has scan lines
+  LayerNames layer_names = LayerNames::vdbeam;
+  std::string time_code = {};                    ///< of frame 0, "hh:mm:ss:ff"; empty: all zero
+  std::string attributes = {};                   ///< of the user's own, "name = text; name = text"
   ColorSpace working_space = ColorSpace::rec709; ///< in which light is rendered
   std::string output_space = {}; ///< of the EXR; empty: the working space (docs/scene.md)
   bool cryptomatte = false;      ///< ids of volumes and meshes

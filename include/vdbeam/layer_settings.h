@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace vdbeam {
@@ -11,10 +12,18 @@ enum class LayerPrecision { automatic, half, single };
 /// How an EXR is compressed.
 enum class Compression { zip, zips, piz, rle, none, dwaa, dwab };
 
+/// Whether the layers of an EXR share one part, or have one each.
+enum class ImageParts { one, layers };
+
+/// After whose renderer the layers of an EXR are named (docs/output.md).
+enum class LayerNames { vdbeam, arnold, cycles };
+
 /// A layer of the picture beside its colours (docs/output.md).
 struct LayerSettings {
   std::string name;
   LayerPrecision precision = LayerPrecision::automatic;
+  /// Of its part, where layers have parts of their own; absent: that of the picture.
+  std::optional<Compression> compression = std::nullopt;
 };
 
 } // namespace vdbeam

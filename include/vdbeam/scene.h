@@ -126,6 +126,9 @@ struct Scene {
   /// The scene at moments between the shutter's opening and closing, in their order; empty where
   /// nothing moves or the shutter is open for no time. Passes see one of them each.
   std::vector<Scene> moments;
+  /// The scene one frame later, for the layer `motion`; empty where that is not asked for, or
+  /// nothing is animated.
+  std::vector<Scene> next;
   FrameTime frame; ///< which frame of a sequence it is
   ImageSettings image;
   CameraSettings camera;

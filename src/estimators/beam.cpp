@@ -41,6 +41,8 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
                [&](int i) { return light_of(scratch.tile.radiance, i); });
     if (image.deep_layout)
       gather_pieces(world, photons_.map(), scratch.rays, scratch.tile, image);
+    if (input_.layers && input_.layers->tells_volumes())
+      gather_volumes(scratch, weights, image);
   };
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
     std::vector<float> table;
@@ -51,6 +53,32 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
   image.blur = blur.take();
   photons_.release();
+}
+
+/// The same photons once more for each volume, for its layer.
+void BeamEstimator::gather_volumes(TileScratch& scratch, WeightSettings weights, PassImage& image) {
+  const World& world = photons_.world();
+  const std::size_t volumes = world.medium.volumes.size();
+  const bool grey = photons_.map().channels() == 1;
+  std::vector<std::uint8_t> only(volumes);
+  weights.only = &only;
+  for (std::size_t v = 0; v < volumes; ++v) {
+    const std::size_t setting = world.medium.volumes[v].setting;
+    if (input_.layers->volume_plane(setting) < 0)
+      continue;
+    only.assign(volumes, 0);
+    only[v] = 1;
+    fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
+    std::vector<float>& light = scratch.tile.radiance;
+    std::fill(light.begin(), light.end(), 0.0f);
+    photons_.map().query(scratch.tile);
+    for (std::size_t i = 0; i < BeamTile::ray_count; ++i)
+      if (const TileRays::PixelRay& ray = scratch.rays[static_cast<int>(i)]; ray.inside)
+        VolumeLights(input_.layers, ray.pixel, image)
+            .add(setting, grey ? Rgb(light[i])
+                               : Rgb(light[i], light[BeamTile::ray_count + i],
+                                     light[2 * BeamTile::ray_count + i]));
+  }
 }
 
 namespace {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "estimators/beam_plan.h"
+#include "estimators/beam_weights.h"
 #include "estimators/photon_pass.h"
 #include "estimators/tile_rays.h"
 
 namespace vdbeam {
+
+struct TileScratch;
 
 /// The beam radiance estimate (Jarosz, Zwicker, Jensen 2008, eq. 11) for heterogeneous media: per
 /// camera ray one query gathers all photons along it,
@@ -20,6 +23,8 @@ public:
   const PhotonPass& photons() const { return photons_; }
 
 private:
+  void gather_volumes(TileScratch& scratch, WeightSettings weights, PassImage& image);
+
   EstimatorInput input_;
   PhotonPass photons_;
 };

@@ -148,6 +148,8 @@ private:
     return table.weights + at * static_cast<std::size_t>(table.rays) + ray;
   }
 
+  bool counts(std::size_t volume) const { return !settings_.only || (*settings_.only)[volume]; }
+
   /// Gives half of an interval's mean weight to the knot at either end. The knots at the ends of
   /// the table, or of the ray, which weigh over half an interval, get all of theirs: photons lie
   /// right up to the medium's border, so a ramp there would lose light.
@@ -160,7 +162,7 @@ private:
 
   void write_simple(const WeightTable& table, int interval, int ray) {
     const float piece = after_[0] - before_[0];
-    if (piece > 0)
+    if (piece > 0 && counts(0))
       deposit(table, 0, 0, interval, ray, std::exp(-before_[0]) * -std::expm1(-piece) / length_);
   }
 
@@ -177,6 +179,8 @@ private:
         continue;
       const float scattered = std::exp(-tau_before) * -std::expm1(-piece) / length_;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
+        if (!counts(v))
+          continue;
         const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
         deposit(table, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
@@ -196,13 +200,14 @@ private:
       }
       const float tr = std::exp(-tau);
       if (!(piece > 0)) {
-        *weight(table, volumes[0].phase_index, c, knot, ray) += tr;
+        *weight(table, volumes[0].phase_index, c, knot, ray) += counts(0) ? tr : 0;
         continue;
       }
       for (std::size_t v = 0; v < volumes.size(); ++v)
-        *weight(table, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
-                                                                volumes[v].channel_scale[c] *
-                                                                (after_[v] - before_[v]) / piece;
+        if (counts(v))
+          *weight(table, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
+                                                                  volumes[v].channel_scale[c] *
+                                                                  (after_[v] - before_[v]) / piece;
     }
   }
 

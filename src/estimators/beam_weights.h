@@ -11,6 +11,8 @@ struct WeightSettings {
   bool albedo_in_power = true; ///< the photons carry the albedo that all volumes share
   bool colored = false;        ///< photons have a colour
   float reach = 0;             ///< scatter storage: how far beyond the medium photons are gathered
+  /// Per volume of the medium, whether it counts; null: all do.
+  const std::vector<std::uint8_t>* only = nullptr;
 };
 
 /// Fills the tile's frame, directions and weight tables from its rays.

@@ -93,9 +93,10 @@ class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
               const std::vector<bool>& sampled, const ShadowLattices& shadows, Rng& rng,
-              std::uint64_t& shadow_rays, const DeepRay& deep, float share)
+              std::uint64_t& shadow_rays, const DeepRay& deep, const VolumeLights& volumes,
+              float share)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
-        rng_(rng), shadow_rays_(shadow_rays), deep_(deep), share_(share) {
+        rng_(rng), shadow_rays_(shadow_rays), deep_(deep), volumes_(volumes), share_(share) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampled[l])
         continue;
@@ -125,7 +126,7 @@ public:
       if (!light.pieces.empty())
         continue;
       const float other = light.near ? light.near->pdf(point.t) : 0;
-      sum += scattered(point, light.index) * (point.pdf / (point.pdf + other));
+      sum += scattered(point, light.index, point.pdf / (point.pdf + other));
     }
     deep_.add_light_at(point.t, sum * share_);
     return sum;
@@ -153,7 +154,7 @@ public:
       // By the medium alone, the piece is drawn with its share of the opacity.
       const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
       if (point.pdf > 0)
-        sum += take_down(point, scattered(point, light.index) * (share / drawn));
+        sum += take_down(point, scattered(point, light.index, share / drawn));
     }
     return sum;
   }
@@ -167,7 +168,7 @@ public:
       const ScatterPoint point = distances_.at(light.near->sample(u));
       const float other = light.near->pdf(point.t);
       if (point.pdf > 0)
-        sum += take_down(point, scattered(point, light.index) * (point.pdf / (point.pdf + other)));
+        sum += take_down(point, scattered(point, light.index, point.pdf / (point.pdf + other)));
     }
     return sum;
   }
@@ -213,18 +214,23 @@ private:
     return light;
   }
 
-  /// Balance heuristic (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
-  Rgb scattered(const ScatterPoint& point, std::size_t light) {
+  /// Times a factor. Balance heuristic (Veach and Guibas 1995): the point's weights hold
+  /// 1 / point.pdf already.
+  Rgb scattered(const ScatterPoint& point, std::size_t light, float factor) {
     const Medium& medium = world_.medium;
     Rgb sum;
     for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
       const Rgb& weight = (*point.weights)[v];
-      if (max_component(weight) > 0)
-        sum += weight * scattered_light(world_, light,
-                                        single_phase(medium.volumes[v].phase_index, point.t),
-                                        point.position, ray_.direction, rng_, shadow_rays_);
+      if (!(max_component(weight) > 0))
+        continue;
+      const Rgb radiance =
+          weight * scattered_light(world_, light,
+                                   single_phase(medium.volumes[v].phase_index, point.t),
+                                   point.position, ray_.direction, rng_, shadow_rays_);
+      volumes_.add(medium.volumes[v].setting, radiance * (factor * share_));
+      sum += radiance;
     }
-    return sum;
+    return sum * factor;
   }
 
   SinglePhase single_phase(int index, float t) const {
@@ -250,6 +256,7 @@ private:
   Rng& rng_;
   std::uint64_t& shadow_rays_;
   const DeepRay& deep_;
+  const VolumeLights& volumes_;
   float share_; ///< of one sample
   std::vector<SampledLight> lights_;
 };
@@ -258,12 +265,14 @@ private:
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
-                 std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep) {
+                 std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep,
+                 const VolumeLights& volumes) {
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
   const float share = 1 / static_cast<float>(samples);
-  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, share);
+  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, volumes,
+                       share);
   for (int i = 0; i < samples; ++i) {
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
     if (!shadows.empty())

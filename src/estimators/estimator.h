@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/ray_layers.h"
 #include "estimators/scene_objects.h"
 #include "image/pass_image.h"
 #include "math/stop_token.h"
@@ -41,16 +42,17 @@ struct EstimatorInput {
   const std::vector<std::size_t>* blur_pixels = nullptr;
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
+  const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera,  settings,    plan, frame,  window,
-            stop,  photons, blur_pixels, deep, objects};
+    return {other, camera,  settings,    plan, frame,   window,
+            stop,  photons, blur_pixels, deep, objects, layers};
   }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera,  settings,    other, frame,  window,
-            stop,  photons, blur_pixels, deep,  objects};
+    return {world, camera,  settings,    other, frame,   window,
+            stop,  photons, blur_pixels, deep,  objects, layers};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a
@@ -63,6 +65,7 @@ struct EstimatorInput {
   /// Channels of the photons' power.
   int photon_channels() const { return plan.needs(Stage::photon_color) ? 3 : 1; }
   std::size_t object_count() const { return objects ? objects->names.size() : 0; }
+  std::size_t plane_count() const { return layers ? layers->planes() : 0; }
   bool stopped() const { return stop && stop->stopped(); }
 };
 

@@ -14,10 +14,10 @@ constexpr const char* rest = "rest";
 struct Group {
   Group(const EstimatorInput& from, const EstimatorType& type, const std::vector<bool>& lights,
         bool with_emission)
-      : world(from.world), plan(from.plan), input{world,     from.camera, from.settings,
-                                                  plan,      from.frame,  from.window,
-                                                  from.stop, nullptr,     from.blur_pixels,
-                                                  from.deep, from.objects} {
+      : world(from.world), plan(from.plan), input{world,     from.camera,  from.settings,
+                                                  plan,      from.frame,   from.window,
+                                                  from.stop, nullptr,      from.blur_pixels,
+                                                  from.deep, from.objects, from.layers} {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();
@@ -83,7 +83,7 @@ public:
   }
 
 private:
-  static void add_part(const PassImage& part, PassImage& image) {
+  void add_part(const PassImage& part, PassImage& image) const {
     add(image.direct, part.direct);
     add(image.indirect, part.indirect);
     add(image.background, part.background);
@@ -91,6 +91,10 @@ private:
     for (std::size_t i = 0; i < image.deep.size(); ++i)
       if (i % DeepLayout::values_per_piece < 3) // every part has the medium's opacity
         image.deep[i] += part.deep[i];
+    for (std::size_t i = 0; i < image.planes.size(); ++i)
+      if (input_.layers->is_light(i))
+        for (std::size_t pixel = 0; pixel < image.planes[i].size(); ++pixel)
+          image.planes[i][pixel] += part.planes[i][pixel];
     if (image.emission.empty())
       image.emission = part.emission;
     else

@@ -25,7 +25,8 @@ public:
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
   /// lights.
   Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
-            RenderStatistics& counts, Rgb& straight, const DeepRay& deep = {}) {
+            RenderStatistics& counts, Rgb& straight, const DeepRay& deep = {},
+            const VolumeLights& of_volumes = {}) {
     const Medium& medium = world_.medium;
     const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
     const float end = std::min(profile.back() + reach_, camera.whole().t_end);
@@ -49,7 +50,7 @@ public:
                                                          straight_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
-        const Rgb light = weigh(before, after, step, gathered_);
+        const Rgb light = weigh(before, after, step, gathered_, of_volumes);
         sum += light;
         deep.add_light_at(t, light);
         if (photons_.map().has_first_flights())
@@ -62,7 +63,7 @@ public:
 
 private:
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
-            const std::vector<Rgb>& gathered) const {
+            const std::vector<Rgb>& gathered, const VolumeLights& of_volumes = {}) const {
     const std::vector<Volume>& volumes = world_.medium.volumes;
     Rgb tau, piece;
     for (std::size_t v = 0; v < volumes.size(); ++v) {
@@ -79,7 +80,13 @@ private:
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes.size());
         const float albedo = photons_.plan().albedo_in_power ? 1 : volumes[v].albedo[c];
-        sum[c] += whole * share * albedo * gathered[volumes[v].phase_index][c];
+        const float light = whole * share * albedo * gathered[volumes[v].phase_index][c];
+        sum[c] += light;
+        if (of_volumes) {
+          Rgb of_channel;
+          of_channel[c] = light;
+          of_volumes.add(volumes[v].setting, of_channel);
+        }
       }
     }
     return sum;
@@ -107,7 +114,8 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
       Rgb straight;
       image.indirect[ray.pixel] =
           marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
-                        DeepRay(photons_.world(), ray.camera, ray.pixel, image));
+                        DeepRay(photons_.world(), ray.camera, ray.pixel, image),
+                        VolumeLights(input_.layers, ray.pixel, image));
       image.move_to_direct(ray.pixel, straight);
     }
   };

@@ -86,13 +86,16 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   if (!scene_tracer_) {
     scratch.walks.push_back(tracer_.start(target, walk_rng, ray, throughput, phase));
     scratch.walks.back().piece = deep ? deep.piece(point.t) : 0;
+    scratch.walks.back().volume = medium.volumes[volume].setting;
     return;
   }
   Rng numbers = walk_rng;
   const ScatteredLight light = scene_tracer_->from_medium(ray, throughput, phase, numbers);
   image.direct[target] += light.direct / static_cast<float>(walks_per_ray_);
   image.indirect[target] += light.indirect / static_cast<float>(walks_per_ray_);
-  deep.add_light_at(point.t, (light.direct + light.indirect) / static_cast<float>(walks_per_ray_));
+  const Rgb all = (light.direct + light.indirect) / static_cast<float>(walks_per_ray_);
+  deep.add_light_at(point.t, all);
+  VolumeLights(input_.layers, target, image).add(medium.volumes[volume].setting, all);
 }
 
 /// What is seen of the surface at which a camera ray ends, the mean over a few paths.
@@ -126,9 +129,9 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
-  image.direct[target] =
-      direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_, rng,
-                   scratch.counts.shadow_rays, {}, DeepRay(world, camera, target, image));
+  image.direct[target] = direct_light(
+      world, camera.ray(), profile, shadow_rays_, direct_samples_, rng, scratch.counts.shadow_rays,
+      {}, DeepRay(world, camera, target, image), VolumeLights(input_.layers, target, image));
   DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < walks_per_ray_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);
@@ -183,6 +186,8 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
       }
       image.direct[walk.target] += walk.direct * share;
       image.indirect[walk.target] += walk.indirect * share;
+      VolumeLights(input_.layers, walk.target, image)
+          .add(walk.volume, (walk.direct + walk.indirect) * share);
       if (image.deep_layout)
         add_deep_light(walk, share, image);
       if (&walk != &walks.back())
@@ -230,7 +235,7 @@ void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(pass);
   image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep,
-               input_.object_count());
+               input_.object_count(), input_.plane_count());
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, image, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();

@@ -22,6 +22,7 @@ struct PathWalk : Flight {
 
   std::size_t target = 0;               ///< pixel of the image to which its light is added
   std::size_t piece = 0;                ///< of the pixel's deep layout in which it began
+  std::size_t volume = 0;               ///< of the scene, that scatters its light to the camera
   const PhaseFunction* phase = nullptr; ///< at the last real collision
   DrawnDirection drawn, drawn_before;   ///< of this flight and of the one before it
   float gathered = 0;   ///< distance of the flight up to which light that it meets was added

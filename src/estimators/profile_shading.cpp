@@ -27,7 +27,9 @@ void end_at_surface(const World& world, const CameraRay& camera, std::size_t pix
   if (material.is_holdout())
     return;
   if (material.is_shadow_catcher()) {
-    image.opacity[pixel] += (1 - image.opacity[pixel]) * shadow;
+    const float seen = (1 - image.opacity[pixel]) * shadow;
+    image.depth[pixel] += seen * static_cast<float>(camera.hit->t / world.space.scale);
+    image.opacity[pixel] += seen;
     return;
   }
   image.depth[pixel] +=
@@ -106,11 +108,18 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   }
   if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;
-    image.emission[pixel] = emission_along(world.medium, camera.segment, profile,
-                                           static_cast<float>(input.settings.cutoff));
+    const VolumeLights volumes(input.layers, pixel, image);
+    std::vector<Rgb> of_emitters;
+    image.emission[pixel] =
+        emission_along(world.medium, camera.segment, profile,
+                       static_cast<float>(input.settings.cutoff), volumes ? &of_emitters : nullptr);
+    for (std::size_t i = 0; i < of_emitters.size(); ++i)
+      volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
   }
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
+  if (!image.planes.empty())
+    input.layers->record(world, camera, profile, mean_component(tr), surface.shadow, pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep) {
     deep.add_opacity(world.medium, profile);
     if (!camera.segment.empty())

@@ -30,11 +30,33 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   }
 }
 
+/// The same, by the volumes that scatter it.
+void add_light_of_the_peak(const World& world, const DepthProfile& profile, const Rgb& radiance,
+                           const VolumeLights& volumes) {
+  const std::vector<Rgb>& excess = world.medium.peak->excess;
+  Rgb before;
+  for (std::size_t knot = 1; knot < profile.knots(); ++knot) {
+    Rgb after;
+    for (std::size_t v = 0; v < excess.size(); ++v)
+      after += excess[v] * profile.tau(knot, v);
+    for (std::size_t v = 0; v < excess.size(); ++v) {
+      const Rgb own = excess[v] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
+      Rgb light;
+      for (int c = 0; c < 3; ++c)
+        if (const float all = after[c] - before[c]; all > 0)
+          light[c] = radiance[c] * std::exp(-before[c]) * -std::expm1(-all) * own[c] / all;
+      volumes.add(world.medium.volumes[v].setting, light);
+    }
+    before = after;
+  }
+}
+
 /// Light of surrounding lights that only the peak of the phase function scattered on its way along
 /// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
 /// with shadow rays have theirs from these.
 Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
-                      const std::vector<bool>& sampled_lights, const DeepRay& deep) {
+                      const std::vector<bool>& sampled_lights, const DeepRay& deep,
+                      const VolumeLights& volumes) {
   Rgb radiance;
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
@@ -53,6 +75,8 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   }
   if (deep)
     add_light_of_the_peak(world, ray.profile, through, deep);
+  if (volumes)
+    add_light_of_the_peak(world, ray.profile, through, volumes);
   return radiance;
 }
 
@@ -70,10 +94,12 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
     shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
   Rng rng(key, RngStage::direct, ray.pixel);
   const DeepRay deep(world, ray.camera, target, image);
+  const VolumeLights volumes(input.layers, target, image);
   image.direct[target] =
-      light_of_the_peak(world, ray, photons.plan().sampled_lights, deep) +
+      light_of_the_peak(world, ray, photons.plan().sampled_lights, deep, volumes) +
       direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
-                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows(), deep);
+                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows(), deep,
+                   volumes);
 }
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
@@ -83,7 +109,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep,
-               input.object_count());
+               input.object_count(), input.plane_count());
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
   if (world.surfaces)

@@ -1,5 +1,6 @@
 #include "film/film.h"
 
+#include "estimators/plane_layers.h"
 #include "film/cryptomatte.h"
 
 #include <fmt/format.h>
@@ -50,12 +51,14 @@ void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size
 } // namespace
 
 Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
-           std::optional<DeepFilm> deep, std::vector<std::string> objects)
+           std::optional<DeepFilm> deep, std::vector<std::string> objects,
+           std::vector<std::string> planes)
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
       depth_(pixels()), group_names_(std::move(groups)),
       groups_(group_names_.size(), CompensatedSums(3 * pixels())),
       object_names_(std::move(objects)), coverage_(object_names_.size(), CompensatedSums(pixels())),
+      plane_names_(std::move(planes)), planes_(plane_names_.size(), CompensatedSums(pixels())),
       squares_(3 * pixels()), deep_(std::move(deep)), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
@@ -78,6 +81,8 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
     add_values(groups_[g], components(pass.groups[g]), 3 * begin, 3 * end);
   for (std::size_t i = 0; i < coverage_.size() && i < pass.coverage.size(); ++i)
     add_values(coverage_[i], pass.coverage[i].data(), begin, end);
+  for (std::size_t i = 0; i < planes_.size() && i < pass.planes.size(); ++i)
+    invalid += add_values(planes_[i], pass.planes[i].data(), begin, end);
   invalid += add_values(opacity_, pass.opacity.data(), begin, end);
   invalid += add_values(depth_, pass.depth.data(), begin, end);
   for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
@@ -105,9 +110,10 @@ void Film::add(const PassImage& pass, const std::vector<PixelValue>& probes) {
 void Film::merge(const Film& other) {
   check_size(other.width_, other.height_);
   if (glows_ != other.glows_ || group_names_ != other.group_names_ ||
-      object_names_ != other.object_names_ || deep_.has_value() != other.deep_.has_value())
-    throw std::invalid_argument("a film with emission or groups of lights and one without, or with "
-                                "others, cannot be merged");
+      object_names_ != other.object_names_ || plane_names_ != other.plane_names_ ||
+      deep_.has_value() != other.deep_.has_value())
+    throw std::invalid_argument("a film with emission, groups of lights or planes and one without, "
+                                "or with others, cannot be merged");
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     merge_values(direct_, other.direct_, 3 * begin, 3 * end);
     merge_values(indirect_, other.indirect_, 3 * begin, 3 * end);
@@ -118,6 +124,8 @@ void Film::merge(const Film& other) {
       merge_values(groups_[g], other.groups_[g], 3 * begin, 3 * end);
     for (std::size_t i = 0; i < coverage_.size(); ++i)
       merge_values(coverage_[i], other.coverage_[i], begin, end);
+    for (std::size_t i = 0; i < planes_.size(); ++i)
+      merge_values(planes_[i], other.planes_[i], begin, end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
@@ -151,6 +159,8 @@ std::vector<ImagePlane> Film::planes() {
   }
   for (std::size_t i = 0; i < coverage_.size(); ++i)
     add("object." + object_names_[i], coverage_[i], 1, 0);
+  for (std::size_t i = 0; i < planes_.size(); ++i)
+    add("plane." + plane_names_[i], planes_[i], 1, 0);
   add("opacity", opacity_, 1, 0);
   add("depth", depth_, 1, 0);
   if (deep_)
@@ -234,6 +244,9 @@ Image Film::develop() const {
       image.channels.push_back(
           {fmt::format("light_{}.{}", group_names_[g], "RGB"[c]), std::move(data)});
     }
+  for (std::size_t i = 0; i < planes_.size(); ++i)
+    image.channels.push_back(
+        {plane_names_[i], develop_plane(i), plane_layer_of(plane_names_[i]).half});
   if (!object_names_.empty())
     add_cryptomatte(
         object_names_,
@@ -242,6 +255,17 @@ Image Film::develop() const {
         },
         image);
   return image;
+}
+
+std::vector<float> Film::develop_plane(std::size_t plane) const {
+  const PlaneLayer& layer = plane_layer_of(plane_names_[plane]);
+  std::vector<float> data(pixels(), layer.empty);
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double weight = layer.of_opacity ? opacity_.high(i) : std::max(passes_, 1);
+    if (weight > 0)
+      data[i] = static_cast<float>(planes_[plane].high(i) / weight);
+  }
+  return data;
 }
 
 std::optional<DeepImage> Film::develop_deep() const {
@@ -260,6 +284,8 @@ void Film::add_layer(const std::string& name, Image& image) const {
   };
   if (name == "transmittance")
     add("Y", true, [&](std::size_t i) { return 1 - opacity_.high(i) / n; });
+  if (name == "samples")
+    add("Y", false, [&](std::size_t) { return passes_; });
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string channel(1, "RGB"[c]);
     if (name == "background")

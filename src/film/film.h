@@ -28,8 +28,10 @@ class Film {
 public:
   /// `glows`: passes may hold emission. `groups`: names of the groups of lights of passes. `deep`:
   /// where rays are cut for a deep picture. `objects`: names of those whose coverage passes hold.
+  /// `planes`: names of what they hold beyond that (plane_layers.h).
   Film(int width, int height, bool glows = false, std::vector<std::string> groups = {},
-       std::optional<DeepFilm> deep = std::nullopt, std::vector<std::string> objects = {});
+       std::optional<DeepFilm> deep = std::nullopt, std::vector<std::string> objects = {},
+       std::vector<std::string> planes = {});
 
   /// Adds one pass. Its size must be the film's (std::invalid_argument). `probes` are unbiased
   /// values of probe_pixels(), any of them.
@@ -42,6 +44,7 @@ public:
   int passes() const { return passes_; }
   bool glows() const { return glows_; }
   const std::vector<std::string>& groups() const { return group_names_; }
+  const std::vector<std::string>& plane_names() const { return plane_names_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
   /// What a film takes for each pixel, beside its history.
@@ -51,6 +54,10 @@ public:
   /// And for each object whose coverage it holds, with that of a pass and the largest layers.
   static constexpr std::size_t bytes_per_pixel_of_object() {
     return CompensatedSums::bytes_per_value + sizeof(float);
+  }
+  /// And for each plane that layers ask for, with that of a pass and of the picture.
+  static constexpr std::size_t bytes_per_pixel_of_plane() {
+    return CompensatedSums::bytes_per_value + 2 * sizeof(float);
   }
   /// And for each group of lights.
   static constexpr std::size_t bytes_per_pixel_of_group() {
@@ -73,14 +80,15 @@ public:
   /// glows, volume_emission (half), and depth.Z (float): the mean distance [world] of the medium,
   /// weighted by opacity, or empty_depth where there is none. Everything is black before the first
   /// pass.
-  /// Groups of lights come as light_NAME, and objects as Cryptomatte (cryptomatte.h).
+  /// Groups of lights come as light_NAME, planes under their names, and objects as Cryptomatte
+  /// (cryptomatte.h).
   Image develop() const;
   /// The deep picture; nullopt where the film holds none.
   std::optional<DeepImage> develop_deep() const;
   DeepFilm* deep() { return deep_ ? &*deep_ : nullptr; }
   const DeepFilm* deep() const { return deep_ ? &*deep_ : nullptr; }
-  /// Adds one of the layers that develop() leaves out, or nothing: background, transmittance, and
-  /// variance, that of the mean of the passes (float).
+  /// Adds one of the layers that develop() leaves out, or nothing: background, transmittance,
+  /// variance, that of the mean of the passes (float), and samples, rays per pixel (float).
   void add_layer(const std::string& name, Image& image) const;
 
   /// The expected MRSE of develop()'s R, G, B, without bias, from the variance of the passes: the
@@ -95,6 +103,7 @@ public:
 
 private:
   std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
+  std::vector<float> develop_plane(std::size_t plane) const;
   std::uint64_t add_pixels(const PassImage& pass, std::size_t begin, std::size_t end);
   void check_size(int width, int height) const;
 
@@ -112,7 +121,9 @@ private:
   std::vector<CompensatedSums> groups_; ///< 3 per pixel and group of lights
   std::vector<std::string> object_names_;
   std::vector<CompensatedSums> coverage_; ///< 1 per pixel and object
-  std::vector<double> squares_;           ///< 3 per pixel: sums of what passes show, squared
+  std::vector<std::string> plane_names_;
+  std::vector<CompensatedSums> planes_; ///< 1 per pixel and plane that layers ask for
+  std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
   std::optional<DeepFilm> deep_;
   PassHistory history_;
   struct HistoryStatistics {

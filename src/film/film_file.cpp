@@ -83,6 +83,8 @@ FilmFileInfo parse_info(Image header, const std::string& path) {
   info.groups = names_between("film.group.", ".R.sum.low");
   info.objects = names_between("film.object.", ".sum.low");
   std::sort(info.objects.begin(), info.objects.end());
+  info.planes = names_between("film.plane.", ".sum.low");
+  std::sort(info.planes.begin(), info.planes.end());
   for (const ImageChannel& channel : header.channels) {
     info.deep_edge_planes += channel.name.starts_with("film.deep.edges.") ? 1 : 0;
     info.deep_piece_planes += channel.name.starts_with("film.deep.rests.") ? 1 : 0;
@@ -135,7 +137,7 @@ Film read_film(const std::string& path, const FilmFileInfo& info) {
     deep.emplace(static_cast<std::size_t>(info.header.width) * info.header.height,
                  info.deep_edge_planes, info.deep_piece_planes);
   Film film(info.header.width, info.header.height, info.glows, info.groups, std::move(deep),
-            info.objects);
+            info.objects, info.planes);
   if (!read_planes(path, info.header.width, info.header.height, file_planes(film)))
     fail_damaged(path);
   const auto error = info.header.numbers.find("vdbeam:deepAlphaError");

@@ -19,6 +19,7 @@ struct FilmFileInfo {
   bool glows = false;               ///< the film holds emission
   std::vector<std::string> groups;  ///< of lights that it tells apart
   std::vector<std::string> objects; ///< whose coverage it holds
+  std::vector<std::string> planes;  ///< of layers that it holds
   /// Planes of edges and of pieces of a film that holds a deep picture; 0: it does not.
   std::size_t deep_edge_planes = 0, deep_piece_planes = 0;
   bool unbiased = false; ///< as the plan has it (RenderPlan::unbiased)

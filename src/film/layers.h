@@ -5,8 +5,9 @@
 
 namespace vdbeam {
 
-/// What is wrong with the name of a layer, or nothing. `groups`: those of the lights.
-std::string why_no_layer(const std::string& name, const std::vector<std::string>& groups);
+/// What is wrong with the name of a layer, or nothing. `others`: those of the scene's groups of
+/// lights and of its volumes.
+std::string why_no_layer(const std::string& name, const std::vector<std::string>& others);
 
 /// The picture with the layers that are asked for, or with those that every picture has where none
 /// are. R, G and B are always there. A layer that there is nothing of in the scene is left out.

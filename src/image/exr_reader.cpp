@@ -1,5 +1,6 @@
 #include "image/exr_stream.h"
 #include "image/image_readers.h"
+#include "image/layer_names.h"
 #include "vdbeam/error.h"
 
 #include <ImathBox.h>
@@ -143,26 +144,42 @@ std::vector<float> place(std::vector<float>&& plane, const Box& data, const Box&
   return placed;
 }
 
-Image read_part(Imf::MultiPartInputFile& file, const std::string& path) {
+/// Adds the channels of a part, which lies in the image's display window.
+void read_part(Imf::MultiPartInputFile& file, int number, const std::string& path, Image& image) {
+  const Imf::Header& header = file.header(number);
+  const Box data = header.dataWindow(), display = header.displayWindow();
+  const std::vector<std::string> names = channel_names(header, path);
+  const std::size_t channels = image.channels.size() + names.size();
+  check_size(data, channels, "data", path);
+  check_size(display, channels, "display", path);
+  if (!file.partComplete(number))
+    throw InputError(path + ": the EXR is incomplete; its writer was interrupted");
+  Imf::InputPart part(file, number);
+  std::vector<std::vector<float>> planes = read_pixels(part, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_half = header.channels()[names[i].c_str()].type == Imf::HALF;
+    image.channels.push_back({names[i], place(std::move(planes[i]), data, display), is_half});
+  }
+}
+
+/// The first part, and others with layers of the same picture.
+Image read_parts(Imf::MultiPartInputFile& file, const std::string& path) {
   const Imf::Header& header = file.header(0);
   if (header.hasType() && Imf::isDeepData(header.type()))
     throw InputError(path + ": is a deep EXR; flatten it first");
-  const Box data = header.dataWindow(), display = header.displayWindow();
-  const std::vector<std::string> names = channel_names(header, path);
-  check_size(data, names.size(), "data", path);
-  check_size(display, names.size(), "display", path);
-  if (!file.partComplete(0))
-    throw InputError(path + ": the EXR is incomplete; its writer was interrupted");
+  const Box display = header.displayWindow();
+  check_size(display, 1, "display", path);
 
   Image image;
   image.width = static_cast<int>(box_width(display));
   image.height = static_cast<int>(box_height(display));
   copy_attributes(header, image);
-  Imf::InputPart part(file, 0);
-  std::vector<std::vector<float>> planes = read_pixels(part, names);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool is_half = header.channels()[names[i].c_str()].type == Imf::HALF;
-    image.channels.push_back({names[i], place(std::move(planes[i]), data, display), is_half});
+  read_part(file, 0, path, image);
+  for (int i = 1; i < file.parts(); ++i) {
+    const Imf::Header& other = file.header(i);
+    const bool deep = other.hasType() && Imf::isDeepData(other.type());
+    if (!deep && other.displayWindow() == display && !image.find(other.channels().begin().name()))
+      read_part(file, i, path, image);
   }
   return image;
 }
@@ -183,7 +200,8 @@ Image read_exr(const std::string& path) {
   return with_exr<InputError>(path, "not a readable EXR", [&] {
     check_attribute_sizes(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
-    Image image = read_part(file, path);
+    Image image = read_parts(file, path);
+    name_combined_rgba(image);
     add_grey(image);
     return image;
   });

@@ -10,18 +10,25 @@
 #include <ImfIO.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfTileDescription.h>
+#include <ImfTiledOutputPart.h>
 #include <ImfTimeCodeAttribute.h>
 #include <ImfVecAttribute.h>
 #include <fmt/format.h>
 #include <half.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 
 namespace vdbeam {
 namespace {
@@ -138,35 +145,112 @@ Imf::Slice make_slice(const StoredChannel& channel, const Imath::Box2i& window) 
   return Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, data, window, size, size * width);
 }
 
-/// What the scene asks for (image.compression, kept as an attribute); ZIP otherwise.
-Imf::Compression compression_of(const Image& image) {
+Imf::Compression compression_named(const std::string& asked) {
   const std::pair<const char*, Imf::Compression> names[] = {
       {"zips", Imf::ZIPS_COMPRESSION}, {"piz", Imf::PIZ_COMPRESSION},
       {"rle", Imf::RLE_COMPRESSION},   {"none", Imf::NO_COMPRESSION},
       {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION}};
-  const auto asked = image.metadata.find("vdbeam:compression");
   for (const auto& [name, compression] : names)
-    if (asked != image.metadata.end() && asked->second == name)
+    if (asked == name)
       return compression;
   return Imf::ZIP_COMPRESSION;
 }
 
-void write_channels(const Image& image, AtomicFile& file) {
-  Imf::Header header = exr_header(image, file.path());
-  header.compression() = compression_of(image);
-  std::vector<StoredChannel> stored(image.channels.size());
-  tbb::parallel_for(std::size_t{0}, stored.size(),
-                    [&](std::size_t i) { stored[i] = store_channel(image.channels[i]); });
+/// What the scene asks for, kept as an attribute; empty where it does not.
+std::string wish(const Image& image, const char* attribute) {
+  const auto found = image.metadata.find(attribute);
+  return found == image.metadata.end() ? std::string() : found->second;
+}
+
+/// A part of the file: a layer, or all of them.
+struct Part {
+  std::string name;
+  std::vector<StoredChannel> channels;
+};
+
+/// R, G, B and A are the part "rgba"; what stands in no layer belongs to it too.
+std::vector<Part> split_in_parts(const Image& image) {
+  const bool by_layer = wish(image, "vdbeam:parts") == "layers";
+  std::vector<Part> parts{{"rgba", {}}};
+  for (const ImageChannel& channel : image.channels) {
+    const auto dot = channel.name.rfind('.');
+    const std::string layer =
+        by_layer && dot != std::string::npos ? channel.name.substr(0, dot) : parts[0].name;
+    auto part = std::find_if(parts.begin(), parts.end(),
+                             [&](const Part& known) { return known.name == layer; });
+    if (part == parts.end())
+      part = parts.insert(parts.end(), {layer, {}});
+    part->channels.push_back({&channel, {}});
+  }
+  std::erase_if(parts, [](const Part& part) { return part.channels.empty(); });
+  return parts;
+}
+
+/// The compression of a layer's part, from "layer:compression layer:compression ...".
+Imf::Compression compression_of(const Image& image, const std::string& part) {
+  std::istringstream pairs(wish(image, "vdbeam:partCompression"));
+  for (std::string pair; pairs >> pair;)
+    if (const auto colon = pair.rfind(':'); pair.substr(0, colon) == part)
+      return compression_named(pair.substr(colon + 1));
+  return compression_named(wish(image, "vdbeam:compression"));
+}
+
+/// Width of the tiles that the scene asks for; 0: it wants scan lines.
+unsigned tile_width_of(const Image& image) {
+  const auto found = image.numbers.find("vdbeam:tile");
+  return found == image.numbers.end() ? 0 : static_cast<unsigned>(found->second);
+}
+
+/// Fills in what the header says of the part, and where its pixels are.
+Imf::FrameBuffer fill_header(const Part& part, Imf::Header& header) {
   Imf::FrameBuffer pixels;
-  for (const StoredChannel& channel : stored) {
+  for (const StoredChannel& channel : part.channels) {
     const Imf::Slice slice = make_slice(channel, header.dataWindow());
     header.channels().insert(channel.source->name, Imf::Channel(slice.type));
     pixels.insert(channel.source->name, slice);
   }
+  return pixels;
+}
+
+void write_channels(const Image& image, AtomicFile& file) {
+  std::vector<Part> parts = split_in_parts(image);
+  const unsigned tile = tile_width_of(image);
+  std::vector<Imf::Header> headers;
+  std::vector<Imf::FrameBuffer> pixels;
+  for (Part& part : parts) {
+    tbb::parallel_for(std::size_t{0}, part.channels.size(), [&](std::size_t i) {
+      part.channels[i] = store_channel(*part.channels[i].source);
+    });
+    Imf::Header& header = headers.emplace_back(exr_header(image, file.path()));
+    header.compression() = compression_of(image, part.name);
+    if (tile > 0)
+      header.setTileDescription(Imf::TileDescription(tile, tile, Imf::ONE_LEVEL));
+    pixels.push_back(fill_header(part, header));
+    if (parts.size() > 1)
+      header.setName(part.name);
+    if (parts.size() > 1 || tile > 0)
+      header.setType(tile > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  }
   AtomicStream stream(file);
-  Imf::OutputFile output(stream, header, 0);
-  output.setFrameBuffer(pixels);
-  output.writePixels(image.height);
+  if (parts.size() == 1 && tile == 0) {
+    Imf::OutputFile output(stream, headers[0], 0);
+    output.setFrameBuffer(pixels[0]);
+    output.writePixels(image.height);
+    return;
+  }
+  Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()), false,
+                                  0);
+  for (int i = 0; i < static_cast<int>(headers.size()); ++i) {
+    if (tile > 0) {
+      Imf::TiledOutputPart part(output, i);
+      part.setFrameBuffer(pixels[static_cast<std::size_t>(i)]);
+      part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
+    } else {
+      Imf::OutputPart part(output, i);
+      part.setFrameBuffer(pixels[static_cast<std::size_t>(i)]);
+      part.writePixels(image.height);
+    }
+  }
 }
 
 } // namespace

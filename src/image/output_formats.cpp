@@ -1,6 +1,7 @@
 #include "image/output_formats.h"
 
 #include "image/color_conversion.h"
+#include "image/layer_names.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -18,11 +19,15 @@ constexpr OutputFormat formats[] = {
     {".exr", "OpenEXR, every channel, linear", true,
      [](const Image& image, const std::string& path, const WriteOptions&) {
        const auto space = image.metadata.find("vdbeam:outputSpace");
-       if (space == image.metadata.end())
+       const auto names = image.metadata.find("vdbeam:layerNames");
+       if (space == image.metadata.end() && names == image.metadata.end())
          return write_exr(image, path);
        Image converted = image;
        converted.metadata.erase("vdbeam:outputSpace");
-       convert_to_output_space(converted, space->second);
+       if (space != image.metadata.end())
+         convert_to_output_space(converted, space->second);
+       if (names != image.metadata.end())
+         rename_layers(converted, names->second);
        write_exr(converted, path);
      }},
     {".png", "8-bit sRGB preview", false,

@@ -33,6 +33,8 @@ struct PassImage {
   /// Per object of the scene, how much of each pixel it covers: what it adds to the opacity of the
   /// ray. Empty where nobody asks for it.
   std::vector<std::vector<float>> coverage;
+  /// What layers ask for beyond that, a plane each (estimators/ray_layers.h).
+  std::vector<std::vector<float>> planes;
   /// Where rays are cut for a deep picture; null where nobody asks for one.
   const DeepLayout* deep_layout = nullptr;
   /// Per piece of the layout, the light of the medium (R, G, B) and the opacity that it adds.
@@ -48,7 +50,7 @@ struct PassImage {
 
   /// `glows`: there is something to hold in `emission`.
   void resize(int w, int h, bool glows = false, const DeepLayout* layout = nullptr,
-              std::size_t objects = 0) {
+              std::size_t objects = 0, std::size_t plane_count = 0) {
     width = w;
     height = h;
     const std::size_t n = static_cast<std::size_t>(w) * h;
@@ -58,6 +60,7 @@ struct PassImage {
     emission.assign(glows ? n : 0, {});
     groups.clear();
     coverage.assign(objects, std::vector<float>(n));
+    planes.assign(plane_count, std::vector<float>(n));
     opacity.assign(n, 0);
     depth.assign(n, 0);
     deep_layout = layout;

@@ -1,5 +1,6 @@
 #include "render/memory_check.h"
 
+#include "estimators/plane_layers.h"
 #include "machine/cgroups.h"
 #include "machine/farm_grants.h"
 #include "vdbeam/error.h"
@@ -54,9 +55,13 @@ void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t gran
   if (plan.needs(Stage::photons) && (plan.photon_bytes > granted || photons > most_photons))
     refuse(scene, fmt::format("render.photons: a map of {} photons", photons), plan.photon_bytes,
            granted, "ask for fewer photons and more passes, which give the same picture");
-  if (plan.film_bytes > granted)
-    refuse(scene, fmt::format("image: {} x {} pixels", scene.image.width, scene.image.height),
-           plan.film_bytes, granted, "ask for a smaller picture");
+  if (plan.film_bytes <= granted)
+    return;
+  const std::string size = fmt::format("{} x {} pixels", scene.image.width, scene.image.height);
+  if (const std::size_t planes = plane_names(scene).size(); planes > 0)
+    refuse(scene, fmt::format("image: {} with {} channels of layers", size, planes),
+           plan.film_bytes, granted, "ask for a smaller picture or fewer layers");
+  refuse(scene, "image: " + size, plan.film_bytes, granted, "ask for a smaller picture");
 }
 
 } // namespace vdbeam

@@ -2,6 +2,7 @@
 
 #include "estimators/light_groups.h"
 #include "estimators/make_deep_layout.h"
+#include "estimators/plane_layers.h"
 #include "film/clamp.h"
 #include "film/layers.h"
 #include "render/arithmetic.h"
@@ -64,7 +65,8 @@ Film PassLoop::make_film() const {
           scene_.glows(),
           light_group_names(scene_),
           std::move(deep),
-          scene_.image.cryptomatte ? scene_objects(scene_).names : std::vector<std::string>()};
+          scene_.image.cryptomatte ? scene_objects(scene_).names : std::vector<std::string>(),
+          plane_names(scene_)};
 }
 
 void PassLoop::gather_deep(const DeepLayout& layout) {

@@ -17,6 +17,7 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
   PassImage part;
   part.resize(window.width(), window.height(), !pass.emission.empty());
   part.coverage.assign(pass.coverage.size(), std::vector<float>(part.direct.size()));
+  part.planes.assign(pass.planes.size(), std::vector<float>(part.direct.size()));
   part.groups.assign(pass.groups.size(), std::vector<Rgb>(part.direct.size()));
   for (int y = 0; y < window.height(); ++y) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(window.y0 + y) * pass.width + window.x0;
@@ -33,6 +34,8 @@ PassImage cut_out(const PassImage& pass, const PixelRegion& window) {
       copy(pass.groups[g], part.groups[g]);
     for (std::size_t i = 0; i < pass.coverage.size(); ++i)
       copy(pass.coverage[i], part.coverage[i]);
+    for (std::size_t i = 0; i < pass.planes.size(); ++i)
+      copy(pass.planes[i], part.planes[i]);
     copy(pass.opacity, part.opacity);
     copy(pass.depth, part.depth);
   }

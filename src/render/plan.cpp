@@ -2,6 +2,7 @@
 
 #include "estimators/camera_ray.h"
 #include "estimators/light_groups.h"
+#include "estimators/plane_layers.h"
 #include "film/cryptomatte.h"
 #include "film/film.h"
 #include "photonmap/photon_map.h"
@@ -217,10 +218,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
     plan.moment_bytes = 2 * plan.volume_bytes;
   if (scene.image.deep)
     plan.deep_bytes = deep_memory(scene.image);
-  plan.film_bytes =
-      film_memory(scene.image, scene.image.raster_width(), scene.image.raster_height(),
-                  scene.glows(), light_group_names(scene).size(),
-                  scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
+  plan.film_bytes = film_memory(
+      scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(),
+      light_group_names(scene).size(),
+      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   return plan;
 }
 
@@ -240,13 +241,14 @@ RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes) {
 }
 
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows,
-                          std::size_t groups, std::size_t objects) {
+                          std::size_t groups, std::size_t objects, std::size_t planes) {
   const auto pixels = [](int w, int h) {
     return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
   };
   constexpr std::size_t cryptomatte = 2 * CryptomatteWriter::ranks * sizeof(float);
   return (objects > 0 ? cryptomatte : 0) * pixels(width, height) +
          objects * Film::bytes_per_pixel_of_object() * pixels(width, height) +
+         planes * Film::bytes_per_pixel_of_plane() * pixels(width, height) +
          PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
          groups * sizeof(Rgb) * pixels(image.raster_width(), image.raster_height()) +
          (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows) +

@@ -28,8 +28,8 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
 
 /// Bytes of a pass over the picture, and of the film and the picture developed from it where only
 /// `width` x `height` pixels are wanted. `glows`: with emission; `groups`: of lights;
-/// `objects`: whose coverage is asked for.
+/// `objects`: whose coverage is asked for; `planes`: that layers ask for beyond the usual ones.
 std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows = false,
-                          std::size_t groups = 0, std::size_t objects = 0);
+                          std::size_t groups = 0, std::size_t objects = 0, std::size_t planes = 0);
 
 } // namespace vdbeam

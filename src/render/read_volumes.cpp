@@ -1,5 +1,6 @@
 #include "render/read_volumes.h"
 
+#include "estimators/plane_layers.h"
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
 #include "volume/edited_field.h"
@@ -155,7 +156,8 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
 
 void take_velocities(const Scene& scene, const PreparedScenePtr& previous,
                      PreparedScene& prepared) {
-  for (std::size_t i = 0; i < scene.volumes.size() && !scene.moments.empty(); ++i) {
+  const bool wanted = !scene.moments.empty() || asks_for_layer(scene, "motion");
+  for (std::size_t i = 0; i < scene.volumes.size() && wanted; ++i) {
     const VolumeSettings& volume = scene.volumes[i];
     ReadVolume& read = prepared.volumes[i];
     if (!volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)

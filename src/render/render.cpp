@@ -5,6 +5,7 @@
 #include "estimators/estimator.h"
 #include "estimators/light_groups.h"
 #include "estimators/make_deep_layout.h"
+#include "estimators/plane_layers.h"
 #include "film/deep_film.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
@@ -87,7 +88,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   result.plan = plan_stages(scene, volumes);
   result.plan.film_bytes = film_memory(
       scene.image, window.width(), window.height(), scene.glows(), light_group_names(scene).size(),
-      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0);
+      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   check_memory(scene, result.plan, granted_memory());
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
@@ -105,6 +106,12 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     objects = scene_objects(scene);
     input.objects = &objects;
   }
+  Velocities velocities;
+  for (const ReadVolume& volume : prepared->volumes)
+    velocities.push_back(volume.velocity);
+  const RayLayers layers(scene, velocities);
+  if (layers.planes() > 0)
+    input.layers = &layers;
   DeepLayout deep;
   if (scene.image.deep) {
     deep = make_deep_layout(input, scene.image.deep_alpha, deep_depth(scene.image, world));

@@ -38,7 +38,7 @@ Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
                              from.frame,       from.window, from.stop,     prepared->photons.get(),
-                             from.blur_pixels, from.deep,   from.objects},
+                             from.blur_pixels, from.deep,   from.objects,  from.layers},
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
@@ -92,9 +92,9 @@ const EstimatorInput& Shutter::moved_input() {
       if (stage.stage == Stage::kernel_pilot)
         stage.needed = false;
   }
-  moved_input_.emplace(EstimatorInput{input_.world, input_.camera, moved_settings_, moved_plan_,
-                                      input_.frame, input_.window, input_.stop, input_.photons,
-                                      input_.blur_pixels, input_.deep, input_.objects});
+  moved_input_.emplace(EstimatorInput{
+      input_.world, input_.camera, moved_settings_, moved_plan_, input_.frame, input_.window,
+      input_.stop, input_.photons, input_.blur_pixels, input_.deep, input_.objects, input_.layers});
   return *moved_input_;
 }
 
@@ -107,6 +107,10 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
     renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(moment.camera, scene_.image, prepared->world->space),
         prepared->world == prepared_->world ? input_ : moved_input(), path_plan_);
+    if (input_.layers) {
+      renderer->layers.emplace(input_.layers->at(moment));
+      renderer->input.layers = &*renderer->layers;
+    }
     make_room();
     return *renderers_[key];
   }

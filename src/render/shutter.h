@@ -46,6 +46,7 @@ private:
     PreparedScenePtr prepared;
     Camera camera;
     EstimatorInput input, path_input;
+    std::optional<RayLayers> layers; ///< of this moment
     std::unique_ptr<Estimator> estimator;
     std::unique_ptr<BiasProbe> probe;
     int last_pass = 0;

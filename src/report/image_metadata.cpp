@@ -3,6 +3,7 @@
 #include "film/layers.h"
 #include "report/versions.h"
 #include "scene/scene_enums.h"
+#include "text/attributes.h"
 #include "transport/camera.h"
 
 #include <array>
@@ -72,10 +73,11 @@ void add_time(Image& image, const Scene& scene) {
   if (!scene.image.fps)
     return;
   const double fps = *scene.image.fps;
-  const int frame = scene.frame.number;
   image.numbers["framesPerSecond"] = fps;
   // A time code counts whole frames, of which it holds at most 30 in a second and a day in all.
   const int count = static_cast<int>(std::ceil(fps - 1e-6));
+  const int frame =
+      scene.frame.number + frames_of_time_code(scene.image.time_code, count).value_or(0);
   if (frame < 0 || count > 30 || frame / count >= 24 * 3600)
     return;
   const int seconds = frame / count;
@@ -119,6 +121,16 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.metadata["vdbeam:compression"] = enum_name(scene.image.compression);
   if (!scene.image.output_space.empty())
     image.metadata["vdbeam:outputSpace"] = scene.image.output_space;
+  if (scene.image.parts != ImageParts::one)
+    image.metadata["vdbeam:parts"] = enum_name(scene.image.parts);
+  if (scene.image.layer_names != LayerNames::vdbeam)
+    image.metadata["vdbeam:layerNames"] = enum_name(scene.image.layer_names);
+  if (scene.image.tile > 0) {
+    image.numbers["vdbeam:tile"] = scene.image.tile;
+    image.integers.insert("vdbeam:tile");
+  }
+  for (const auto& [name, text] : parse_attributes(scene.image.attributes))
+    image.metadata[name] = text;
   image.numbers["vdbeam:frame"] = scene.frame.number;
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "not one pass was finished";

@@ -26,6 +26,28 @@ void add_image_keys(KeyTable& table) {
   table.add("compression", &I::compression, "of the EXR; dwaa and dwab lose digits")
       .keeps_picture()
       .keeps_world();
+  table.add("parts", &I::parts, "whether the layers of the EXR share one part or have one each")
+      .keeps_picture()
+      .keeps_world();
+  table.add_auto("tile", &I::tile, "width of the EXR's tiles; none: it has scan lines")
+      .unit("pixels")
+      .within(16, 4096)
+      .absent("none")
+      .keeps_picture()
+      .keeps_world();
+  table.add("layer_names", &I::layer_names, "after which renderer the EXR's layers are named")
+      .keeps_picture()
+      .keeps_world();
+  table
+      .add("time_code", &I::time_code,
+           R"(time code of frame 0, "hh:mm:ss:ff", from which frames are counted; "": all zero)")
+      .keeps_picture()
+      .keeps_world();
+  table
+      .add("attributes", &I::attributes,
+           R"(further attributes of the EXR, "name = text; name = text"; "": none)")
+      .keeps_picture()
+      .keeps_world();
   table.add("working_space", &I::working_space,
             "linear RGB in which light is rendered; colours in scene files are of Rec.709");
   table

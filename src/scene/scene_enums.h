@@ -119,6 +119,18 @@ struct EnumNames<MaterialType> {
        {MaterialType::shadow_catcher, "shadow_catcher"}}};
 };
 template <>
+struct EnumNames<ImageParts> {
+  static constexpr std::array<std::pair<ImageParts, std::string_view>, 2> table{
+      {{ImageParts::one, "one"}, {ImageParts::layers, "layers"}}};
+};
+template <>
+struct EnumNames<LayerNames> {
+  static constexpr std::array<std::pair<LayerNames, std::string_view>, 3> table{
+      {{LayerNames::vdbeam, "vdbeam"},
+       {LayerNames::arnold, "arnold"},
+       {LayerNames::cycles, "cycles"}}};
+};
+template <>
 struct EnumNames<DirectLight> {
   static constexpr std::array<std::pair<DirectLight, std::string_view>, 3> table{
       {{DirectLight::automatic, "auto"},

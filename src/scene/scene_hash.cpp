@@ -1,3 +1,4 @@
+#include "estimators/plane_layers.h"
 #include "scene/content_hash.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/scene_file.h"
@@ -28,8 +29,8 @@ void add(ContentHash& hash, const KeyValue& value) {
 }
 
 /// What passes see at other moments; the files are those of the scene itself.
-void add_moments(ContentHash& hash, const Scene& scene) {
-  for (const Scene& moment : scene.moments)
+void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
+  for (const Scene& moment : moments)
     for (const SceneKey& key : scene_keys())
       for (std::size_t i = 0; key.get && key.changes_picture && !key.stop_rule &&
                               key.kind != KeyKind::file && i < section_count(moment, key.section);
@@ -55,7 +56,10 @@ std::string hash_scene(const Scene& scene, bool with_stop_rule) {
         add(hash, value);
     }
   }
-  add_moments(hash, scene);
+  add_moments(hash, scene.moments);
+  add_moments(hash, scene.next);
+  for (const std::string& plane : plane_names(scene)) // that passes hold for layers
+    add(hash, plane);
   return fmt::format("{:016x}", hash.value());
 }
 

@@ -184,6 +184,8 @@ void add_layer(KeyTable& table) {
   table.section(SceneSection::layer);
   table.add("name", &L::name, "which layer the image is to have").required();
   table.add("precision", &L::precision, "how it is stored: as halves or floats");
+  table.add("compression", &L::compression, R"(of its part, where image.parts = "layers")")
+      .absent("as image.compression");
 }
 
 void add_stop_rule(KeyTable& table) {

@@ -1,5 +1,7 @@
 #include "scene/shutter.h"
 
+#include "estimators/plane_layers.h"
+
 #include <algorithm>
 
 namespace vdbeam {
@@ -17,6 +19,9 @@ bool may_have_velocity(const Scene& scene) {
 
 void add_moments(Scene& scene, bool animated, const std::function<Scene(double time)>& scene_at) {
   scene.moments.clear();
+  scene.next.clear();
+  if (animated && asks_for_layer(scene, "motion"))
+    scene.next.push_back(scene_at(scene.frame.time + 1));
   const CameraSettings& camera = scene.camera;
   if (!camera.has_shutter() || !(animated || may_have_velocity(scene)))
     return;

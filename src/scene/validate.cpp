@@ -2,10 +2,12 @@
 
 #include "estimators/estimator_table.h"
 #include "estimators/light_groups.h"
+#include "estimators/plane_layers.h"
 #include "film/layers.h"
 #include "image/color_conversion.h"
 #include "lights/light_table.h"
 #include "scene/scene_keys.h"
+#include "text/attributes.h"
 #include "text/curve.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
@@ -131,16 +133,46 @@ public:
   }
 
   void check_layers() const {
-    const std::vector<std::string> groups = light_group_names(scene_);
+    std::vector<std::string> others = volume_layer_names(scene_);
+    for (const std::string& group : light_group_names(scene_))
+      others.push_back("light_" + group);
     for (std::size_t i = 0; i < scene_.layers.size(); ++i) {
       const std::string path = fmt::format("layer.{}.name", i);
       const std::string& name = scene_.layers[i].name;
-      if (const std::string why = why_no_layer(name, groups); !why.empty())
+      if (const std::string why = why_no_layer(name, others); !why.empty())
         fail(path, why);
       for (std::size_t j = 0; j < i; ++j)
         if (scene_.layers[j].name == name)
           fail(path, fmt::format("must not be there twice, got \"{}\"", name));
     }
+    check_volume_layers();
+  }
+
+  /// How the picture is written.
+  void check_file() const {
+    const ImageSettings& image = scene_.image;
+    for (std::size_t i = 0; i < scene_.layers.size(); ++i)
+      if (scene_.layers[i].compression && image.parts == ImageParts::one)
+        fail(fmt::format("layer.{}.compression", i), "needs image.parts = \"layers\"");
+    if (const std::string why = why_no_attributes(image.attributes); !why.empty())
+      fail("image.attributes", why);
+    if (image.time_code.empty())
+      return;
+    if (!image.fps || *image.fps > 30)
+      fail("image.time_code", "needs image.fps, of at most 30");
+    if (!frames_of_time_code(image.time_code, static_cast<int>(std::ceil(*image.fps - 1e-6))))
+      fail("image.time_code", fmt::format("must be \"hh:mm:ss:ff\", got \"{}\"", image.time_code));
+  }
+
+  void check_volume_layers() const {
+    bool any = asks_for_layer(scene_, "volumes");
+    for (const std::string& name : volume_layer_names(scene_))
+      any = any || asks_for_layer(scene_, name);
+    if (any && scene_.render.clamp)
+      fail("render.clamp", "excludes layers of volumes");
+    for (std::size_t i = 0; i < scene_.volumes.size() && any; ++i)
+      if (const std::string why = why_no_volume_layer(scene_.volumes[i].name); !why.empty())
+        fail(fmt::format("volume.{}.name", i), why);
   }
 
   void check_render() const {
@@ -185,6 +217,7 @@ void validate_consistency(const Scene& scene, const KeyLocator& locate) {
     checker.check_light(i);
   checker.check_groups();
   checker.check_layers();
+  checker.check_file();
   checker.check_render();
 }
 

@@ -96,6 +96,25 @@ EyeRay Camera::sample(int x, int y, Rng& rng) const {
   return {origin_ + start, normalize(meeting - start)};
 }
 
+std::optional<std::array<double, 2>> Camera::project(const Vec3d& point) const {
+  const Vec3d p = point - origin_;
+  const double x = dot(p, right_), y = dot(p, up_), z = dot(p, forward_);
+  if (projection_ == Projection::panorama) {
+    const double turn = std::atan2(x, z), elevation = std::atan2(y, std::hypot(x, z));
+    return {{(turn / (2 * std::numbers::pi) + 0.5) * picture_width_ + overscan_,
+             (0.5 - elevation / std::numbers::pi) * picture_height_ + overscan_}};
+  }
+  const bool parallel = projection_ == Projection::orthographic;
+  if (!parallel && !(z > 0))
+    return std::nullopt;
+  const double depth = parallel ? 1 : z;
+  // The inverse of window_x and window_y.
+  const double wx = (x / depth - center_x_) / (tan_half_ * pixel_aspect_);
+  const double wy = (y / depth - center_y_) / tan_half_;
+  return {{(wx * picture_height_ + picture_width_) / 2 + overscan_,
+           (1 - wy) * picture_height_ / 2 + overscan_}};
+}
+
 Vec3d Camera::direction_towards(const Vec3d& point) const {
   if (projection_ == Projection::orthographic)
     return forward_;

@@ -7,6 +7,9 @@
 #include "vdbeam/scene.h"
 #include "volume/render_space.h"
 
+#include <array>
+#include <optional>
+
 namespace vdbeam {
 
 /// Unit vectors of a camera: right, up and forward in the picture.
@@ -42,6 +45,9 @@ public:
   }
   /// A random ray of the pixel (x, y), by its filter and through the lens.
   EyeRay sample(int x, int y, Rng& rng) const;
+  /// Where a point is in the picture, as a pixel position; nothing for one that is not before the
+  /// camera.
+  std::optional<std::array<double, 2>> project(const Vec3d& point) const;
   /// Unit direction of the ray of the picture that comes nearest to a point.
   Vec3d direction_towards(const Vec3d& point) const;
   /// False only where no ray of the picture can meet the box: it lies beyond one of the planes

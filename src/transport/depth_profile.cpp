@@ -82,16 +82,6 @@ void DepthProfile::read_at_knots(const DepthProfile& part, const Volume& volume,
   }
 }
 
-namespace {
-
-/// Where in a piece of optical depth `tau`, from 0 to 1, its collisions lie on average: the mean of
-/// an exponential distribution cut at 1.
-float mean_collision(float tau) {
-  return tau < 0.01f ? 0.5f - tau / 12 : 1 / tau - 1 / std::expm1(tau);
-}
-
-} // namespace
-
 float DepthProfile::sharpest_piece() const {
   float sharpest = 0, before = 0;
   for (std::size_t knot = 1; knot < t_.size(); ++knot) {

@@ -60,6 +60,12 @@ private:
   std::vector<float> t_, tau_;
 };
 
+/// Where in a piece of optical depth `tau`, from 0 to 1, its collisions lie on average: the mean of
+/// an exponential distribution cut at 1.
+inline float mean_collision(float tau) {
+  return tau < 0.01f ? 0.5f - tau / 12 : 1 / tau - 1 / std::expm1(tau);
+}
+
 /// Reads a profile at increasing distances.
 class ProfileCursor {
 public:

@@ -159,7 +159,7 @@ private:
 } // namespace
 
 Rgb emission_along(const Medium& medium, const Segment& segment, const DepthProfile& profile,
-                   float cutoff) {
+                   float cutoff, std::vector<Rgb>* of_emitters) {
   const Ray& ray = segment.ray;
   const float limit = -std::log(std::max(cutoff, 1e-30f));
   Rgb sum;
@@ -182,7 +182,10 @@ Rgb emission_along(const Medium& medium, const Segment& segment, const DepthProf
                        return false;
                    return true;
                  });
-    sum += integral.sum() * emitter.strength;
+    const Rgb light = integral.sum() * emitter.strength;
+    if (of_emitters)
+      of_emitters->push_back(light);
+    sum += light;
   }
   return sum;
 }

@@ -215,8 +215,10 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, found.notes);
   world.space = choose_space(bounds.empty() ? world_bounds(shapes) : bounds);
   for (std::size_t i = 0; i < grids.size(); ++i)
-    if (!emissions[i].empty())
+    if (!emissions[i].empty()) {
       world.medium.emitters.push_back(make_emitter(emissions[i], scene.volumes[i], world.space));
+      world.medium.emitters.back().setting = i;
+    }
   std::vector<PhaseSettings> known;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VolumeSettings& settings = scene.volumes[i];

@@ -15,6 +15,7 @@ struct Emitter {
   Affine to_render; ///< local coordinates of the field -> render space
   Affinef to_local; ///< render space -> local coordinates
   Rgb strength{1, 1, 1};
+  std::size_t setting = 0; ///< which volume of the scene it is
 
   Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
   Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }

@@ -20,7 +20,8 @@ constexpr std::uint64_t gigabyte = 1000000000;
 /// What check_memory says of a scene of one dense volume on a machine of this size; empty: nothing.
 std::string complaint(const Scene& scene, std::uint64_t granted) {
   try {
-    check_memory(scene, plan_stages(scene, {{false, 1000}}), granted);
+    const std::vector<VolumeFacts> facts(scene.volumes.size(), {false, 1000});
+    check_memory(scene, plan_stages(scene, facts), granted);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -55,6 +56,17 @@ TEST(Memory, AThousandGroupsOfLightsAreRefusedOrFit) {
     scene.scene.lights.back().group = fmt::format("g{}", i);
   }
   EXPECT_NE(complaint(scene.scene, 64 * gigabyte), "");
+  EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
+}
+
+TEST(Memory, AThousandLayersAreRefusedOrFit) {
+  MemoryScene scene = box_scene(1);
+  scene.scene.image = {3840, 2160};
+  scene.scene.volumes.resize(250, scene.scene.volumes[0]); // of four channels each
+  scene.scene.layers.push_back({"volumes"});
+  EXPECT_EQ(complaint(scene.scene, 64 * gigabyte),
+            "scene: image: 3840 x 2160 pixels with 1000 channels of layers would take 168.1 GB of "
+            "the 64.0 GB that this machine grants: ask for a smaller picture or fewer layers");
   EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
 }
 
