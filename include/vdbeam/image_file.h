@@ -16,8 +16,8 @@ void write_exr(const Image& image, const std::string& path);
 std::uint64_t write_deep_exr(const DeepImage& deep, const Image& attributes,
                              const std::string& path);
 
-/// Reads every channel of a flat EXR as float, or an RGBE .hdr as R, G, B. Throws InputError for
-/// anything that is not such a file, within bounded memory.
+/// Reads every channel of a flat EXR as float, or an RGBE .hdr or a PNG as linear R, G, B. Throws
+/// InputError for anything that is not such a file, within bounded memory.
 Image read_image(const std::string& path);
 
 /// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` says how

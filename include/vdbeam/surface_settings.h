@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/color_space.h"
 #include "vdbeam/vec.h"
 
 #include <array>
@@ -19,10 +20,16 @@ enum class MaterialType {
   shadow_catcher
 };
 
+/// What a texture shows beyond its edges.
+enum class TextureWrap { repeat, mirror, clamp };
+
 struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
-  /// diffuse, shadow_catcher: share of the light that is reflected, per channel
-  Rgb albedo{0.8f, 0.8f, 0.8f};
+  /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: `albedo_of`.
+  std::optional<Rgb> albedo;
+  /// diffuse, shadow_catcher, emissive: a picture that albedo or radiance are multiplied by; ""
+  std::string texture;
+  TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
   /// conductor, dielectric: alpha of GGX is its square, in [0, 1]; none: `roughness_of`.
   std::optional<double> roughness;
@@ -32,7 +39,14 @@ struct MaterialSettings {
   bool solid = false;
   Rgb radiance{1, 1, 1};  ///< emissive [W m^-2 sr^-1]
   bool two_sided = false; ///< emissive: shines from the back as well
+  /// Of the colours above, to which the texture's are converted; not a key of its own.
+  ColorSpace color_space = ColorSpace::rec709;
 };
+
+/// The albedo where none is given: a texture is shown as it is.
+inline Rgb albedo_of(const MaterialSettings& material) {
+  return material.albedo.value_or(material.texture.empty() ? Rgb(0.8f) : Rgb(1));
+}
 
 inline bool shines(const MaterialSettings& material) {
   return material.type == MaterialType::emissive && max_component(material.radiance) > 0;
@@ -54,7 +68,7 @@ inline bool is_specular(const MaterialSettings& material) {
 inline bool takes_photons(const MaterialSettings& material) {
   return ((material.type == MaterialType::diffuse ||
            material.type == MaterialType::shadow_catcher) &&
-          max_component(material.albedo) > 0) ||
+          max_component(albedo_of(material)) > 0) ||
          (material.type == MaterialType::dielectric && !is_specular(material)) ||
          (material.type == MaterialType::conductor && !is_specular(material) &&
           max_component(material.reflectance) > 0);

@@ -61,6 +61,7 @@ Mesh repair_mesh(const RawMesh& raw, const std::string& label) {
   mesh.positions.reserve(raw.positions.size());
   for (const Vec3d& p : raw.positions)
     mesh.positions.push_back(usable(p) ? Vec3f(p - mesh.center) : Vec3f());
+  mesh.uvs = raw.uvs;
   mesh.triangles.reserve(sound.size());
   for (const auto& t : sound) {
     if (has_area(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]))

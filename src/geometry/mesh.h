@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/affine.h"
+#include "math/uv.h"
 
 #include <array>
 #include <cstdint>
@@ -14,17 +15,20 @@ namespace vdbeam {
 struct Mesh {
   Vec3d center;
   std::vector<Vec3f> positions;
+  std::vector<Uv> uvs;                                 ///< per position, or none
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
   std::vector<std::string> notes;                      ///< for the user: repairs
 
   std::size_t bytes() const {
-    return positions.size() * sizeof(Vec3f) + triangles.size() * sizeof triangles[0];
+    return positions.size() * sizeof(Vec3f) + uvs.size() * sizeof(Uv) +
+           triangles.size() * sizeof triangles[0];
   }
 };
 
 /// Triangles as a file has them: nothing in it is checked yet.
 struct RawMesh {
   std::vector<Vec3d> positions;
+  std::vector<Uv> uvs; ///< as many, or none
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 

@@ -63,6 +63,8 @@ void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& p = mesh.mVertices[i];
     raw.positions.push_back(map.point({p.x, p.y, p.z}));
+    if (const aiVector3D* uv = mesh.mTextureCoords[0])
+      raw.uvs.push_back({static_cast<float>(uv[i].x), static_cast<float>(uv[i].y)});
   }
   // A map that mirrors turns triangles inside out.
   const bool mirrors = map.determinant() < 0;
@@ -91,15 +93,15 @@ void append_node(const aiScene& scene, const aiNode& node, const Affine& parent,
 }
 
 struct Counts {
-  std::uint64_t positions = 0, triangles = 0;
+  std::uint64_t positions = 0, uvs = 0, triangles = 0;
 };
 
-/// In the child: parses the file and writes counts, positions and triangles.
-void parse(const std::string& path, int output) {
+/// In the child: parses the file and writes counts, positions, texture coordinates and triangles.
+void parse(const std::string& path, bool with_uvs, int output) {
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                  aiComponent_COLORS | (with_uvs ? 0 : int{aiComponent_TEXCOORDS}) |
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   const aiScene* scene = importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
@@ -109,36 +111,47 @@ void parse(const std::string& path, int output) {
   RawMesh raw;
   if (scene->mRootNode)
     append_node(*scene, *scene->mRootNode, {}, raw);
-  const Counts counts{raw.positions.size(), raw.triangles.size()};
+  if (raw.uvs.size() != raw.positions.size())
+    raw.uvs.clear();
+  const Counts counts{raw.positions.size(), raw.uvs.size(), raw.triangles.size()};
   write_all(output, &counts, sizeof counts);
   write_all(output, raw.positions.data(), raw.positions.size() * sizeof raw.positions[0]);
+  write_all(output, raw.uvs.data(), raw.uvs.size() * sizeof raw.uvs[0]);
   write_all(output, raw.triangles.data(), raw.triangles.size() * sizeof raw.triangles[0]);
+}
+
+/// Takes values off what is left of the child's answer; false where there are fewer.
+template <class T>
+bool take(const std::byte*& data, std::uint64_t& rest, std::uint64_t count,
+          std::vector<T>& values) {
+  if (count > rest / sizeof(T))
+    return false;
+  values.resize(count);
+  std::copy_n(data, count * sizeof(T), reinterpret_cast<std::byte*>(values.data()));
+  data += count * sizeof(T);
+  rest -= count * sizeof(T);
+  return true;
 }
 
 } // namespace
 
-Mesh read_mesh(const std::string& path, const MeshLimits& limits) {
+Mesh read_mesh(const std::string& path, const MeshLimits& limits, bool with_uvs) {
   const std::uint64_t bytes = check_file(path);
-  const MappedFile file =
-      run_guarded(path, guard_limits(bytes, limits), [&](int output) { parse(path, output); });
+  const MappedFile file = run_guarded(path, guard_limits(bytes, limits),
+                                      [&](int output) { parse(path, with_uvs, output); });
   RawMesh raw;
   Counts counts;
-  if (file.size() < sizeof counts)
-    throw FrameError(path + ": the reader returned too little");
-  std::memcpy(&counts, file.data(), sizeof counts);
-  const std::uint64_t rest = file.size() - sizeof counts;
-  const std::uint64_t position = sizeof raw.positions[0], triangle = sizeof raw.triangles[0];
-  if (counts.positions > rest / position || counts.triangles > rest / triangle ||
-      counts.positions * position + counts.triangles * triangle != rest)
-    throw FrameError(path + ": the reader returned too little");
-  raw.positions.resize(counts.positions);
-  raw.triangles.resize(counts.triangles);
-  const std::byte* data = file.data() + sizeof counts;
-  std::copy_n(data, counts.positions * position,
-              reinterpret_cast<std::byte*>(raw.positions.data()));
-  std::copy_n(data + counts.positions * position, counts.triangles * triangle,
-              reinterpret_cast<std::byte*>(raw.triangles.data()));
-  return repair_mesh(raw, path);
+  std::uint64_t rest = file.size();
+  if (rest >= sizeof counts) {
+    std::memcpy(&counts, file.data(), sizeof counts);
+    const std::byte* data = file.data() + sizeof counts;
+    rest -= sizeof counts;
+    if (take(data, rest, counts.positions, raw.positions) &&
+        take(data, rest, counts.uvs, raw.uvs) &&
+        take(data, rest, counts.triangles, raw.triangles) && rest == 0)
+      return repair_mesh(raw, path);
+  }
+  throw FrameError(path + ": the reader returned too little");
 }
 
 } // namespace vdbeam

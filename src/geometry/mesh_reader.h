@@ -17,9 +17,10 @@ struct MeshLimits {
 bool is_mesh_file(const std::string& path);
 
 /// Reads the triangles of an OBJ, PLY or glTF file, all of its nodes in their places; polygons are
-/// triangulated, lines and points left out. The file is parsed in a guarded child process
+/// triangulated, lines and points left out. `with_uvs`: and the first texture coordinates, if all
+/// of its parts have them. The file is parsed in a guarded child process
 /// (machine/guarded_process.h). Throws InputError for what is no mesh file, FrameError for one that
 /// is damaged.
-Mesh read_mesh(const std::string& path, const MeshLimits& limits = {});
+Mesh read_mesh(const std::string& path, const MeshLimits& limits = {}, bool with_uvs = false);
 
 } // namespace vdbeam

@@ -59,6 +59,12 @@ double distance_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, cons
 
 constexpr double pi_d = std::numbers::pi;
 
+/// The angle from +x towards +y, as a share of the full turn, in [0, 1).
+double turn(const Vec3d& point) {
+  const double share = std::atan2(point.y, point.x) / (2 * pi_d);
+  return share < 0 ? share + 1 : share;
+}
+
 class MeshShape final : public Shape {
 public:
   explicit MeshShape(Mesh mesh) : mesh_(std::move(mesh)) {
@@ -105,19 +111,47 @@ public:
                                 map.point(vertex(i, 2)));
   }
   double area() const override { return area_until_.back(); }
-  ShapePoint sample(double u_primitive, double u, double v) const override {
-    const auto found = std::upper_bound(area_until_.begin(), area_until_.end() - 1,
-                                        u_primitive * area_until_.back());
-    const auto i = static_cast<std::size_t>(found - area_until_.begin());
-    const double root = std::sqrt(u), b1 = root * (1 - v), b2 = root * v;
+  double area_before(std::size_t i) const override { return i == 0 ? 0 : area_until_[i - 1]; }
+  using Shape::sample;
+  ShapePoint sample(std::size_t i, const AreaPlace& place) const override {
+    const double root = std::sqrt(place.u), b1 = root * (1 - place.v), b2 = root * place.v;
     const Vec3d a = vertex(i, 0), e1 = vertex(i, 1) - a, e2 = vertex(i, 2) - a;
     return {a + e1 * b1 + e2 * b2, cross(e1, e2)};
+  }
+  AreaPlace place_of(std::size_t i, const Vec3d& point) const override {
+    const auto [b1, b2] = barycentric(i, point);
+    const double root = b1 + b2;
+    return {root * root, root > 0 ? b2 / root : 0};
+  }
+  bool has_uvs() const override { return !mesh_.uvs.empty(); }
+  Uv uv(std::size_t i, const Vec3d& point) const override {
+    if (mesh_.uvs.empty())
+      return {};
+    const auto [b1, b2] = barycentric(i, point);
+    const auto& [a, b, c] = mesh_.triangles[i];
+    const auto mean = [&](float Uv::*part) {
+      const auto at = [&](std::uint32_t k) { return static_cast<double>(mesh_.uvs[k].*part); };
+      return static_cast<float>(at(a) * (1 - b1 - b2) + at(b) * b1 + at(c) * b2);
+    };
+    return {mean(&Uv::u), mean(&Uv::v)};
   }
   std::size_t bytes() const override {
     return mesh_.bytes() + area_until_.size() * sizeof area_until_[0];
   }
 
 private:
+  std::size_t primitive_at(double share) const override {
+    const auto found =
+        std::upper_bound(area_until_.begin(), area_until_.end() - 1, share * area_until_.back());
+    return static_cast<std::size_t>(found - area_until_.begin());
+  }
+  /// The shares of the second and third vertex in a point of a triangle.
+  std::pair<double, double> barycentric(std::size_t i, const Vec3d& point) const {
+    const Vec3d a = vertex(i, 0), e1 = vertex(i, 1) - a, e2 = vertex(i, 2) - a, p = point - a;
+    const Vec3d n = cross(e1, e2);
+    const double square = dot(n, n);
+    return {dot(cross(p, e2), n) / square, dot(cross(e1, p), n) / square};
+  }
   Vec3d vertex(std::size_t triangle, int k) const {
     return Vec3d(mesh_.positions[mesh_.triangles[triangle][k]]);
   }
@@ -149,14 +183,23 @@ public:
     return std::abs(length(place.to_shape.point(point)) - 1) / place.most_shrink;
   }
   double area() const override { return 4 * pi_d; }
-  ShapePoint sample(double, double u, double v) const override {
-    const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
-    const Vec3d n{r * std::cos(2 * pi_d * v), r * std::sin(2 * pi_d * v), z};
+  using Shape::sample;
+  ShapePoint sample(std::size_t, const AreaPlace& place) const override {
+    const double z = 1 - 2 * place.u, r = std::sqrt(std::max(0.0, 1 - z * z));
+    const Vec3d n{r * std::cos(2 * pi_d * place.v), r * std::sin(2 * pi_d * place.v), z};
     return {n, n};
+  }
+  AreaPlace place_of(std::size_t, const Vec3d& point) const override {
+    return {(1 - normalize(point).z) / 2, turn(point)};
+  }
+  /// A picture of the globe: its middle faces -x, its right edge meets its left one at +x.
+  Uv uv(std::size_t, const Vec3d& point) const override {
+    const double z = std::clamp(normalize(point).z, -1.0, 1.0);
+    return {static_cast<float>(turn(point)), static_cast<float>(1 - std::acos(z) / pi_d)};
   }
 };
 
-/// A part of the plane z = 0 with its front towards +z.
+/// A part of the plane z = 0 with its front towards +z. The square around it shows the picture.
 class FlatShape : public Shape {
 public:
   std::size_t primitives() const override { return 1; }
@@ -168,6 +211,9 @@ public:
         !holds(origin.x + direction.x * t, origin.y + direction.y * t))
       return std::nullopt;
     return ShapeHit{t, {0, 0, 1}};
+  }
+  Uv uv(std::size_t, const Vec3d& point) const override {
+    return {static_cast<float>((point.x + 1) / 2), static_cast<float>((point.y + 1) / 2)};
   }
 
 private:
@@ -183,8 +229,12 @@ public:
                     distance_to_triangle(point, a, b, corner(-1, 1)));
   }
   double area() const override { return 4; }
-  ShapePoint sample(double, double u, double v) const override {
-    return {{2 * u - 1, 2 * v - 1, 0}, {0, 0, 1}};
+  using Shape::sample;
+  ShapePoint sample(std::size_t, const AreaPlace& place) const override {
+    return {{2 * place.u - 1, 2 * place.v - 1, 0}, {0, 0, 1}};
+  }
+  AreaPlace place_of(std::size_t, const Vec3d& point) const override {
+    return {(point.x + 1) / 2, (point.y + 1) / 2};
   }
 
 private:
@@ -200,9 +250,13 @@ public:
     return std::max(to_plane, std::hypot(beyond, p.z) / place.most_shrink);
   }
   double area() const override { return pi_d; }
-  ShapePoint sample(double, double u, double v) const override {
-    const double r = std::sqrt(u);
-    return {{r * std::cos(2 * pi_d * v), r * std::sin(2 * pi_d * v), 0}, {0, 0, 1}};
+  using Shape::sample;
+  ShapePoint sample(std::size_t, const AreaPlace& place) const override {
+    const double r = std::sqrt(place.u);
+    return {{r * std::cos(2 * pi_d * place.v), r * std::sin(2 * pi_d * place.v), 0}, {0, 0, 1}};
+  }
+  AreaPlace place_of(std::size_t, const Vec3d& point) const override {
+    return {point.x * point.x + point.y * point.y, turn(point)};
   }
 
 private:

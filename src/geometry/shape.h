@@ -19,6 +19,11 @@ struct ShapePoint {
   Vec3d position, normal;
 };
 
+/// Numbers in [0, 1) by which the points of a primitive are drawn.
+struct AreaPlace {
+  double u = 0, v = 0;
+};
+
 /// How a shape stands in the world.
 struct ShapePlace {
   Affine to_render, to_shape;
@@ -45,9 +50,23 @@ public:
   virtual double distance(std::size_t primitive, const Vec3d& point,
                           const ShapePlace& place) const = 0;
   virtual double area() const = 0;
-  virtual ShapePoint sample(double u_primitive, double u, double v) const = 0;
+  /// Area of the primitives before this one.
+  virtual double area_before(std::size_t primitive) const { return primitive == 0 ? 0 : area(); }
+  virtual ShapePoint sample(std::size_t primitive, const AreaPlace& place) const = 0;
+  ShapePoint sample(double u_primitive, double u, double v) const {
+    return sample(primitive_at(u_primitive), AreaPlace{u, v});
+  }
+  /// Where `sample` finds a point of a primitive.
+  virtual AreaPlace place_of(std::size_t primitive, const Vec3d& point) const = 0;
+  virtual bool has_uvs() const { return true; }
+  /// Of a point of a primitive.
+  virtual Uv uv(std::size_t primitive, const Vec3d& point) const = 0;
   virtual std::size_t bytes() const { return 0; }
   Boxd bounds() const;
+
+private:
+  /// The primitive that lies at this share of the area.
+  virtual std::size_t primitive_at(double) const { return 0; }
 };
 
 std::shared_ptr<const Shape> make_mesh_shape(Mesh mesh);

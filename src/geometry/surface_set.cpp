@@ -1,5 +1,6 @@
 #include "geometry/surface_set.h"
 
+#include "geometry/placed.h"
 #include "vdbeam/error.h"
 
 #include <embree3/rtcore.h>
@@ -22,25 +23,6 @@ struct DeviceDeleter {
 };
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
-
-/// A surface with the maps that queries need.
-struct Placed {
-  PlacedShape surface;
-  ShapePlace place;
-  Boxd bounds;
-
-  /// A normal of the shape in render space, unit length.
-  Vec3d normal(const Vec3d& n) const { return normalize(covector(n)); }
-  /// The same, as long as makes it a covector: times the transposed inverse.
-  Vec3d covector(const Vec3d& n) const {
-    const auto& rows = place.to_shape.rows;
-    return rows[0] * n.x + rows[1] * n.y + rows[2] * n.z;
-  }
-  /// By how much an area grows where its unit normal, in the shape's space, is `n`.
-  double stretch(const Vec3d& n) const {
-    return std::abs(surface.to_render.determinant()) * length(covector(normalize(n)));
-  }
-};
 
 /// A shape as Embree's callbacks see it.
 struct ShapeEntry {
@@ -155,23 +137,6 @@ bool approach_primitive(RTCPointQueryFunctionArguments* args) {
     return false;
   args->query->radius = radius;
   return true;
-}
-
-/// The map's shortest stretch of a unit vector, or less.
-double least_stretch(const Affine& inverse) {
-  double square = 0;
-  for (const Vec3d& row : inverse.rows)
-    square += dot(row, row);
-  return 1 / std::sqrt(square);
-}
-
-Boxd mapped(const Affine& map, const Boxd& box) {
-  Boxd result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.extend(
-        map.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                   corner & 4 ? box.upper.z : box.lower.z}));
-  return result;
 }
 
 void check(RTCDevice device) {
@@ -319,6 +284,9 @@ std::optional<SurfaceHit> SurfaceSet::intersect(const Vec3d& origin, const Vec3d
   hit.position = origin + direction * hit.t;
   hit.normal = Vec3f(data_->surfaces[query.found].normal(query.hit.normal));
   hit.surface = static_cast<int>(query.found);
+  hit.primitive = query.found_primitive;
+  if (data_->surfaces[query.found].surface.textured)
+    hit.uv = uv(hit);
   return hit;
 }
 
@@ -368,12 +336,37 @@ double SurfaceSet::area(std::size_t surface) const {
 
 SurfacePoint SurfaceSet::sample(std::size_t surface, double u_primitive, double u, double v) const {
   const Placed& entry = data_->surfaces[surface];
-  const ShapePoint point = entry.surface.shape->sample(u_primitive, u, v);
-  SurfacePoint result;
-  result.position = entry.surface.to_render.point(point.position);
-  result.normal = Vec3f(entry.normal(point.normal));
-  result.pdf = static_cast<float>(1 / (entry.surface.shape->area() * entry.stretch(point.normal)));
+  return entry.placed(entry.surface.shape->sample(u_primitive, u, v));
+}
+
+std::size_t SurfaceSet::primitives(std::size_t surface) const {
+  return data_->surfaces[surface].surface.shape->primitives();
+}
+
+double SurfaceSet::share_before(std::size_t surface, std::size_t primitive) const {
+  const Shape& shape = *data_->surfaces[surface].surface.shape;
+  return shape.area_before(primitive) / shape.area();
+}
+
+SurfacePoint SurfaceSet::sample(std::size_t surface, std::size_t primitive,
+                                const AreaPlace& place) const {
+  const Placed& entry = data_->surfaces[surface];
+  const ShapePoint point = entry.surface.shape->sample(primitive, place);
+  SurfacePoint result = entry.placed(point);
+  if (entry.surface.textured)
+    result.uv = entry.surface.shape->uv(primitive, point.position);
   return result;
+}
+
+Uv SurfaceSet::uv(const SurfaceHit& hit) const {
+  const Placed& entry = data_->surfaces[static_cast<std::size_t>(hit.surface)];
+  return entry.surface.shape->uv(hit.primitive, entry.place.to_shape.point(hit.position));
+}
+
+AreaPlace SurfaceSet::place_of(std::size_t surface, std::size_t primitive,
+                               const Vec3d& point) const {
+  const Placed& entry = data_->surfaces[surface];
+  return entry.surface.shape->place_of(primitive, entry.place.to_shape.point(point));
 }
 
 float SurfaceSet::sample_pdf(std::size_t surface, const Vec3f& normal) const {

@@ -16,6 +16,7 @@ struct PlacedShape {
   std::shared_ptr<const Shape> shape; ///< shared by its instances
   Affine to_render;                   ///< shape's own space -> render space
   bool visible = true;                ///< to the camera
+  bool textured = false;              ///< its hits and points have their UV
 };
 
 /// Where a ray meets a surface.
@@ -24,6 +25,8 @@ struct SurfaceHit {
   Vec3d position; ///< render space
   Vec3f normal;   ///< unit, geometric, towards the front
   int surface = 0;
+  std::size_t primitive = 0; ///< of its shape
+  Uv uv;                     ///< of surfaces that show a picture
 
   /// Where a ray along `direction` begins so that it does not meet this point again: off the
   /// surface by more than rounding may have put the point to the wrong side. In double precision,
@@ -41,6 +44,7 @@ struct SurfacePoint {
   Vec3d position;
   Vec3f normal;
   float pdf = 0; ///< per area, render units
+  Uv uv;         ///< of surfaces that show a picture
 };
 
 /// All surfaces of a scene in render space: what rays meet. The only user of Embree, whose trees
@@ -76,6 +80,15 @@ public:
   std::size_t bytes() const;
   double area(std::size_t surface) const;
   SurfacePoint sample(std::size_t surface, double u_primitive, double u, double v) const;
+  std::size_t primitives(std::size_t surface) const;
+  /// Share of the surface's primitives before this one in the area of its shape.
+  double share_before(std::size_t surface, std::size_t primitive) const;
+  /// A point of a primitive; the density is that of points drawn on the whole surface.
+  SurfacePoint sample(std::size_t surface, std::size_t primitive, const AreaPlace& place) const;
+  /// Of a point of a surface, whether or not it shows a picture.
+  Uv uv(const SurfaceHit& hit) const;
+  /// Where the latter `sample` finds a point.
+  AreaPlace place_of(std::size_t surface, std::size_t primitive, const Vec3d& point) const;
   /// The density per area with which `sample` gives a point where the surface has this normal.
   float sample_pdf(std::size_t surface, const Vec3f& normal) const;
 

@@ -20,6 +20,10 @@ Image read_exr(const std::string& path);
 /// and PRIMARIES lines: the former is divided out, the latter ignored. Throws InputError.
 Image read_hdr(const std::string& path);
 
+/// A PNG of 8 or 16 bits, decoded to linear light; 8 bits are sRGB where the file has no gamma of
+/// its own. Alpha is left out. Throws InputError.
+Image read_png(const std::string& path);
+
 /// The version of OpenEXR, e.g. "3.1.5".
 std::string exr_library_version();
 

@@ -18,6 +18,7 @@ struct InputFormat {
 constexpr InputFormat input_formats[] = {
     {"\x76\x2f\x31\x01", read_exr},
     {"#?", read_hdr},
+    {"\x89PNG", read_png},
 };
 
 } // namespace
@@ -33,7 +34,7 @@ Image read_image(const std::string& path) {
   for (const InputFormat& format : input_formats)
     if (std::string_view(start, sizeof start).substr(0, format.magic.size()) == format.magic)
       return format.read(path);
-  throw InputError(path + ": neither an OpenEXR file nor a Radiance .hdr picture");
+  throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr picture, nor a PNG");
 }
 
 } // namespace vdbeam

@@ -17,13 +17,30 @@ double another(float u) {
 } // namespace
 
 SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface,
-                           const Rgb& radiance, bool two_sided, const SolidAngleShape& seen_as)
+                           const Rgb& radiance, bool two_sided, const SolidAngleShape& seen_as,
+                           std::shared_ptr<const Texture> texture)
     : surfaces_(std::move(surfaces)), surface_(surface), radiance_(radiance), two_sided_(two_sided),
-      seen_as_(seen_as) {
+      seen_as_(seen_as), texture_(std::move(texture)) {
   const auto index = static_cast<std::size_t>(surface);
   center_ = surfaces_->bounds(index).center();
-  power_ = Rgb(Vec3d(radiance) *
-               (surfaces_->area(index) * static_cast<double>(pi) * (two_sided ? 2 : 1)));
+  const double sides = two_sided ? 2 : 1;
+  if (texture_) {
+    cells_.emplace(surfaces_, surface, *texture_);
+    power_ = Rgb(Vec3d(radiance) * Vec3d(cells_->integral()) * (static_cast<double>(pi) * sides));
+  } else {
+    power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) * sides));
+  }
+}
+
+SurfacePoint SurfaceLight::sample_area(double place, double u, double v) const {
+  return cells_ ? cells_->sample(place, u, v)
+                : surfaces_->sample(static_cast<std::size_t>(surface_), place, u, v);
+}
+
+float SurfaceLight::area_pdf(std::size_t primitive, const Vec3d& position,
+                             const Vec3f& normal) const {
+  return cells_ ? cells_->pdf(primitive, position, normal)
+                : surfaces_->sample_pdf(static_cast<std::size_t>(surface_), normal);
 }
 
 std::optional<SolidAnglePoint> SurfaceLight::sample_solid_angle(const Vec3d& point, float u,
@@ -44,15 +61,20 @@ double SurfaceLight::solid_angle(const Vec3d& point) const {
 }
 
 IncidentSample SurfaceLight::sample_incident(const Vec3f& point, float u, float v) const {
+  if (cells_)
+    return sample_textured(point, u, v);
   if (const auto seen = sample_solid_angle(Vec3d(point), u, v)) {
     const Vec3f wi(seen->wi);
     const auto pdf = static_cast<float>(seen->pdf);
     const bool lit = shines(Vec3f(seen->normal), -wi);
     return {wi, static_cast<float>(seen->distance), lit ? radiance_ / pdf : Rgb(), pdf};
   }
-  const SurfacePoint on =
-      surfaces_->sample(static_cast<std::size_t>(surface_), static_cast<double>(u), another(u),
-                        static_cast<double>(v));
+  return sample_by_area(point, static_cast<double>(u), another(u), static_cast<double>(v));
+}
+
+IncidentSample SurfaceLight::sample_by_area(const Vec3f& point, double place, double u,
+                                            double v) const {
+  const SurfacePoint on = sample_area(place, u, v);
   const Vec3d to = on.position - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0))
@@ -63,16 +85,44 @@ IncidentSample SurfaceLight::sample_incident(const Vec3f& point, float u, float 
     return {wi, static_cast<float>(distance), {}, 0};
   const auto d = static_cast<float>(distance);
   const float pdf = on.pdf * d * d / cosine;
-  return {wi, d, radiance_ / pdf, pdf};
+  return {wi, d, radiance(on.uv) / pdf, pdf};
+}
+
+IncidentSample SurfaceLight::sample_textured(const Vec3f& point, float u, float v) const {
+  const double whole = solid_angle(Vec3d(point));
+  const double place = static_cast<double>(u), across = static_cast<double>(v);
+  if (!(whole > 0))
+    return sample_by_area(point, place, another(u), across);
+  if (u >= 0.5f) {
+    IncidentSample sample = sample_by_area(point, 2 * place - 1, another(u), across);
+    const float pdf = 0.5f * (sample.pdf + static_cast<float>(1 / whole));
+    sample.value *= sample.pdf / pdf;
+    sample.pdf = pdf;
+    return sample;
+  }
+  const auto seen = sample_solid_angle(Vec3d(point), 2 * u, v);
+  if (!seen)
+    return {{0, 0, 1}, 0, {}, 0};
+  SurfaceHit hit;
+  hit.t = seen->distance;
+  hit.position = Vec3d(point) + seen->wi * seen->distance;
+  hit.normal = Vec3f(seen->normal);
+  hit.surface = surface_;
+  const Vec3f wi(seen->wi);
+  const float pdf = surface_pdf(hit, wi);
+  const Rgb value = pdf > 0 ? radiance(surfaces_->uv(hit)) / pdf : Rgb();
+  return {wi, static_cast<float>(hit.t), value, pdf};
 }
 
 float SurfaceLight::surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const {
   const float cosine = std::abs(dot(hit.normal, wi)), t = static_cast<float>(hit.t);
   if (!(cosine > 0) || !shines(hit.normal, -wi))
     return 0;
-  if (const double whole = solid_angle(hit.position - Vec3d(wi) * hit.t); whole > 0)
+  const double whole = solid_angle(hit.position - Vec3d(wi) * hit.t);
+  if (whole > 0 && !cells_)
     return static_cast<float>(1 / whole);
-  return surfaces_->sample_pdf(static_cast<std::size_t>(surface_), hit.normal) * t * t / cosine;
+  const float by_area = area_pdf(hit.primitive, hit.position, hit.normal) * t * t / cosine;
+  return whole > 0 ? 0.5f * (by_area + static_cast<float>(1 / whole)) : by_area;
 }
 
 float SurfaceLight::incident_pdf(const Vec3f& point, const Vec3f& wi) const {
@@ -84,12 +134,12 @@ LightHit SurfaceLight::emitted_radiance(const Segment& segment) const {
   const auto hit = surfaces_->intersect(segment);
   if (!hit || hit->surface != surface_ || !shines(hit->normal, -segment.ray.direction))
     return {};
-  return {radiance_, static_cast<float>(hit->t)};
+  return {radiance(hit->uv), static_cast<float>(hit->t)};
 }
 
 EmittedPhoton SurfaceLight::emit(double place, Rng& rng) const {
   const double u = rng.uniform(), v = rng.uniform();
-  const SurfacePoint on = surfaces_->sample(static_cast<std::size_t>(surface_), place, u, v);
+  const SurfacePoint on = sample_area(place, u, v);
   const float cosine2 = rng.uniform_positive(), phi = 2 * pi * rng.uniform();
   const bool front = !two_sided_ || rng.uniform() < 0.5f;
   SurfaceHit from;
@@ -102,7 +152,7 @@ EmittedPhoton SurfaceLight::emit(double place, Rng& rng) const {
   const double largest =
       max_component(Vec3d{std::abs(start.x), std::abs(start.y), std::abs(start.z)});
   start += Vec3d(front ? on.normal : -on.normal) * (4e-7 * largest + 1e-12);
-  return {{Vec3f(start), direction}, radiance_ * weight};
+  return {{Vec3f(start), direction}, radiance(on.uv) * weight};
 }
 
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/surface_set.h"
+#include "lights/emission_cells.h"
 #include "lights/light.h"
 #include "lights/solid_angle.h"
 
@@ -9,13 +10,15 @@
 namespace vdbeam {
 
 /// A surface that shines: the same radiance in all directions, from its front or from both sides.
-/// Points on balls and rectangles are drawn uniformly by solid angle, on others by area; photons
-/// leave by Lambert's cosine law.
+/// Points on balls and rectangles are drawn uniformly by solid angle, on others by area, under a
+/// picture by what it shows there; photons leave by Lambert's cosine law.
 class SurfaceLight final : public Light {
 public:
-  /// `seen_as`: what the surface is, where it can be drawn by solid angle.
+  /// `seen_as`: what the surface is, where it can be drawn by solid angle; `texture`, unless it is
+  /// null: the picture that the radiance is multiplied by.
   SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface, const Rgb& radiance,
-               bool two_sided, const SolidAngleShape& seen_as = {});
+               bool two_sided, const SolidAngleShape& seen_as = {},
+               std::shared_ptr<const Texture> texture = nullptr);
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
   float incident_pdf(const Vec3f& point, const Vec3f& wi) const override;
@@ -29,6 +32,14 @@ public:
   float surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const override;
 
 private:
+  /// A point drawn by area, or by the picture.
+  SurfacePoint sample_area(double place, double u, double v) const;
+  /// The density per area with which the latter draws a point.
+  float area_pdf(std::size_t primitive, const Vec3d& position, const Vec3f& normal) const;
+  IncidentSample sample_by_area(const Vec3f& point, double place, double u, double v) const;
+  /// Half of the points by solid angle, where they can be, half by the picture.
+  IncidentSample sample_textured(const Vec3f& point, float u, float v) const;
+  Rgb radiance(const Uv& uv) const { return texture_ ? radiance_ * texture_->at(uv) : radiance_; }
   std::optional<SolidAnglePoint> sample_solid_angle(const Vec3d& point, float u, float v) const;
   /// What it fills as seen from `point`; 0 where points on it are drawn by area.
   double solid_angle(const Vec3d& point) const;
@@ -41,6 +52,8 @@ private:
   Rgb radiance_;
   bool two_sided_;
   SolidAngleShape seen_as_;
+  std::shared_ptr<const Texture> texture_;
+  std::optional<EmissionCells> cells_; ///< where there is a texture
   Vec3d center_;
   Rgb power_;
 };

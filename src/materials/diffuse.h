@@ -10,7 +10,7 @@ namespace vdbeam {
 class Diffuse : public Material {
 public:
   explicit Diffuse(const MaterialSettings& settings)
-      : Material(settings.type), albedo_(settings.albedo) {}
+      : Material(settings.type), albedo_(albedo_of(settings)) {}
 
   Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const override {
     return wo.z * wi.z > 0 ? albedo_ * (std::abs(wi.z) / pi) : Rgb();

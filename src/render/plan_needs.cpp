@@ -49,8 +49,9 @@ void add_light(const LightSettings& light, const EstimatorKind& estimator, Direc
 void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator, DirectLight direct,
                  PlanNeeds& needs) {
   const MaterialSettings& material = surface.material;
-  needs.colored = needs.colored || !is_grey(material.albedo) || !is_grey(material.reflectance) ||
-                  !is_grey(material.absorption) || !is_grey(material.radiance);
+  needs.colored = needs.colored || !is_grey(albedo_of(material)) || !material.texture.empty() ||
+                  !is_grey(material.reflectance) || !is_grey(material.absorption) ||
+                  !is_grey(material.radiance);
   needs.specular = needs.specular || is_specular(material);
   needs.receiver = needs.receiver || takes_photons(material);
   if (shines(material))

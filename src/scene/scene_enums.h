@@ -71,6 +71,13 @@ struct EnumNames<Compression> {
        {Compression::dwab, "dwab"}}};
 };
 template <>
+struct EnumNames<TextureWrap> {
+  static constexpr std::array<std::pair<TextureWrap, std::string_view>, 3> table{
+      {{TextureWrap::repeat, "repeat"},
+       {TextureWrap::mirror, "mirror"},
+       {TextureWrap::clamp, "clamp"}}};
+};
+template <>
 struct EnumNames<Interpolation> {
   static constexpr std::array<std::pair<Interpolation, std::string_view>, 2> table{
       {{Interpolation::linear, "linear"}, {Interpolation::cubic, "cubic"}}};

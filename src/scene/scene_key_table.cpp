@@ -112,9 +112,20 @@ void add_mesh(KeyTable& table) {
   using M = MaterialSettings;
   table.section(SceneSection::material);
   table.add("type", &M::type, R"(what it is made of; material = "NAME" is short for it)");
-  table.add("albedo", &M::albedo, "share of light reflected")
+  table
+      .add("albedo", &M::albedo,
+           "share of light reflected; auto: 0.8, or 1 where there is a texture")
       .within(0, 1)
-      .types({"diffuse", "shadow_catcher"});
+      .types({"diffuse", "shadow_catcher"})
+      .absent("auto");
+  table
+      .add(
+          "texture", &M::texture,
+          "EXR, HDR or PNG picture, by the surface's UV, that albedo or radiance are multiplied by")
+      .kind(KeyKind::file)
+      .types({"diffuse", "shadow_catcher", "emissive"});
+  table.add("texture_wrap", &M::texture_wrap, "what the texture shows beyond its edges")
+      .types({"diffuse", "shadow_catcher", "emissive"});
   table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
       .within(0, 1)
       .types({"mirror", "conductor"});

@@ -26,6 +26,8 @@ Scene in_working_space(Scene scene) {
     volume.emission.color_space = space;
   for (LightSettings& light : scene.lights)
     light.color_space = space;
+  for (SurfaceSettings& surface : scene.surfaces)
+    surface.material.color_space = space;
   return scene;
 }
 

@@ -2,7 +2,13 @@
 
 #include "geometry/mesh_reader.h"
 
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+
 #include <map>
+#include <set>
+#include <tuple>
 
 namespace vdbeam {
 namespace {
@@ -21,6 +27,39 @@ Parallelepiped thick_box(const Boxd& box) {
           {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
 }
 
+/// The files that some surface shows a picture on.
+std::set<std::string> textured_files(const std::vector<SurfaceSettings>& settings) {
+  std::set<std::string> files;
+  for (const SurfaceSettings& surface : settings)
+    if (!surface.material.texture.empty())
+      files.insert(surface.file);
+  return files;
+}
+
+/// The textures of the surfaces, each picture read once.
+std::vector<std::shared_ptr<const Texture>>
+read_textures(const std::vector<SurfaceSettings>& settings, const std::vector<WorldShape>& shapes,
+              std::vector<std::string>& notes) {
+  std::map<std::tuple<std::string, TextureWrap, bool>, std::shared_ptr<const Texture>> known;
+  std::vector<std::shared_ptr<const Texture>> textures(settings.size());
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const MaterialSettings& material = settings[i].material;
+    if (material.texture.empty())
+      continue;
+    if (!shapes[i].shape->has_uvs())
+      throw InputError(fmt::format("{}: has no texture coordinates (UV), which "
+                                   "mesh.{}.material.texture needs: export it with them, or leave "
+                                   "out the texture",
+                                   settings[i].file, i));
+    auto& texture =
+        known[{material.texture, material.texture_wrap, material.type == MaterialType::emissive}];
+    if (!texture)
+      texture = std::make_shared<const Texture>(read_texture(material, notes));
+    textures[i] = texture;
+  }
+  return textures;
+}
+
 } // namespace
 
 std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
@@ -31,6 +70,7 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
   };
   std::map<std::string, Known> files;
   std::map<SurfaceShape, std::shared_ptr<const Shape>> simple;
+  const std::set<std::string> textured = textured_files(settings);
   std::vector<WorldShape> shapes;
   for (const SurfaceSettings& surface : settings) {
     const Affine placed = Affine::from_matrix(surface.transform);
@@ -43,7 +83,7 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
     }
     Known& known = files[surface.file];
     if (!known.shape) {
-      Mesh mesh = read_mesh(surface.file);
+      Mesh mesh = read_mesh(surface.file, {}, textured.count(surface.file) > 0);
       notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
       known.center = mesh.center;
       known.shape = make_mesh_shape(std::move(mesh));
@@ -68,13 +108,16 @@ Boxd world_bounds(const std::vector<WorldShape>& shapes) {
 std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings>& settings,
                                                const std::vector<WorldShape>& shapes,
                                                const RenderSpace& space,
-                                               const OccupiedRegion& medium) {
+                                               const OccupiedRegion& medium,
+                                               std::vector<std::string>& notes) {
   if (settings.empty())
     return nullptr;
   auto surfaces = std::make_shared<Surfaces>();
+  surfaces->textures = read_textures(settings, shapes, notes);
   std::vector<PlacedShape> placed;
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible});
+    placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
+                      surfaces->textures[i] != nullptr});
     surfaces->materials.push_back(make_material(settings[i].material, space.scale));
     surfaces->lights.push_back(-1);
   }

@@ -24,10 +24,12 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
 Boxd world_bounds(const std::vector<WorldShape>& shapes);
 
 /// The surfaces in render space; null where there are none, and then nothing of Embree is started.
+/// Reads textures: throws InputError, and tells of what is wrong in them in the notes.
 std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings>& settings,
                                                const std::vector<WorldShape>& shapes,
                                                const RenderSpace& space,
-                                               const OccupiedRegion& medium);
+                                               const OccupiedRegion& medium,
+                                               std::vector<std::string>& notes);
 
 /// The region of the medium and of the surfaces, which throw light into it.
 OccupiedRegion lit_region(const OccupiedRegion& medium, const SurfaceSet& surfaces);

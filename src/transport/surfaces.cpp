@@ -29,6 +29,8 @@ SurfaceVertex::SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit,
                              const Vec3f& direction)
     : hit_(hit), material_(surfaces.material(hit)),
       light_(surfaces.lights[static_cast<std::size_t>(hit.surface)]) {
+  if (const auto& texture = surfaces.textures[static_cast<std::size_t>(hit.surface)])
+    shown_ = texture->at(hit.uv);
   orthonormal_frame(hit_.normal, tangent_, bitangent_);
   wo_ = to_local(-direction);
 }
@@ -42,6 +44,7 @@ Rgb SurfaceVertex::absorbed() const {
 
 MaterialSample SurfaceVertex::sample(Carried carried, Rng& rng) const {
   MaterialSample result = material_.sample(wo_, carried, rng);
+  result.weight *= shown_;
   const Vec3f local = result.wi;
   result.wi = normalize(tangent_ * local.x + bitangent_ * local.y + hit_.normal * local.z);
   return result;

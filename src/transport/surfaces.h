@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/surface_set.h"
+#include "image/texture.h"
 #include "materials/material.h"
 
 #include <memory>
@@ -12,6 +13,7 @@ namespace vdbeam {
 struct Surfaces {
   std::shared_ptr<const SurfaceSet> set;
   std::vector<std::shared_ptr<const Material>> materials; ///< per surface
+  std::vector<std::shared_ptr<const Texture>> textures;   ///< per surface; null: none
   std::vector<int> lights; ///< per surface: its index among the lights, -1 where it does not shine
 
   const Material& material(const SurfaceHit& hit) const {
@@ -43,11 +45,11 @@ public:
   bool front() const { return wo_.z > 0; }
   /// Index of the light that the surface is, or -1.
   int light() const { return light_; }
-  Rgb emitted() const { return material_.emitted(front()); }
+  Rgb emitted() const { return material_.emitted(front()) * shown_; }
   /// What absorption inside left of the light on its way from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
-  Rgb evaluate(const Vec3f& wi) const { return material_.evaluate(wo_, to_local(wi)); }
+  Rgb evaluate(const Vec3f& wi) const { return material_.evaluate(wo_, to_local(wi)) * shown_; }
   float pdf(const Vec3f& wi) const { return material_.pdf(wo_, to_local(wi)); }
   /// Where the path goes on; the direction is in render space.
   MaterialSample sample(Carried carried, Rng& rng) const;
@@ -60,6 +62,7 @@ private:
   SurfaceHit hit_;
   const Material& material_;
   int light_;
+  Rgb shown_{1, 1, 1}; ///< by the texture: factor of what is reflected and emitted
   Vec3f tangent_, bitangent_;
   Vec3f wo_; ///< back along the path, in the surface's frame
 };

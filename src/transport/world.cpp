@@ -173,9 +173,9 @@ void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& wor
     if (!shines(material))
       continue;
     surfaces->lights[i] = static_cast<int>(world.lights.size());
-    world.lights.add(std::make_unique<SurfaceLight>(surfaces->set, static_cast<int>(i),
-                                                    material.radiance, material.two_sided,
-                                                    solid_angle_shape(settings[i], world.space)),
+    world.lights.add(std::make_unique<SurfaceLight>(
+                         surfaces->set, static_cast<int>(i), material.radiance, material.two_sided,
+                         solid_angle_shape(settings[i], world.space), surfaces->textures[i]),
                      {settings[i].visible, false});
   }
   world.surfaces = std::move(surfaces);
@@ -234,7 +234,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   }
   if (world.medium.visible())
     bound_region(world, bounds);
-  world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region);
+  world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region, found.notes);
   // What stands about the medium throws light into it.
   const OccupiedRegion lit =
       world.surfaces ? lit_region(world.region, *world.surfaces->set) : world.region;

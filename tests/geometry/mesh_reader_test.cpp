@@ -66,6 +66,50 @@ TEST(MeshReader, obj_polygons_without_normals) {
   EXPECT_GT(normal.z, 0) << "counter-clockwise is the front";
 }
 
+TEST(MeshReader, texture_coordinates) {
+  const TempFolder folder;
+  const std::string path = folder.file("square.obj");
+  // The third corner has another place in the picture for each of its triangles.
+  write_bytes(path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                    "vt 0.5 0.25\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n");
+  EXPECT_TRUE(read_mesh(path).uvs.empty());
+  const Mesh mesh = read_mesh(path, {}, true);
+  ASSERT_EQ(mesh.uvs.size(), mesh.positions.size());
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  const Uv third = mesh.uvs[mesh.triangles[0][2]], other = mesh.uvs[mesh.triangles[1][1]];
+  EXPECT_EQ(third.u, 1);
+  EXPECT_EQ(third.v, 1);
+  EXPECT_EQ(other.u, 0.5f);
+  EXPECT_EQ(other.v, 0.25f);
+}
+
+/// v runs down in glTF.
+TEST(MeshReader, texture_coordinates_of_ply_and_gltf) {
+  const TempFolder folder;
+  write_bytes(folder.file("t.ply"), "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                    "property float y\nproperty float z\nproperty float s\n"
+                                    "property float t\nelement face 1\nproperty list uchar int "
+                                    "vertex_indices\nend_header\n0 0 0 0.25 0.75\n1 0 0 1 0\n"
+                                    "0 1 0 0 1\n3 0 1 2\n");
+  const Mesh ply_mesh = read_mesh(folder.file("t.ply"), {}, true);
+  ASSERT_EQ(ply_mesh.uvs.size(), 3u);
+  EXPECT_EQ(ply_mesh.uvs[ply_mesh.triangles[0][0]].u, 0.25f);
+  EXPECT_EQ(ply_mesh.uvs[ply_mesh.triangles[0][0]].v, 0.75f);
+  write_bytes(folder.file("t.gltf"), R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]}],
+    "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPgAAQD8AAIA/AAAAAAAAAAAAAIA/"}],
+    "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                    {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]},
+                  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}]})");
+  const Mesh gltf = read_mesh(folder.file("t.gltf"), {}, true);
+  ASSERT_EQ(gltf.uvs.size(), 3u);
+  EXPECT_EQ(gltf.uvs[gltf.triangles[0][0]].u, 0.25f);
+  EXPECT_EQ(gltf.uvs[gltf.triangles[0][0]].v, 0.25f);
+}
+
 TEST(MeshReader, ply_and_gltf) {
   const TempFolder folder;
   write_bytes(folder.file("square.ply"), ply);

@@ -39,7 +39,7 @@ TEST_F(SceneHash, EveryKeyThatChangesThePictureChangesIt) {
       value = value == KeyValue(key.choices[0]) ? key.choices[1] : key.choices[0];
     else if (key.kind == KeyKind::text)
       value = std::string("other");
-    else if (key.kind == KeyKind::vector)
+    else if (key.kind == KeyKind::vector || key.kind == KeyKind::color)
       value = std::vector<double>{1, 2, 3};
     else if (key.kind == KeyKind::integer)
       value = std::int64_t{5};

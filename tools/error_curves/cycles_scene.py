@@ -3,13 +3,15 @@
   blender --background --factory-startup --python cycles_scene.py -- SETTINGS.json
 
 SETTINGS.json: `settings` of a vdbeam report, `image` (EXR to write), `seconds`, `threads`, `seed`,
-`step_rate`, `half_voxels` (half a voxel of each volume's grid in world units), `result` (JSON to write).
+`samples`, `step_rate`, `half_voxels` (half a voxel of each volume's grid, in the units of its file), `sky` (lat-long
+EXR of all lights that surround the scene, its middle towards `sky_front`; null: there are none), `result` (JSON to write).
 
 What has to be minded (Blender 3.4):
  - it draws voxel i at i + 1/2 where OpenVDB, and vdbeam, put it at i;
  - it marches with one jittered offset: a step as long as a voxel is too bright where voxels are optically
    thick, hence step_rate;
  - a sun's strength is the irradiance on a plane that faces it, a world's strength is radiance;
+ - a point's power is 4 pi times its radiant intensity;
  - paths end after 4 bounces unless told otherwise; pixels are filtered unless told otherwise.
 """
 
@@ -17,8 +19,14 @@ import json
 import sys
 import time
 
+from math import pi, radians
+from pathlib import Path
+
 import bpy
 from mathutils import Matrix, Vector
+
+sys.path.insert(0, str(Path(__file__).parent))
+from cycles_surfaces import add_mesh, matrix_of  # noqa: E402
 
 
 def look_at(camera):
@@ -31,8 +39,6 @@ def look_at(camera):
 
 
 def add_camera(settings):
-    from math import radians
-
     data = bpy.data.cameras.new("camera")
     data.sensor_fit = "VERTICAL"
     data.angle = radians(settings["camera"]["fov"])
@@ -61,27 +67,51 @@ def add_volume(volume, half_voxel):
     tree.links.new(medium.outputs["Volume"], output.inputs["Volume"])
     data.materials.append(material)
     place = bpy.data.objects.new("volume", data)
-    place.location = [-h for h in half_voxel]
+    place.matrix_world = matrix_of(volume["transform"]) @ Matrix.Translation([-h for h in half_voxel])
+    data.render.space = "WORLD"  # the density is per world unit, however the object is scaled
     bpy.context.scene.collection.objects.link(place)
 
 
 def add_light(light):
-    scene = bpy.context.scene
-    if light["type"] == "environment":
-        world = bpy.data.worlds.new("world")
-        world.use_nodes = True
-        background = world.node_tree.nodes["Background"]
-        background.inputs["Color"].default_value = (*light["radiance"], 1)
-        background.inputs["Strength"].default_value = 1
-        scene.world = world
-        return
-    data = bpy.data.lights.new("sun", "SUN")
-    data.color = [c / max(light["irradiance"]) for c in light["irradiance"]]
-    data.energy = max(light["irradiance"])
-    data.angle = 0
-    sun = bpy.data.objects.new("sun", data)
-    sun.rotation_euler = Vector(light["direction"]).to_track_quat("-Z", "Y").to_euler()
-    scene.collection.objects.link(sun)
+    color = light["irradiance" if light["type"] == "distant" else "intensity"]
+    strength = max(color)
+    if light["type"] == "distant":
+        data = bpy.data.lights.new("sun", "SUN")
+        data.energy = strength
+        data.angle = radians(2 * light["angular_radius"])
+    else:
+        data = bpy.data.lights.new("point", "POINT")
+        data.energy = 4 * pi * strength
+        data.shadow_soft_size = 0
+    data.color = [c / strength for c in color]
+    place = bpy.data.objects.new(light["type"], data)
+    if light["type"] == "distant":
+        place.rotation_euler = Vector(light["direction"]).to_track_quat("-Z", "Y").to_euler()
+    else:
+        place.location = light["position"]
+    place.visible_camera = False
+    bpy.context.scene.collection.objects.link(place)
+
+
+def add_sky(path, front, up, visible):
+    """The middle of a vdbeam panorama looks to the front; Cycles' middle is x, its left y."""
+    world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    ahead = Vector(front).normalized()
+    right = ahead.cross(Vector(up)).normalized()
+    turned = Matrix((ahead, -right, right.cross(ahead)))
+    place = nodes.new("ShaderNodeTexCoord")
+    mapping = nodes.new("ShaderNodeMapping")
+    mapping.inputs["Rotation"].default_value = turned.to_euler()
+    picture = nodes.new("ShaderNodeTexEnvironment")
+    picture.image = bpy.data.images.load(path)
+    picture.image.colorspace_settings.name = "Linear"
+    links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
+    world.cycles_visibility.camera = visible
+    bpy.context.scene.world = world
 
 
 def set_up_render(job):
@@ -95,12 +125,15 @@ def set_up_render(job):
     cycles = scene.cycles
     cycles.device = "CPU"
     cycles.seed = job["seed"]
-    cycles.samples = 1 << 20
-    cycles.time_limit = job["seconds"]
+    cycles.samples = job.get("samples") or 1 << 20
+    cycles.time_limit = job["seconds"] or 0
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1
-    cycles.max_bounces = cycles.volume_bounces = 1024
+    cycles.max_bounces = cycles.volume_bounces = cycles.diffuse_bounces = 1024
+    cycles.glossy_bounces = cycles.transmission_bounces = 1024
+    cycles.blur_glossy = 0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.volume_step_rate = job["step_rate"]
     cycles.volume_max_steps = 65536
@@ -117,10 +150,15 @@ def main():
         bpy.data.objects.remove(item)
     bpy.context.scene.world = None
     add_camera(job["settings"])
-    for volume, half_voxel in zip(job["settings"]["volume"], job["half_voxels"]):
+    for volume, half_voxel in zip(job["settings"].get("volume", []), job["half_voxels"]):
         add_volume(volume, half_voxel)
-    for light in job["settings"]["light"]:
-        add_light(light)
+    for mesh, material in zip(job["settings"].get("mesh", []), job["settings"].get("mesh.material", [])):
+        add_mesh(mesh, material)
+    for light in job["settings"].get("light", []):
+        if light["type"] in ("distant", "point"):
+            add_light(light)
+    if job["sky"]:
+        add_sky(job["sky"], job["sky_front"], job["settings"]["camera"]["up"], job["sky_visible"])
     set_up_render(job)
     start = time.monotonic()
     bpy.ops.render.render(write_still=True)

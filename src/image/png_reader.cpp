@@ -1,0 +1,76 @@
+#include "image/image_readers.h"
+#include "vdbeam/error.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbeam {
+namespace {
+
+struct FreePng {
+  void operator()(png_image* png) const { png_image_free(png); }
+};
+using PngPtr = std::unique_ptr<png_image, FreePng>;
+
+[[noreturn]] void damaged(const std::string& path, const std::string& reason) {
+  throw InputError(fmt::format("{}: not a readable PNG: {}", path, reason));
+}
+
+/// What an sRGB value of 8 bits stands for (IEC 61966-2-1).
+float decode_srgb(unsigned value) {
+  const double x = value / 255.0;
+  return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+}
+
+template <class T>
+std::vector<T> read_pixels(png_image& png, png_uint_32 format, const std::string& path) {
+  png.format = format;
+  std::vector<T> pixels(static_cast<std::size_t>(png.width) * png.height * 4);
+  if (!png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr))
+    damaged(path, png.message);
+  return pixels;
+}
+
+} // namespace
+
+Image read_png(const std::string& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  const PngPtr freed(&png);
+  if (!png_image_begin_read_from_file(&png, path.c_str()))
+    damaged(path, png.message);
+  if (std::int64_t(png.width) * png.height > max_image_pixels)
+    damaged(path, fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels", png.width,
+                              png.height));
+  Image image;
+  image.width = static_cast<int>(png.width);
+  image.height = static_cast<int>(png.height);
+  const std::size_t count = static_cast<std::size_t>(png.width) * png.height;
+  for (const char* name : {"R", "G", "B"})
+    image.channels.push_back({name, std::vector<float>(count)});
+  if (png.format & PNG_FORMAT_FLAG_LINEAR) { // 16 bits; libpng has multiplied them by their alpha
+    const auto pixels = read_pixels<std::uint16_t>(png, PNG_FORMAT_LINEAR_RGB_ALPHA, path);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        image.channels[c].data[i] =
+            pixels[4 * i + 3] == 0
+                ? 0
+                : static_cast<float>(pixels[4 * i + c]) / static_cast<float>(pixels[4 * i + 3]);
+    return image;
+  }
+  std::vector<float> table;
+  for (unsigned value = 0; value < 256; ++value)
+    table.push_back(decode_srgb(value));
+  const auto pixels = read_pixels<unsigned char>(png, PNG_FORMAT_RGBA, path);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      image.channels[c].data[i] = table[pixels[4 * i + c]];
+  return image;
+}
+
+} // namespace vdbeam

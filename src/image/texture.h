@@ -1,0 +1,42 @@
+#pragma once
+
+#include "math/uv.h"
+#include "vdbeam/image.h"
+#include "vdbeam/surface_settings.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbeam {
+
+/// A picture on a surface, bilinear between the centres of its texels.
+class Texture {
+public:
+  /// `largest`: what is brighter counts as that. What had to be changed in the picture's values is
+  /// told in the notes, under `name`. Throws InputError for a picture without R, G and B.
+  Texture(const Image& image, TextureWrap wrap, float largest, const std::string& name,
+          std::vector<std::string>& notes);
+
+  Rgb at(const Uv& uv) const;
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::size_t bytes() const { return texels_.size() * sizeof texels_[0]; }
+
+private:
+  const Rgb& texel(int x, int y) const {
+    return texels_[static_cast<std::size_t>(wrapped(y, height_)) *
+                       static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(wrapped(x, width_))];
+  }
+  int wrapped(int i, int size) const;
+
+  int width_, height_;
+  TextureWrap wrap_;
+  std::vector<Rgb> texels_;
+};
+
+/// Reads the texture of a material, in the colour space of its settings. Albedos are at most 1.
+/// Throws InputError where there is no such picture.
+Texture read_texture(const MaterialSettings& material, std::vector<std::string>& notes);
+
+} // namespace vdbeam
