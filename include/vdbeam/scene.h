@@ -5,6 +5,7 @@
 #include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
 #include "vdbeam/layer_settings.h"
+#include "vdbeam/phase_settings.h"
 #include "vdbeam/surface_settings.h"
 #include "vdbeam/vec.h"
 #include "vdbeam/volume_edits.h"
@@ -20,16 +21,6 @@ namespace vdbeam {
 /// What the user asked for, as plain values in world units; docs/scene.md gives every key, its
 /// unit, range and default. `load_scene` fills it from a file, programs may fill it by hand.
 
-enum class PhaseType { isotropic, henyey_greenstein, rayleigh, two_lobe, mie };
-
-struct PhaseSettings {
-  PhaseType type = PhaseType::isotropic;
-  double g = 0;                 ///< mean cosine (first lobe), in (-1, 1)
-  double g2 = 0;                ///< two_lobe: mean cosine of the second lobe
-  double blend = 0.5;           ///< two_lobe: weight of the second lobe
-  double droplet_diameter = 20; ///< mie: micrometres, 5 to 50
-};
-
 struct VolumeSettings {
   std::string name;    ///< in Cryptomatte; empty: volume0, volume1, ...
   std::string file;    ///< path, frame pattern already substituted
@@ -43,7 +34,9 @@ struct VolumeSettings {
   VelocitySettings velocity;
   DensityRemap remap;
   Interpolation interpolation = Interpolation::linear; ///< of density and emission
+  std::string add;                ///< names of grids that are added to the density: "a, b"
   std::string mask;               ///< name of a grid whose values multiply the density; empty: none
+  NoiseSettings noise;            ///< displaces density and emission
   std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]
   std::optional<Vec3d> box_upper;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.

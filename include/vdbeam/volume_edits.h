@@ -2,6 +2,7 @@
 
 #include "vdbeam/vec.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -38,6 +39,14 @@ struct DensityRemap {
   bool changes() const {
     return scale != 1 || offset != 0 || least != 0 || most || power != 1 || !curve.empty();
   }
+};
+
+/// Noise by which a volume is displaced: what is at x comes from x + amplitude n(x / size).
+struct NoiseSettings {
+  double amplitude = 0; ///< no point moves farther along an axis [world of the VDB]; 0: none
+  double size = 1;      ///< of the noise's largest features [world of the VDB]
+  int octaves = 3;      ///< each half as large and half as strong as the one before
+  std::uint64_t seed = 1;
 };
 
 } // namespace vdbeam

@@ -3,12 +3,15 @@
 #include "estimators/plane_layers.h"
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
+#include "volume/combined_grid.h"
 #include "volume/edited_field.h"
 #include "volume/moved_field.h"
 #include "volume/refined_grid.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+
+#include <sstream>
 
 namespace vdbeam {
 namespace {
@@ -29,11 +32,19 @@ std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& 
   return Motion{*read.velocity, volume.velocity};
 }
 
+std::string noise_text(const VolumeSettings& volume) {
+  const NoiseSettings& noise = volume.noise;
+  return noise.amplitude > 0 ? fmt::format("|noise {} {} {} {}", noise.amplitude, noise.size,
+                                           noise.octaves, noise.seed)
+                             : "";
+}
+
 /// The settings that edit a volume's density, as text.
 std::string edits_text(const VolumeSettings& volume) {
   const DensityRemap& r = volume.remap;
-  return fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}", volume.mask, r.scale, r.offset, r.least,
-                     r.most.value_or(-1), r.power, r.curve, static_cast<int>(volume.interpolation));
+  return noise_text(volume) + fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}|{}", volume.add, volume.mask,
+                                          r.scale, r.offset, r.least, r.most.value_or(-1), r.power,
+                                          r.curve, static_cast<int>(volume.interpolation));
 }
 
 /// The box that a volume is clipped to, and what places it there.
@@ -58,11 +69,19 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   return edits;
 }
 
-/// The density as its file has it, times its mask.
-DensityGrid read_density(const VolumeSettings& volume) {
-  DensityGrid grid = read_density_grid(volume.file, volume.density);
-  if (volume.interpolation == Interpolation::cubic)
-    grid = refined_grid(grid, volume.file, granted_memory());
+/// The density and what is added to it.
+std::vector<std::string> density_names(const VolumeSettings& volume) {
+  std::vector<std::string> names{volume.density};
+  std::istringstream list(volume.add);
+  for (std::string name; std::getline(list, name, ',');) {
+    const auto first = name.find_first_not_of(' '), last = name.find_last_not_of(' ');
+    if (first != std::string::npos)
+      names.push_back(name.substr(first, last - first + 1));
+  }
+  return names;
+}
+
+DensityGrid masked_density(const VolumeSettings& volume, DensityGrid grid) {
   if (volume.mask.empty())
     return grid;
   const DensityGrid mask = read_density_grid(volume.file, volume.mask, {}, Background::ignored);
@@ -74,9 +93,24 @@ DensityGrid read_density(const VolumeSettings& volume) {
   return grid;
 }
 
+/// The density as its file has it, with all that is added, times its mask, displaced by noise.
+DensityGrid read_density(const VolumeSettings& volume) {
+  std::vector<DensityGrid> grids;
+  for (const std::string& name : density_names(volume)) {
+    grids.push_back(read_density_grid(volume.file, name));
+    if (volume.interpolation == Interpolation::cubic)
+      grids.back() = refined_grid(grids.back(), volume.file, granted_memory());
+  }
+  DensityGrid grid = grids.size() == 1
+                         ? std::move(grids.front())
+                         : sum_of_grids(std::move(grids), volume.file, granted_memory());
+  grid = masked_density(volume, std::move(grid));
+  return displaced_grid(grid, volume.noise, volume.file, granted_memory());
+}
+
 /// Everything that decides an emission field but the contents of the file; its strength does not.
 std::string emission_identity(const VolumeSettings& volume) {
-  std::string text = file_identity(volume.file) + box_text(volume) +
+  std::string text = file_identity(volume.file) + box_text(volume) + noise_text(volume) +
                      fmt::format("|{}|{}", static_cast<int>(volume.emission.color_space),
                                  static_cast<int>(volume.interpolation));
   Scene scene;
@@ -136,7 +170,8 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
       for (const ReadVolume& known : previous->volumes)
         if (known.emission_identity == read.emission_identity)
           return known.emission;
-    if (!volume.box_lower && volume.interpolation == Interpolation::linear)
+    if (!volume.box_lower && volume.interpolation == Interpolation::linear &&
+        volume.noise.amplitude == 0)
       return read_emission_grid(volume.file, volume.emission);
   }
   const auto take = [&](const std::string& name) -> DensityGrid {
@@ -145,6 +180,7 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
     DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored);
     if (volume.interpolation == Interpolation::cubic)
       grid = refined_grid(grid, volume.file, granted_memory());
+    grid = displaced_grid(grid, volume.noise, volume.file, granted_memory());
     if (motion)
       grid = moved_grid(grid, *motion, volume.file, granted_memory());
     grid.field = edited_field(grid.field, edits_of(volume, grid, false));

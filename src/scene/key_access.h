@@ -33,6 +33,8 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.lights[index];
   else if constexpr (std::is_same_v<S, LayerSettings>)
     return scene.layers[index];
+  else if constexpr (std::is_same_v<S, NoiseSettings>)
+    return scene.volumes[index].noise;
   else if constexpr (std::is_same_v<S, DensityRemap>)
     return scene.volumes[index].remap;
   else

@@ -34,6 +34,7 @@ void add_volume(KeyTable& table) {
       .keeps_world();
   add_placement(table, &V::transform);
 
+  table.add("add", &V::add, R"(names of grids that are added to the density, "a, b"; "": none)");
   table.add("mask", &V::mask, R"(name of a grid whose values multiply the density; "": none)");
   using D = DensityRemap;
   table.add("density_scale", &D::scale, "factor of the density's values, before all that follows");
@@ -49,6 +50,19 @@ void add_volume(KeyTable& table) {
       .unit("world")
       .absent("none");
   table.add("box_upper", &V::box_upper, "its upper corner").unit("world").absent("none");
+
+  using N = NoiseSettings;
+  table
+      .add("noise_amplitude", &N::amplitude,
+           "how far noise displaces density and emission along an axis, at most; 0: none")
+      .unit("world")
+      .at_least(0);
+  table.add("noise_size", &N::size, "size of the noise's largest features").unit("world").above(0);
+  table
+      .add("noise_octaves", &N::octaves,
+           "octaves of the noise, each half as large and half as strong as the one before")
+      .within(1, 12);
+  table.add("noise_seed", &N::seed, "another seed is another noise").at_least(0);
 
   using W = VelocitySettings;
   table.add("velocity", &W::grid,
@@ -195,8 +209,10 @@ void add_layer(KeyTable& table) {
   table.section(SceneSection::layer);
   table.add("name", &L::name, "which layer the image is to have").required();
   table.add("precision", &L::precision, "how it is stored: as halves or floats");
-  table.add("compression", &L::compression, R"(of its part, where image.parts = "layers")")
-      .absent("as image.compression");
+  table
+      .add("compression", &L::compression,
+           R"(of its part, where image.parts = "layers"; auto: image.compression)")
+      .absent("auto");
 }
 
 void add_stop_rule(KeyTable& table) {

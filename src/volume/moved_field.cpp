@@ -36,16 +36,24 @@ public:
   Vec3d at(const Vec3d& local) const {
     return turn_.vector(velocity_.sample(to_velocity_.point(local))) * time_;
   }
-  /// The point that comes to `local`.
-  Vec3d source_of(const Vec3d& local) const {
-    Vec3d source = local;
+  /// Bounds of the displacements in a box.
+  Boxd bounds(const Boxd& local) const {
+    const Boxf velocities = velocity_.bounds(to_velocity_.bounds(local));
+    Affine turn = turn_;
+    turn.translation = {};
+    const Boxd box = turn.bounds({Vec3d(velocities.lower), Vec3d(velocities.upper)});
+    return {min(box.lower * time_, box.upper * time_), max(box.lower * time_, box.upper * time_)};
+  }
+  /// The point that comes to `local`. `way`: a guess of the displacement from there, which is
+  /// improved.
+  Vec3d source_of(const Vec3d& local, Vec3d& way) const {
     for (int step = 0; step < fixed_point_steps; ++step) {
-      const Vec3d next = local - at(source), change = next - source;
-      source = next;
+      const Vec3d next = at(local - way), change = next - way;
+      way = next;
       if (dot(change, change) < near_enough * near_enough)
         break;
     }
-    return source;
+    return local - way;
   }
 
 private:
@@ -61,13 +69,9 @@ Boxd destination(const DensityField& field, const Displacement& motion, int i, i
     return box;
   const Vec3d corner = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
   // A point of the lattice gives weight to what lies up to a voxel before it.
-  for (int x = -1; x <= cell_width; ++x)
-    for (int y = -1; y <= cell_width; ++y)
-      for (int z = -1; z <= cell_width; ++z) {
-        const Vec3d p = corner + Vec3d(Vec3<int>{x, y, z});
-        box.extend(p + motion.at(p));
-      }
-  return box;
+  const Boxd cell{corner - Vec3d(1), corner + Vec3d(double{cell_width})};
+  const Boxd way = motion.bounds(cell);
+  return {cell.lower + way.lower, cell.upper + way.upper};
 }
 
 /// Cells of the moved field, from that of the local coordinates 8 * lower on.
@@ -110,6 +114,9 @@ public:
         fill_brick(i, j, k,
                    values.data() + static_cast<std::size_t>(brick) * DensityField::brick_size);
     });
+    drop_empty_bricks(values);
+    if (values.empty())
+      return {};
     return DensityField(field_.origin() + range_.lower * std::int64_t{cell_width}, range_.counts(),
                         std::move(table_), std::move(values), {});
   }
@@ -159,10 +166,32 @@ private:
   void fill_brick(int i, int j, int k, float* values) const {
     const Vec3d corner =
         Vec3d(range_.lower + Vec3<std::int64_t>(Vec3<int>{i, j, k})) * double{cell_width};
+    Vec3d way; // neighbours come from near each other
     for (int x = 0; x < brick_width; ++x)
       for (int y = 0; y < brick_width; ++y)
         for (int z = 0; z < brick_width; ++z)
-          *values++ = field_.sample(Vec3f(motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}))));
+          *values++ =
+              field_.sample(Vec3f(motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}), way)));
+  }
+
+  /// Cells were marked generously: rays need not look into those that nothing came to.
+  void drop_empty_bricks(std::vector<float>& values) {
+    constexpr auto size = static_cast<std::ptrdiff_t>(DensityField::brick_size);
+    std::int32_t kept = 0;
+    for (std::int32_t& cell : table_) { // bricks are numbered in the order of the cells
+      if (cell == DensityField::empty_cell)
+        continue;
+      const auto brick = values.begin() + cell * size;
+      if (std::all_of(brick, brick + size, [](float value) { return value == 0; })) {
+        cell = DensityField::empty_cell;
+        continue;
+      }
+      if (kept != cell)
+        std::copy(brick, brick + size, values.begin() + kept * size);
+      cell = kept++;
+    }
+    values.resize(static_cast<std::size_t>(kept * size));
+    values.shrink_to_fit();
   }
 
   const DensityField& field_;

@@ -119,6 +119,7 @@ VelocityField::VelocityField(Values values, double longest)
   fill_cells_without(values);
   build_bricks(values);
   means_ = std::move(values.means);
+  find_bounds();
 }
 
 /// Drops what is not to be trusted, and takes the mean of the rest of each cell.
@@ -187,6 +188,39 @@ void VelocityField::build_bricks(const Values& values) {
   });
 }
 
+void VelocityField::find_bounds() {
+  constexpr std::size_t brick_size = std::size_t{brick_width} * brick_width * brick_width;
+  cell_bounds_.resize(table_.size());
+  tbb::parallel_for(std::size_t{0}, table_.size(), [&](std::size_t cell) {
+    cell_bounds_[cell].extend(means_[cell]);
+    if (table_[cell] < 0)
+      return;
+    const Vec3f* brick = bricks_.data() + static_cast<std::size_t>(table_[cell]) * brick_size;
+    Boxf bounds;
+    for (std::size_t i = 0; i < brick_size; ++i)
+      bounds.extend(brick[i]);
+    cell_bounds_[cell] = bounds;
+  });
+}
+
+Boxf VelocityField::bounds(const Boxd& index) const {
+  Vec3<int> first, last;
+  for (int a = 0; a < 3; ++a) {
+    const auto cell_at_index = [&](double x) { // beyond the cells those at the border
+      const double cell = std::floor((x - static_cast<double>(origin_[a])) / width);
+      return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(cells_[a] - 1)));
+    };
+    first[a] = cell_at_index(index.lower[a]);
+    last[a] = cell_at_index(index.upper[a]);
+  }
+  Boxf bounds;
+  for (int i = first.x; i <= last.x; ++i)
+    for (int j = first.y; j <= last.y; ++j)
+      for (int k = first.z; k <= last.z; ++k)
+        bounds.extend(cell_bounds_[cell_offset(cells_, {i, j, k})]);
+  return bounds;
+}
+
 Vec3d VelocityField::sample(const Vec3d& index) const {
   const Vec3d local = index - Vec3d(origin_);
   Vec3<int> cell, voxel;
@@ -207,10 +241,14 @@ Vec3d VelocityField::sample(const Vec3d& index) const {
       ((static_cast<std::size_t>(table_[offset]) * brick_width + voxel.x) * brick_width + voxel.y) *
           brick_width +
       voxel.z;
-  const auto along_z = [&](int at) { return Vec3d(p[at]) * (1 - f.z) + Vec3d(p[at + 1]) * f.z; };
-  constexpr int y = brick_width, x = brick_width * brick_width;
-  return (along_z(0) * (1 - f.y) + along_z(y) * f.y) * (1 - f.x) +
-         (along_z(x) * (1 - f.y) + along_z(x + y) * f.y) * f.x;
+  const Vec3f share(f); // single precision is what the file has
+  const auto along_z = [&](int at) { return p[at] + (p[at + 1] - p[at]) * share.z; };
+  const auto along_y = [&](int at) {
+    const Vec3f low = along_z(at);
+    return low + (along_z(at + brick_width) - low) * share.y;
+  };
+  const Vec3f low = along_y(0);
+  return Vec3d(low + (along_y(brick_width * brick_width) - low) * share.x);
 }
 
 } // namespace vdbeam

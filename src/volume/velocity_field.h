@@ -36,6 +36,8 @@ public:
   bool from_mantaflow() const { return from_mantaflow_; }
   /// At a point in index coordinates, in the grid's own units.
   Vec3d sample(const Vec3d& index) const;
+  /// Bounds of all velocities in a box of index coordinates, and of some around it.
+  Boxf bounds(const Boxd& index) const;
   /// Voxels whose velocity was too long or not a number.
   std::uint64_t outliers() const { return outliers_; }
   bool empty() const { return table_.empty(); }
@@ -45,6 +47,7 @@ private:
 
   void find_means(Values& values, double longest);
   void build_bricks(const Values& values);
+  void find_bounds();
 
   Affine index_to_world_;
   bool from_mantaflow_ = false;
@@ -52,6 +55,7 @@ private:
   Vec3<int> cells_;
   std::vector<std::int32_t> table_; ///< brick of each cell; -1: its mean everywhere
   std::vector<Vec3f> bricks_, means_;
+  std::vector<Boxf> cell_bounds_; ///< of the velocities in each cell
   std::uint64_t outliers_ = 0;
 };
 

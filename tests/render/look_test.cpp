@@ -98,5 +98,35 @@ TEST_F(Look, TellsWhatIsWrong) {
             "volume.0.box_upper must be greater than box_lower along all three axes");
 }
 
+TEST_F(Look, GridsAreAdded) {
+  const std::vector<float> twice = opacity(render(load({"volume.0.add=density"})).image);
+  expect_near(twice, opacity(render(load({"volume.0.density_scale=2"})).image));
+  EXPECT_THROW(render(load({"volume.0.add=nothing"})), InputError);
+}
+
+TEST_F(Look, NoiseDisplacesByItsSeed) {
+  const std::vector<float> plain = opacity(render(load()).image);
+  std::vector<std::vector<float>> pictures;
+  for (const char* seed : {"1", "1", "2"})
+    pictures.push_back(opacity(
+        render(load({"volume.0.noise_amplitude=0.3", std::string("volume.0.noise_seed=") + seed}))
+            .image));
+  EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_NE(pictures[0], pictures[2]);
+  EXPECT_NE(pictures[0], plain);
+  EXPECT_EQ(opacity(render(load({"volume.0.noise_seed=9"})).image), plain); // amplitude 0
+  // With a radius of 0.9 nothing comes farther than 0.9 + 0.3 along an axis, and a voxel.
+  EXPECT_EQ(at(pictures[0], 1.4, 0), 0);
+  // It moves with the volume.
+  const std::vector<float> moved =
+      opacity(render(load({"volume.0.noise_amplitude=0.3", "volume.0.translate=[1, 0, 0]"})).image);
+  double difference = 0, sum = 0;
+  for (double x = -1.2; x < 1.2; x += 0.25) {
+    difference += std::abs(at(moved, x + 1, 0.1) - at(pictures[0], x, 0.1));
+    sum += at(pictures[0], x, 0.1);
+  }
+  EXPECT_LT(difference, 0.1 * sum); // rays of other pixels are spread otherwise
+}
+
 } // namespace
 } // namespace vdbeam

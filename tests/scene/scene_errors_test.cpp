@@ -54,8 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
                  "s.toml:2: unknown key image.zzz; its keys are width, height, fps, compression, "
-                 "working_space, output_space, cryptomatte, deep, deep_alpha, deep_depth, "
-                 "pixel_aspect, overscan, ..."},
+                 "parts, tile, layer_names, time_code, attributes, working_space, output_space, "
+                 "cryptomatte, deep,..."},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
                               "mesh, light, layer and render"}));
 

@@ -231,5 +231,22 @@ TEST(ReadVelocity, StaggeredAndInThreeGrids) {
   }
 }
 
+/// Rays need not look into cells that nothing came to.
+TEST(MovedField, HasNoEmptyBricks) {
+  const DensityGrid grid = ball_grid();
+  VelocitySettings settings;
+  settings.time = 1;
+  const VelocityField flow = velocities([](const Vec3d&) { return Vec3d(13, -9, 5); }, everywhere);
+  const DensityGrid moved = moved_grid(grid, {flow, settings}, "ball", 1 << 30);
+  const DensityField& field = moved.field;
+  for (std::size_t brick = 0; brick < field.brick_count(); ++brick) {
+    const float* values = field.brick(static_cast<std::int32_t>(brick));
+    EXPECT_TRUE(std::any_of(values, values + DensityField::brick_size,
+                            [](float value) { return value != 0; }));
+  }
+  EXPECT_LE(field.brick_count(), 64u); // the ball is 16 voxels wide
+  EXPECT_NEAR(mass(moved), mass(grid), 0.01 * mass(grid));
+}
+
 } // namespace
 } // namespace vdbeam
