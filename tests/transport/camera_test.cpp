@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace vdbeam {
@@ -234,6 +235,39 @@ TEST(CameraView, NeverDeniesWhatItSees) {
     denied += !camera.may_see(box);
   }
   EXPECT_GT(denied, 100);
+}
+
+/// A point on a pixel position's ray is projected to that position, whatever the camera.
+TEST(CameraProjection, ProjectingIsTheInverseOfRays) {
+  const RenderSpace space{{3, -2, 1}, 0.25};
+  for (const Projection projection :
+       {Projection::perspective, Projection::orthographic, Projection::panorama})
+    for (const double shift : {0.0, 0.3}) {
+      CameraSettings settings = forward_camera();
+      settings.projection = projection;
+      settings.position = {1, 2, 3};
+      settings.look_at = {-2, 1, -5};
+      settings.view_height = 7;
+      settings.shift_x = shift;
+      settings.shift_y = -shift;
+      ImageSettings image{60, 40};
+      image.pixel_aspect = 1.5;
+      image.overscan = 5;
+      const Camera camera(settings, image, space);
+      for (const auto& [px, py] : {std::pair{5.25, 5.25}, {31.25, 20.5}, {64.0, 44.5}}) {
+        const EyeRay ray = camera.ray(px, py);
+        const auto found = camera.project(ray.origin + ray.direction * 3.7);
+        ASSERT_TRUE(found);
+        double x = (*found)[0];
+        if (projection == Projection::panorama) // which closes on itself
+          x += 60 * std::round((px - x) / 60);
+        EXPECT_NEAR(x, px, 1e-9);
+        EXPECT_NEAR((*found)[1], py, 1e-9);
+      }
+      if (projection == Projection::perspective) {
+        EXPECT_FALSE(camera.project(camera.origin() - camera.ray(35, 25).direction));
+      }
+    }
 }
 
 } // namespace
