@@ -13,7 +13,7 @@ packages=(
   libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev libembree-dev libassimp-dev
   libopencolorio-dev
   # tests and benchmarks
-  libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools
+  libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools openexr
   # tools
   python3 python3-numpy python3-matplotlib
 )
