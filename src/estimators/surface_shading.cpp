@@ -3,6 +3,7 @@
 #include "estimators/caught_shadow.h"
 #include "estimators/direct_light.h"
 #include "estimators/profile_shading.h"
+#include "estimators/surface_photons.h"
 #include "transport/emission.h"
 
 #include <utility>
@@ -15,8 +16,6 @@ namespace {
 constexpr int paths_per_ray = 4;
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
-/// Of photons that arrive along the surface itself nobody knows the side.
-constexpr float least_cosine = 1e-5f;
 
 /// The ray that leaves a surface, up to the next.
 CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& direction) {
@@ -49,12 +48,20 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
     Rng rng(key, RngStage::surface, pixel * paths_per_ray);
     return {{}, caught_shadow(world_, camera, rng)};
   }
-  Rgb sum;
+  const Vec3f& direction = camera.ray().direction;
+  const SurfaceVertex vertex(*world_.surfaces, *camera.hit, direction);
+  const bool by_photons = shows_photons(vertex);
+  Rgb sum, photons;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
-    sum += follow(*camera.hit, camera.ray().direction, rng, counts);
+    if (!by_photons)
+      sum += follow(*camera.hit, direction, rng, counts);
+    else
+      sum += tracer_.from_surface(*camera.hit, direction, rng, false);
+    if (by_photons && i == 0) // the same for all
+      photons = SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
   }
-  return {sum / static_cast<float>(paths_per_ray)};
+  return {sum / static_cast<float>(paths_per_ray) + photons};
 }
 
 Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
@@ -66,8 +73,13 @@ Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
   DepthProfile profile;
   for (;;) {
     const SurfaceVertex vertex(*world_.surfaces, hit, direction);
-    if (!vertex.material().is_specular() || vertex.material().is_black())
-      return sum + at_end(vertex, direction, rng) * throughput;
+    if (!vertex.material().is_specular() || vertex.material().is_black()) {
+      const bool by_photons = shows_photons(vertex);
+      Rgb light = tracer_.from_surface(hit, direction, rng, !by_photons);
+      if (by_photons)
+        light += SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
+      return sum + light * throughput;
+    }
     const MaterialSample next = vertex.sample(Carried::radiance, rng);
     throughput *= vertex.absorbed() * next.weight;
     refraction *= next.refraction;
@@ -89,22 +101,6 @@ Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
     hit = *ray.hit;
     direction = next.wi;
   }
-}
-
-/// What leaves a surface that is no mirror and no glass.
-Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const {
-  const bool by_photons = photons_on_surfaces_ && vertex.material().takes_photons();
-  Rgb sum = tracer_.from_surface(vertex.hit(), direction, rng, !by_photons);
-  if (!by_photons)
-    return sum;
-  const Rgb absorbed = vertex.absorbed();
-  photons_.surface_map().visit_disc(
-      Vec3f(vertex.hit().position), [&](const Vec3f& from, const Rgb& irradiance) {
-        const float cosine = std::abs(dot(from, vertex.hit().normal));
-        if (cosine > least_cosine)
-          sum += vertex.evaluate(-from) * irradiance * absorbed / cosine;
-      });
-  return sum;
 }
 
 /// Light that the medium scatters into the ray: once, by shadow rays; else by photons.

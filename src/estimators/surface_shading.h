@@ -29,8 +29,11 @@ public:
                    RenderStatistics& counts) const;
 
 private:
+  /// Photons bring light to the surface, which it spreads.
+  bool shows_photons(const SurfaceVertex& vertex) const {
+    return photons_on_surfaces_ && vertex.material().takes_photons();
+  }
   Rgb follow(SurfaceHit hit, Vec3f direction, Rng& rng, RenderStatistics& counts) const;
-  Rgb at_end(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
   Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
                    RenderStatistics& counts) const;
 

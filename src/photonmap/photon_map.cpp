@@ -249,9 +249,8 @@ QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const
   return vdbeam::query_ray(data_->view(), profile, radiance);
 }
 
-void PhotonMap::visit_disc(
-    const Vec3f& point,
-    const std::function<void(const Vec3f& direction, const Rgb& power)>& visit) const {
+void PhotonMap::visit_disc(const Vec3f& point,
+                           const std::function<void(const DiscPhoton&)>& visit) const {
   const PhotonBlocks& blocks = data_->blocks;
   const BlockTree& tree = data_->tree;
   if (tree.levels.empty())
@@ -269,7 +268,10 @@ void PhotonMap::visit_disc(
       const int from = blocks.direction_field(), step = blocks.channels() > 1 ? 1 : 0;
       const Rgb power(blocks.at(i, PhotonBlocks::power), blocks.at(i, PhotonBlocks::power + step),
                       blocks.at(i, PhotonBlocks::power + 2 * step));
-      visit({blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)}, power * kernel);
+      visit({blocks.position(i),
+             {blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)},
+             power * kernel,
+             radius});
     }
   });
 }

@@ -29,6 +29,13 @@ struct RadiusSettings {
   bool operator==(const RadiusSettings&) const = default;
 };
 
+/// A photon on a surface near a point.
+struct DiscPhoton {
+  Vec3f position, direction; ///< `direction`: the way it travels
+  Rgb irradiance;            ///< its power times the disc kernel K_2D(d, r)
+  float radius = 0;
+};
+
 struct MapTimes {
   double order = 0, radii = 0, build = 0; ///< seconds
 };
@@ -103,11 +110,9 @@ public:
                           Rgb* first_flight = nullptr) const;
   bool has_first_flights() const; ///< photons that come straight from a light
 
-  /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. `visit`
-  /// is given the way each travels and its power times the disc kernel, K_2D(d, r): irradiance.
-  /// Requires photons with directions.
-  void visit_disc(const Vec3f& point,
-                  const std::function<void(const Vec3f& direction, const Rgb& power)>& visit) const;
+  /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. Requires
+  /// photons with directions.
+  void visit_disc(const Vec3f& point, const std::function<void(const DiscPhoton&)>& visit) const;
 
 private:
   struct Data;

@@ -110,6 +110,59 @@ TEST_P(Caustics, under_a_ball_of_glass) {
       << mine.total[0].mean() << " against " << path.total[0].mean();
 }
 
+/// A square, seen whole, in a ball of glass of index 1, through which a distant light shines on it:
+/// all of that comes by photons.
+MemoryScene square_by_photons(const Vec3d& direction) {
+  MemoryScene scene;
+  add_surface(scene, SurfaceShape::quad, scaled(1), grey());
+  MaterialSettings glass = of_type(MaterialType::dielectric);
+  glass.ior = 1;
+  add_surface(scene, SurfaceShape::sphere, scaled(3), glass).visible = false;
+  LightSettings& sun = scene.add_light(LightType::distant);
+  sun.direction = direction;
+  sun.irradiance = Rgb(1);
+  scene.scene.render.photons = 20000;
+  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(1.0 / 1000) * 180 / M_PI, 16, 16);
+  return scene;
+}
+
+TEST_P(Caustics, even_light_is_even_up_to_edges_and_corners) {
+  const double expected = albedo / M_PI;
+  const PassMeans means = render_passes(square_by_photons({0, 0, -1}), GetParam(), 32);
+  const auto pixel = [&](int x, int y) {
+    return means.brightness[static_cast<std::size_t>(y * 16 + x)];
+  };
+  test::Samples corners, edges;
+  for (const int i : {0, 15})
+    for (int k = 0; k < 16; ++k) {
+      (k == 0 || k == 15 ? corners : edges).add(pixel(i, k).mean());
+      if (k > 0 && k < 15)
+        edges.add(pixel(k, i).mean());
+    }
+  EXPECT_NEAR(corners.mean(), expected, 0.1 * expected) << "+- " << corners.error();
+  EXPECT_NEAR(edges.mean(), expected, 0.03 * expected) << "+- " << edges.error();
+  expect_mean(means.total[0], expected, 0.02 * expected);
+}
+
+/// A sheet stands in the middle, and the light comes aslant: one side of it lies in its shadow, the
+/// other in the light, up to the sheet.
+TEST_P(Caustics, a_sheet_keeps_its_shadow) {
+  MemoryScene scene = square_by_photons(normalize(Vec3d{-1, 0, -1}));
+  MaterialSettings black;
+  black.albedo = Rgb(0);
+  SurfaceSettings& sheet = add_surface(scene, SurfaceShape::quad, scaled(1), black);
+  sheet.transform = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 1}; // 2 high, across x
+  const double expected = albedo / M_PI / std::sqrt(2);
+  const PassMeans means = render_passes(scene, GetParam(), 32);
+  test::Samples dark, lit;
+  for (int y = 2; y < 14; ++y) {
+    dark.add(means.brightness[static_cast<std::size_t>(y * 16 + 7)].mean());
+    lit.add(means.brightness[static_cast<std::size_t>(y * 16 + 8)].mean());
+  }
+  EXPECT_NEAR(lit.mean(), expected, 0.06 * expected) << "+- " << lit.error();
+  EXPECT_LT(dark.mean(), 0.01 * expected);
+}
+
 INSTANTIATE_TEST_SUITE_P(Surfaces, Caustics,
                          ::testing::Values(EstimatorType::beam, EstimatorType::march),
                          [](const auto& estimator) { return std::string(estimator.param.name); });
