@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace vdbeam {
 namespace {
 
@@ -145,6 +147,40 @@ TEST(SurfaceSet, a_closed_mesh_lets_no_ray_out) {
     const Vec3d origin = direction(rng) * 0.5;
     ASSERT_TRUE(set.intersect(origin, direction(rng), 0, 10));
   }
+}
+
+/// A wavy sheet of triangles between the planes z = -0.1 and 0.1.
+Mesh sheet(int n) {
+  RawMesh raw;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      raw.positions.push_back({2.0 * i / n - 1, 2.0 * j / n - 1, 0.1 * std::sin(i) * std::cos(j)});
+  const auto at = [n](int i, int j) { return static_cast<std::uint32_t>(j * (n + 1) + i); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      raw.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      raw.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return repair_mesh(raw, "sheet");
+}
+
+/// VDBEAM_LEAK_RAYS asks for more rays than a test has time for.
+TEST(SurfaceSet, no_ray_leaks_through_a_sheet) {
+  const SurfaceSet set({{make_mesh_shape(sheet(50)), placed(0.7, {0.3, 0.2, 0.1})}}, 2);
+  const char* wanted = std::getenv("VDBEAM_LEAK_RAYS");
+  const std::uint64_t rays = wanted ? std::strtoull(wanted, nullptr, 10) : 500000;
+  std::uint64_t leaks = 0;
+  for (std::uint64_t i = 0; i < rays; ++i) {
+    Rng rng({}, RngStage::test, i);
+    const auto point = [&](double z) {
+      const double x = static_cast<double>(rng.uniform()), y = static_cast<double>(rng.uniform());
+      return Vec3d{0.3 + 0.6 * (2 * x - 1), 0.2 + 0.6 * (2 * y - 1), 0.1 + z};
+    };
+    const Vec3d above = point(0.3), to = point(-0.3) - above;
+    const double distance = length(to);
+    leaks += !set.occluded(above, to / distance, 0, distance);
+  }
+  EXPECT_EQ(leaks, 0u) << "of " << rays;
 }
 
 TEST(SurfaceSet, a_far_camera_meets_a_small_surface_where_it_is) {
