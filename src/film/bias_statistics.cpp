@@ -1,5 +1,6 @@
 #include "film/error_estimate.h"
 #include "film/history_means.h"
+#include "film/pair_weights.h"
 
 #include <tbb/parallel_for.h>
 
@@ -24,11 +25,6 @@ std::pair<double, double> jackknife(std::size_t count, const Value& without) {
     squares += (without(i) - whole) * (without(i) - whole);
   return {whole, std::sqrt(squares * (n - 1) / n)};
 }
-
-/// Differences of a batch to something that is known better, by followed pixel.
-struct Differences {
-  std::vector<double> sums, weights; ///< sums are R, G, B
-};
 
 /// Differences to the probes, and of the mean brightness.
 struct ProbeDifferences : Differences {
@@ -69,45 +65,6 @@ Differences compare_kernels(const PassHistory& history, std::size_t batch) {
   return result;
 }
 
-/// 1 / (mean + offset)^2 of a pixel's channel for the product of two batches, which knows nothing
-/// of these two: see Deviations.
-class PairWeights {
-public:
-  PairWeights(const PassHistory& history)
-      : history_(history), passes_(total_passes(history)), means_(mean_of(history, passes_)),
-        around_(smoothed(means_, history.columns(), history.rows())), variances_(means_.size()) {
-    const std::size_t count = history.batches();
-    for (std::size_t k = 0; k < means_.size(); ++k)
-      for (std::size_t b = 0; b < count; ++b) {
-        const double n = history.passes(b);
-        const double d = sum(b, k) / n - static_cast<double>(means_[k]);
-        variances_[k] += n * d * d / static_cast<double>(count - 1);
-      }
-  }
-
-  double operator()(std::size_t i, std::size_t j, std::size_t k) const {
-    const double mean = static_cast<double>(means_[k]);
-    const double others = passes_ - history_.passes(i) - history_.passes(j);
-    const double neighbours = neighbour_weight * passes_ / static_cast<double>(history_.batches());
-    const double expected =
-        (mean * passes_ - sum(i, k) - sum(j, k) + neighbours * static_cast<double>(around_[k])) /
-        (others + neighbours);
-    const double m = std::max({0.0, expected, static_cast<double>(around_[k])});
-    const double spread = variances_[k] * others / ((others + neighbours) * (others + neighbours));
-    return 1 / ((m + mrse_offset) * (m + mrse_offset) + 3 * spread);
-  }
-
-private:
-  double sum(std::size_t batch, std::size_t k) const {
-    return static_cast<double>(history_.sums(batch)[k]);
-  }
-
-  const PassHistory& history_;
-  double passes_;
-  std::vector<float> means_, around_;
-  std::vector<double> variances_; ///< of one pass
-};
-
 /// The mean square, over pixels and channels, of what the differences of all batches have in
 /// common, and its standard error: products of independent batches, pixel by pixel. Noise has none
 /// on average, bias has its square, of whatever sign it is in the next pixel.
@@ -147,13 +104,13 @@ BiasStatistics bias_statistics(const PassHistory& history) {
   const std::size_t count = history.batches();
   if (count < fewest_batches)
     return {unknown, unknown, unknown, unknown, unknown, unknown};
-  const PairWeights pair_weight(history);
   std::vector<ProbeDifferences> probes(count);
   std::vector<Differences> kernels(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
     probes[batch] = compare_probes(history, batch);
     kernels[batch] = compare_kernels(history, batch);
   });
+  const PairWeights pair_weight(history, kernels);
   const auto [bias, bias_error] = jackknife(count, [&](std::size_t left_out) {
     double difference = 0, brightness = 0;
     for (std::size_t i = 0; i < count; ++i)

@@ -21,6 +21,9 @@ constexpr double least_spread = 0.03;
 /// How far, as a fraction, the square of the bias may be from what narrower kernels tell, and how
 /// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
+/// The positive part of a noisy square is too large on average. It is shrunk by this many times its
+/// squared error over itself, between none and the 1 of James and Stein.
+constexpr double blur_shrinkage = 0.75;
 constexpr std::size_t batches_of_interval = 4;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
@@ -172,7 +175,9 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
     const bool stands_out = probed && bias.mrse > 0 && bias.mrse * bias.mrse > 2 * square;
     return {stands_out ? bias.mrse - 2 * square / bias.mrse : 0, probed ? bias.mrse_error : 0};
   }
-  const double blur = std::max(0.0, bias.blur);
+  const double blur = bias.blur > 0 ? std::max(0.0, bias.blur - blur_shrinkage * bias.blur_error *
+                                                                    bias.blur_error / bias.blur)
+                                    : 0;
   const double error = std::hypot(bias.blur_error, blur_uncertainty * blur, unseen_bias * noise);
   if (!probed || !(error > 0) || !(bias.mrse_error > 0))
     return {blur, error};
