@@ -23,7 +23,7 @@ void add_image_keys(KeyTable& table) {
       .absent("none")
       .keeps_picture()
       .keeps_world();
-  table.add("compression", &I::compression, "of the EXR; dwaa and dwab lose digits")
+  table.add("compression", &I::compression, "compression of the EXR; dwaa and dwab are lossy")
       .keeps_picture()
       .keeps_world();
   table.add("parts", &I::parts, "whether the layers of the EXR share one part or have one each")
@@ -35,7 +35,9 @@ void add_image_keys(KeyTable& table) {
       .absent("none")
       .keeps_picture()
       .keeps_world();
-  table.add("layer_names", &I::layer_names, "after which renderer the EXR's layers are named")
+  table
+      .add("layer_names", &I::layer_names,
+           "whose names the EXR's layers have: vdbeam's own, Arnold's or Cycles'")
       .keeps_picture()
       .keeps_world();
   table
@@ -53,10 +55,12 @@ void add_image_keys(KeyTable& table) {
   table
       .add(
           "output_space", &I::output_space,
-          R"(colour space of the EXR: one of these, or of the OpenColorIO configuration; "": as rendered)")
+          R"(colour space of the EXR: one that working_space may have, or one of the OpenColorIO configuration; "": as rendered)")
       .keeps_picture()
       .keeps_world();
-  table.add("cryptomatte", &I::cryptomatte, "whether the image has ids of volumes and meshes")
+  table
+      .add("cryptomatte", &I::cryptomatte,
+           "whether the image has Cryptomatte layers of volumes and meshes")
       .keeps_world();
   table.add("deep", &I::deep, "whether a deep EXR with the medium's samples is written too")
       .keeps_world();
@@ -145,11 +149,12 @@ void add_camera_keys(KeyTable& table) {
   add_lens_keys(table);
   table
       .add("file", &C::file,
-           "a file with the camera's motion, instead of position and look_at (see below)")
+           "a .chan file or matrices with the camera's motion, instead of position and look_at")
       .kind(KeyKind::file);
   table.add("file_axes", &C::file_axes, "how the world of the file is turned into this one");
   table.add("file_rotation", &C::file_rotation, "which of a .chan file's angles turns first");
-  table.add("shutter_open", &C::shutter_open, "when the shutter opens, from the frame's time on")
+  table
+      .add("shutter_open", &C::shutter_open, "when the shutter opens, relative to the frame's time")
       .unit("frames")
       .within(-1000, 1000);
   table.add("shutter_close", &C::shutter_close, "when it closes; no earlier than it opens")

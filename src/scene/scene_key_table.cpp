@@ -37,15 +37,16 @@ void add_volume(KeyTable& table) {
   table.add("add", &V::add, R"(names of grids that are added to the density, "a, b"; "": none)");
   table.add("mask", &V::mask, R"(name of a grid whose values multiply the density; "": none)");
   using D = DensityRemap;
-  table.add("density_scale", &D::scale, "factor of the density's values, before all that follows");
-  table.add("density_offset", &D::offset, "added to the values that are above 0");
-  table.add("density_min", &D::least, "what is less after that becomes 0").at_least(0);
-  table.add("density_max", &D::most, "what is more becomes this").above(0).absent("none");
-  table.add("density_power", &D::power, "what is left is raised to this power").above(0);
+  table.add("density_scale", &D::scale, "the density's values are multiplied by this");
+  table.add("density_offset", &D::offset, "then this is added to values above 0");
+  table.add("density_min", &D::least, "then smaller values become 0").at_least(0);
+  table.add("density_max", &D::most, "then larger values become this").above(0).absent("none");
+  table.add("density_power", &D::power, "then values are raised to this power").above(0);
   table.add("density_curve", &D::curve,
-            R"(and goes through this curve of points "x:y x:y ...", linear in between; "": none)");
-  table.add("interpolation", &V::interpolation,
-            "of density and emission between voxels; cubic takes ten times the memory");
+            R"(then values go through this curve, "x:y x:y ...", linear in between; "": none)");
+  table.add(
+      "interpolation", &V::interpolation,
+      "how density and emission are interpolated between voxels; cubic takes ten times the memory");
   table.add("box_lower", &V::box_lower, "lower corner of a box outside of which nothing is seen")
       .unit("world")
       .absent("none");
