@@ -102,6 +102,8 @@ struct RenderPlan {
   /// Of the moving volumes at two moments; those at more are kept while they take less than a
   /// quarter of the memory.
   std::uint64_t moment_bytes = 0;
+  /// Of meshes while they are read, the most that they take, and of textures.
+  std::uint64_t surface_bytes = 0;
   std::uint64_t deep_bytes = 0; ///< of a deep picture's samples, a third of the most there can be
 
   bool needs(Stage stage) const {

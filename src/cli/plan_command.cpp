@@ -2,6 +2,7 @@
 #include "cli/scene_options.h"
 #include "cli/streams.h"
 #include "estimators/estimator_table.h"
+#include "render/surface_files.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -23,6 +24,20 @@ struct PlanOptions {
   bool json = false;
 };
 
+/// The files of meshes and textures; nothing where there are none.
+std::string surfaces_text(const Scene& scene) {
+  std::string text;
+  for (const SurfaceFile& file : surface_files(scene)) {
+    text += text.empty() ? "\nsurfaces\n" : "";
+    text += file.triangles > 0
+                ? fmt::format("  {}: {} triangles, {}\n", file.path, file.triangles,
+                              format_bytes(static_cast<double>(file.bytes)))
+                : fmt::format("  {}: {} x {} pixels, {}\n", file.path, file.width, file.height,
+                              format_bytes(static_cast<double>(file.bytes)));
+  }
+  return text;
+}
+
 std::string plan_text(const Scene& scene, const RenderPlan& plan) {
   std::string text = fmt::format("{}\n\nestimator\n  {:<18} {}\n", scene.path, plan.estimator,
                                  estimator_kind(scene.render.estimator).help);
@@ -36,11 +51,12 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan) {
   text += fmt::format("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
                       bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
                       bytes(plan.film_bytes));
-  for (const auto& [name, size] :
-       {std::pair{"moments", plan.moment_bytes}, {"deep", plan.deep_bytes}})
+  for (const auto& [name, size] : {std::pair{"surfaces", plan.surface_bytes},
+                                   {"moments", plan.moment_bytes},
+                                   {"deep", plan.deep_bytes}})
     if (size > 0)
       text += fmt::format("  {:<18} {}\n", name, bytes(size));
-  return text;
+  return text + surfaces_text(scene);
 }
 
 int run_plan(const PlanOptions& options) {

@@ -67,7 +67,8 @@ std::string seconds_text(double seconds) {
 }
 
 std::uint64_t task_memory_mib(const RenderPlan& plan) {
-  return with_margin(program_bytes + 2 * plan.volume_bytes + plan.moment_bytes + plan.photon_bytes +
+  return with_margin(program_bytes + 2 * plan.volume_bytes + plan.moment_bytes +
+                     plan.surface_bytes + plan.photon_bytes +
                      2 * (plan.film_bytes + plan.deep_bytes));
 }
 

@@ -1,4 +1,5 @@
 #include "render/plan.h"
+#include "render/surface_files.h"
 #include "transport/camera.h"
 #include "volume/vdb_reader.h"
 
@@ -49,7 +50,10 @@ RenderPlan make_plan(const Scene& scene) {
   for (VolumeFacts& fact : facts)
     fact.in_view = (!fact.empty || fact.glowing_voxels > 0) &&
                    (!scene.moments.empty() || camera.may_see(bounds));
-  return plan_stages(scene, facts);
+  RenderPlan plan = plan_stages(scene, facts);
+  for (const SurfaceFile& file : surface_files(scene))
+    plan.surface_bytes += file.bytes;
+  return plan;
 }
 
 } // namespace vdbeam

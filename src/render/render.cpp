@@ -86,6 +86,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   const std::vector<VolumeFacts> volumes =
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());
   result.plan = plan_stages(scene, volumes);
+  result.plan.surface_bytes = world.surfaces ? world.surfaces->bytes() : 0;
   result.plan.film_bytes = film_memory(
       scene.image, window.width(), window.height(), scene.glows(), light_group_names(scene).size(),
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());

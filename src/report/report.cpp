@@ -116,6 +116,7 @@ Json plan_json(const RenderPlan& plan) {
             {"photons", plan.photon_bytes},
             {"film", plan.film_bytes},
             {"moments", plan.moment_bytes},
+            {"surfaces", plan.surface_bytes},
             {"deep", plan.deep_bytes}}}};
 }
 

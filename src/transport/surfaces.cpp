@@ -4,8 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace vdbeam {
+
+std::size_t Surfaces::bytes() const {
+  std::set<const Texture*> known;
+  std::size_t sum = set->bytes();
+  for (const auto& texture : textures)
+    if (texture && known.insert(texture.get()).second)
+      sum += texture->bytes();
+  return sum;
+}
 
 bool Surfaces::inside_solid(SurfaceHit end, const Vec3f& direction) const {
   for (;;) {

@@ -19,6 +19,8 @@ struct Surfaces {
   const Material& material(const SurfaceHit& hit) const {
     return *materials[static_cast<std::size_t>(hit.surface)];
   }
+  /// Of meshes, trees and textures.
+  std::size_t bytes() const;
   std::vector<Boxd> solids; ///< bounds of the surfaces inside of which there is no medium
 
   /// How far from its beginning a flight that ends there meets the medium. Within a solid, whose

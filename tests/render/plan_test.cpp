@@ -222,6 +222,18 @@ TEST(Plan, EstimatesMemory) {
   EXPECT_GE(r.plan.film_bytes, 64u * 156);
 }
 
+TEST(MakePlan, foretells_the_memory_of_surfaces) {
+  const TempFolder folder;
+  Scene scene;
+  SurfaceSettings surface;
+  surface.file = folder.file("big.ply");
+  test::write_bytes(surface.file,
+                    "ply\nformat ascii 1.0\nelement vertex 5000000\nelement face 10000000\n"
+                    "end_header\n");
+  scene.surfaces = {surface, surface};
+  EXPECT_NEAR(static_cast<double>(make_plan(scene).surface_bytes), 3.7e9, 0.2e9) << "as measured";
+}
+
 /// make_plan needs the files' headers only, and says of the view what the renderer says.
 TEST(MakePlan, ReadsHeadersOnly) {
   const TempFolder folder;
