@@ -215,7 +215,7 @@ private:
     const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(hit, area, hn::Set(d, 1.0f)));
     const auto k = hn::NegMulAdd(square, inverse, hn::Set(d, 1.0f));
     const auto kernel = hn::IfThenElseZero(hit, hn::Mul(kernel_value(kernel_, k), inverse));
-    const auto clamped = hn::Min(hn::Max(f, hn::Zero(d)), last);
+    const auto clamped = hn::Max(hn::Min(f, last), hn::Zero(d));
     const auto knot = hn::Min(hn::ConvertTo(di, clamped), hn::Set(di, profile_.knots - 2));
     const auto fraction = hn::Sub(clamped, hn::ConvertTo(d, knot));
     for (std::size_t g = 0; g < profile_.phases->size(); ++g) {

@@ -100,7 +100,9 @@ HWY_INLINE V16 approach(const Candidates& c, std::size_t i, const SubtileFrame& 
       f = hn::Sub(f, ray.knot_shift);
     const auto inside = hn::And(hn::Ge(f, ray.first), hn::Le(f, ray.last));
     k = hn::IfThenElseZero(inside, k);
-    const auto clamped = hn::Min(hn::Max(f, hn::Zero(d)), ray.last);
+    // A ray may end before the table begins (last < 0): the knot must lie in the table all the
+    // same.
+    const auto clamped = hn::Max(hn::Min(f, ray.last), hn::Zero(d));
     const auto knot = hn::Min(hn::ConvertTo(di, clamped), hn::Set(di, s.knots - 2));
     knots.fraction = hn::Sub(clamped, hn::ConvertTo(d, knot));
     knots.row = hn::Add(hn::ShiftLeft<4>(knot), ray.lane);

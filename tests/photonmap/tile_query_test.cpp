@@ -108,6 +108,47 @@ INSTANTIATE_TEST_SUITE_P(
         TileCase{"few_photons", {.pixel = 0.03}, {.count = 3, .greatest_radius = 1}, exact_edges}),
     [](const auto& test) { return test.param.name; });
 
+/// A surface may end a ray before it meets the medium that the other rays of its sub-tile see.
+/// Where that is seen edge-on, knots lie so close that such a ray ends a hundred million of them
+/// before the first.
+TEST(TileQuery, RaysThatEndBeforeTheTableGatherNothing) {
+  MapOptions options;
+  options.count = 20000;
+  options.channels = 3;
+  options.directions = false;
+  const TestMap map = oracle::random_map(options);
+  BeamTile tile;
+  tile.axis_u = {1, 0, 0};
+  tile.axis_v = {0, 1, 0};
+  tile.axis_w = {0, 0, 1};
+  tile.camera_distance = 5;
+  for (int i = 0; i < BeamTile::ray_count; ++i) {
+    const float x = 0.01f * static_cast<float>(i % 16 - 8),
+                y = 0.01f * static_cast<float>(i / 16 - 8);
+    const float scale = 1 / std::sqrt(1 + x * x + y * y);
+    tile.du[i] = x * scale;
+    tile.dv[i] = y * scale;
+    tile.dw[i] = scale;
+    tile.end[static_cast<std::size_t>(i)] = i % 16 == 0 ? 6.0 : 4.2;
+  }
+  const int knots = 17;
+  for (BeamTile::Profile& profile : tile.profiles) {
+    profile.t_begin = 5;
+    profile.step = 1e-8f;
+    profile.knots = knots;
+    profile.offset = tile.weights.size();
+    tile.weights.resize(profile.offset + knots * 16, 1.0f);
+  }
+  const std::vector<PhaseFunction> phases(1);
+  tile.phases = &phases;
+  tile.radiance.assign(3 * BeamTile::ray_count, 0);
+  query_tile(map.view(), tile);
+  for (std::size_t i = 0; i < tile.radiance.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(tile.radiance[i]));
+    EXPECT_TRUE(i % 16 == 0 || tile.radiance[i] == 0) << i;
+  }
+}
+
 /// Knots so fine that the rays of a sub-tile disagree on them by several: what they share is then a
 /// photon moved by far less than its radius, which must not change the light as a whole. The sum
 /// over the tile has about 1000 independent photons with weights that differ by half from knot to
