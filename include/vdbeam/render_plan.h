@@ -87,6 +87,14 @@ struct PlanStage {
   std::string reason; ///< one clause
 };
 
+/// A mesh or a texture of a scene, as it is found before it is rendered.
+struct SurfaceFile {
+  std::string path;
+  std::uint64_t triangles = 0; ///< of a mesh
+  int width = 0, height = 0;   ///< of a texture
+  std::uint64_t bytes = 0;     ///< of memory, about: the most that it takes, while it is read
+};
+
 /// What is decided about a render before its first pass, as a value. Estimators follow it.
 struct RenderPlan {
   /// Of the estimator that renders; "auto" where that is not known before the volumes are read.
@@ -104,6 +112,7 @@ struct RenderPlan {
   std::uint64_t moment_bytes = 0;
   /// Of meshes while they are read, the most that they take, and of textures.
   std::uint64_t surface_bytes = 0;
+  std::vector<SurfaceFile> surface_files; ///< each once; only make_plan looks for them
   std::uint64_t deep_bytes = 0; ///< of a deep picture's samples, a third of the most there can be
 
   bool needs(Stage stage) const {

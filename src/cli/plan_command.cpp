@@ -2,7 +2,6 @@
 #include "cli/scene_options.h"
 #include "cli/streams.h"
 #include "estimators/estimator_table.h"
-#include "render/surface_files.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -25,9 +24,9 @@ struct PlanOptions {
 };
 
 /// The files of meshes and textures; nothing where there are none.
-std::string surfaces_text(const Scene& scene) {
+std::string surfaces_text(const RenderPlan& plan) {
   std::string text;
-  for (const SurfaceFile& file : surface_files(scene)) {
+  for (const SurfaceFile& file : plan.surface_files) {
     text += text.empty() ? "\nsurfaces\n" : "";
     text += file.triangles > 0
                 ? fmt::format("  {}: {} triangles, {}\n", file.path, file.triangles,
@@ -56,7 +55,7 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan) {
                                    {"deep", plan.deep_bytes}})
     if (size > 0)
       text += fmt::format("  {:<18} {}\n", name, bytes(size));
-  return text + surfaces_text(scene);
+  return text + surfaces_text(plan);
 }
 
 int run_plan(const PlanOptions& options) {

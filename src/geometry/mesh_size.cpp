@@ -1,14 +1,24 @@
 #include "geometry/mesh_size.h"
 
+#include "machine/guarded_process.h"
+#include "machine/input_file.h"
+#include "vdbeam/error.h"
+
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 namespace vdbeam {
 namespace {
+
+/// Of a header or a quick look; more vertices or triangles than anyone has are no more believed.
+constexpr GuardLimits limits{.seconds = 20, .cpu_seconds = 20, .bytes = std::uint64_t(1) << 30};
+constexpr std::uint64_t most = std::uint64_t(1) << 36;
 
 /// Polygons of a PLY are taken for triangles.
 MeshSize foretell_ply(std::istream& file) {
@@ -76,15 +86,13 @@ std::string json_of_glb(std::istream& file) {
   std::uint32_t length = 0;
   for (int i = 3; i >= 0; --i)
     length = length << 8 | start[12 + i];
-  constexpr std::uint32_t most = 64u << 20;
-  std::string text(std::min(length, most), '\0');
+  constexpr std::uint32_t longest = 64u << 20;
+  std::string text(std::min(length, longest), '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   return text;
 }
 
-} // namespace
-
-MeshSize foretell_mesh(const std::string& path) {
+MeshSize foretell(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension)
     c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -101,6 +109,23 @@ MeshSize foretell_mesh(const std::string& path) {
   } catch (const nlohmann::json::exception&) {
     return {};
   }
+}
+
+} // namespace
+
+MeshSize foretell_mesh(const std::string& path) {
+  MeshSize size;
+  try {
+    open_input_file(path); // a pipe would never end
+    const MappedFile answer = run_guarded(path, limits, [&](int output) {
+      const MeshSize found = foretell(path);
+      write_all(output, &found, sizeof found);
+    });
+    if (answer.size() == sizeof size)
+      std::memcpy(&size, answer.data(), sizeof size);
+  } catch (const Error&) {
+  }
+  return {std::min(size.vertices, most), std::min(size.triangles, most)};
 }
 
 } // namespace vdbeam

@@ -51,7 +51,8 @@ RenderPlan make_plan(const Scene& scene) {
     fact.in_view = (!fact.empty || fact.glowing_voxels > 0) &&
                    (!scene.moments.empty() || camera.may_see(bounds));
   RenderPlan plan = plan_stages(scene, facts);
-  for (const SurfaceFile& file : surface_files(scene))
+  plan.surface_files = surface_files(scene);
+  for (const SurfaceFile& file : plan.surface_files)
     plan.surface_bytes += file.bytes;
   return plan;
 }

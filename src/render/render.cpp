@@ -85,11 +85,15 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   const Camera camera(scene.camera, scene.image, world.space);
   const std::vector<VolumeFacts> volumes =
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());
-  result.plan = plan_stages(scene, volumes);
-  result.plan.surface_bytes = world.surfaces ? world.surfaces->bytes() : 0;
-  result.plan.film_bytes = film_memory(
-      scene.image, window.width(), window.height(), scene.glows(), light_group_names(scene).size(),
-      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
+  const auto with_sizes = [&](RenderPlan plan) {
+    plan.surface_bytes = world.surfaces ? world.surfaces->bytes() : 0;
+    plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows(),
+                                  light_group_names(scene).size(),
+                                  scene.image.cryptomatte ? scene_objects(scene).names.size() : 0,
+                                  plane_names(scene).size());
+    return plan;
+  };
+  result.plan = with_sizes(plan_stages(scene, volumes));
   check_memory(scene, result.plan, granted_memory());
   // Correlated frames all draw the numbers of frame 1.
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
@@ -120,7 +124,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     loop.gather_deep(deep);
     input.deep = &deep;
   }
-  const RenderPlan path_plan = plan_paths(scene, volumes);
+  const RenderPlan path_plan = with_sizes(plan_paths(scene, volumes));
   const EstimatorInput path_input = input.with(path_plan);
   loop.show_quick_look(path_input);
   Shutter shutter(scene, prepared, input, path_plan, loop.probe_pixels());
@@ -130,9 +134,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     result.statistics.pilot += watch.seconds();
     scene.render.estimator = choice.type;
     if (choice.type == EstimatorType::path) {
-      const std::uint64_t film_bytes = result.plan.film_bytes; // of the window
       result.plan = path_plan;
-      result.plan.film_bytes = film_bytes;
       input.blur_pixels = nullptr;
     }
     result.plan.estimator = choice.type.name;

@@ -5,13 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <filesystem>
+
 namespace vdbeam {
 namespace {
 
 using test::TempFolder;
 using test::write_bytes;
 
-TEST(MeshSize, is_what_the_reader_finds) {
+TEST(MeshSize, IsWhatTheReaderFinds) {
   const TempFolder folder;
   write_bytes(folder.file("a.ply"), "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
                                     "property float y\nproperty float z\nelement face 2\nproperty "
@@ -27,7 +31,7 @@ TEST(MeshSize, is_what_the_reader_finds) {
   }
 }
 
-TEST(MeshSize, counts_what_nodes_of_a_gltf_show) {
+TEST(MeshSize, CountsWhatNodesOfAGltfShow) {
   const TempFolder folder;
   const std::string json = R"({"nodes": [{"mesh": 0}, {}, {"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0},
@@ -44,13 +48,29 @@ TEST(MeshSize, counts_what_nodes_of_a_gltf_show) {
   EXPECT_EQ(foretell_mesh(folder.file("d.glb")).triangles, 10u);
 }
 
-TEST(MeshSize, of_damaged_files_is_0) {
+TEST(MeshSize, OfDamagedFilesIsZero) {
   const TempFolder folder;
   for (const char* name : {"a.ply", "a.obj", "a.gltf", "a.glb"})
     for (const char* bytes : {"", "garbage", "{\"nodes\": [{\"mesh\": 7}]}", "glTF"}) {
       write_bytes(folder.file(name), bytes);
       EXPECT_EQ(foretell_mesh(folder.file(name)).triangles, 0u) << name << bytes;
     }
+}
+
+/// A pipe would never end; a line of 30 GB, which takes no room on the disk, would fill the memory.
+TEST(MeshSize, OfHostileFilesIsZero) {
+  const TempFolder folder;
+  ASSERT_EQ(mkfifo(folder.file("pipe.ply").c_str(), 0600), 0);
+  EXPECT_EQ(foretell_mesh(folder.file("pipe.ply")).triangles, 0u);
+  write_bytes(folder.file("line.obj"), "v");
+  std::filesystem::resize_file(folder.file("line.obj"), std::uintmax_t(30) << 30);
+  EXPECT_EQ(foretell_mesh(folder.file("line.obj")).triangles, 0u);
+}
+
+TEST(MeshSize, IsBelievedWithinReasonOnly) {
+  const TempFolder folder;
+  write_bytes(folder.file("a.ply"), "ply\nelement face 18446744073709551615\nend_header\n");
+  EXPECT_LT(foretell_mesh(folder.file("a.ply")).triangles, std::uint64_t(1) << 40);
 }
 
 } // namespace

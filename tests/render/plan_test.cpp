@@ -222,7 +222,7 @@ TEST(Plan, EstimatesMemory) {
   EXPECT_GE(r.plan.film_bytes, 64u * 156);
 }
 
-TEST(MakePlan, foretells_the_memory_of_surfaces) {
+TEST(MakePlan, ForetellsTheMemoryOfSurfaces) {
   const TempFolder folder;
   Scene scene;
   SurfaceSettings surface;
