@@ -288,6 +288,32 @@ Grids components(const VolumeOptions& options) {
   return grids;
 }
 
+/// The box and colours of it: red, green and blue are (x + 1) / 2, 1/4 and 3/4, where x runs from
+/// -1 to 1 across the size. As one grid "Cd", as Houdini has it, and as three.
+Grids colored(const VolumeOptions& options) {
+  const FloatGrid::Ptr box = constant_box(options, bounds(options));
+  const auto color = openvdb::Vec3SGrid::create();
+  color->setTransform(box->transformPtr());
+  color->setName("Cd");
+  auto accessor = color->getAccessor();
+  Grids grids{box, color};
+  for (const char* name : {"tint_r", "tint_g", "tint_b"}) {
+    const FloatGrid::Ptr channel = FloatGrid::create(0);
+    channel->setTransform(box->transformPtr());
+    channel->setName(name);
+    grids.push_back(channel);
+  }
+  for (auto value = box->cbeginValueOn(); value; ++value) {
+    const Coord at = value.getCoord();
+    const openvdb::Vec3s c(static_cast<float>(0.5 + static_cast<double>(at.x()) / options.size),
+                           0.25f, 0.75f);
+    accessor.setValue(at, c);
+    for (int i = 0; i < 3; ++i)
+      static_cast<FloatGrid&>(*grids[static_cast<std::size_t>(2 + i)]).tree().setValue(at, c[i]);
+  }
+  return grids;
+}
+
 struct Recipe {
   const char* name;
   const char* description;
@@ -332,6 +358,7 @@ const std::vector<Recipe>& recipes() {
        duplicates},
       {"staggered", "a ball and its staggered velocity (1, 2, 3)", staggered},
       {"components", "a ball and its velocity (1, 2, 3) in three grids", components},
+      {"colored", "a box and its colours, as a grid of vectors and as three of numbers", colored},
       {"simulation", "grids density, temperature and velocity", simulation},
   };
   return all;

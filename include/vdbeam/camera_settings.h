@@ -72,6 +72,8 @@ struct CameraSettings {
   int blades = 0;               ///< edges of the aperture; 0: round
   double blade_angle = 0;       ///< turns the aperture counter-clockwise, degrees
   std::string file;             ///< where position, direction and roll come from
+  std::string name;             ///< of the camera in a glTF file; empty: the first
+  double file_fps = 24;         ///< frames in a second of a glTF file
   CameraAxes file_axes = CameraAxes::same;
   RotationOrder file_rotation = RotationOrder::zxy;
   /// The direction that is up in the picture, where a camera file gives it; otherwise `up`.

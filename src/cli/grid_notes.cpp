@@ -3,6 +3,7 @@
 #include "scene/default_scene.h"
 #include "vdbeam/error.h"
 #include "volume/density_kind.h"
+#include "volume/vdb_names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,15 @@ void add_shape(const GridSummary& grid, std::vector<std::string>& lines) {
         fmt::format("{}: voxels are {:.3g} times longer than wide", grid.name, high / low));
 }
 
+/// What can colour the volume.
+std::string color_text(const std::vector<GridSummary>& grids) {
+  for (const char* name : color_grid_names)
+    for (const GridSummary& grid : grids)
+      if (grid.name == name && grid.value_type == "vec3s")
+        return fmt::format("; color_grid = \"{}\" colours it", name);
+  return "";
+}
+
 } // namespace
 
 bool is_scalar(const GridSummary& grid) {
@@ -61,8 +71,8 @@ std::string rendered_text(const std::string& file, const std::vector<GridSummary
             : fmt::format(", \"{}\" glows with strength {}",
                           emission.intensity.empty() ? emission.temperature : emission.intensity,
                           emission.scale);
-    return fmt::format("grid \"{}\", with extinction {}{} (vdbeam init shows the whole scene)",
-                       volume.density, volume.extinction, glow);
+    return fmt::format("grid \"{}\", with extinction {}{}{} (vdbeam init shows the whole scene)",
+                       volume.density, volume.extinction, glow, color_text(grids));
   } catch (const InputError& error) {
     return fmt::format("nothing: {}", error.what());
   }

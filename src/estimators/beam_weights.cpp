@@ -83,14 +83,16 @@ struct WeightTable {
 };
 
 int count_channels(const World& world, const WeightSettings& settings) {
-  const bool coloured = world.medium.chromatic || (!settings.albedo_in_power && settings.colored);
+  const bool coloured = world.medium.chromatic || world.medium.colored() ||
+                        (!settings.albedo_in_power && settings.colored);
   return coloured ? 3 : 1;
 }
 
 class WeightWriter {
 public:
   WeightWriter(const World& world, const WeightSettings& settings)
-      : world_(world), settings_(settings), channels_(count_channels(world, settings)) {}
+      : world_(world), settings_(settings), channels_(count_channels(world, settings)),
+        colored_(world.medium.colored()) {}
 
   int channels() const { return channels_; }
 
@@ -122,6 +124,9 @@ public:
     ProfileCursor cursor(profile);
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
+    albedos_.clear();
+    for (const Volume& volume : world_.medium.volumes)
+      albedos_.push_back(volume.albedo);
     for (int i = 0; i < range.intervals; ++i) {
       const float from = begin + static_cast<float>(i) * table.step;
       cursor.move_to(begin + static_cast<float>(i + 1) * table.step);
@@ -130,6 +135,8 @@ public:
       // Where the ray ends within, the interval does too.
       last_ = i + 1 == range.intervals || (end > from && end - from < table.step);
       length_ = last_ ? std::min(table.step, std::max(end - from, 1e-3f * table.step)) : table.step;
+      if (colored_)
+        find_albedos(camera.ray().at(from + 0.5f * length_));
       if (settings_.store == PhotonStore::scatter)
         write_transmittance(table, i + 1, ray);
       else if (volumes == 1 && channels_ == 1)
@@ -146,6 +153,13 @@ private:
     const std::size_t at =
         row * static_cast<std::size_t>(table.knots) + static_cast<std::size_t>(knot);
     return table.weights + at * static_cast<std::size_t>(table.rays) + ray;
+  }
+
+  /// Of the volumes that something reaches the ray from in this interval.
+  void find_albedos(const Vec3f& point) {
+    for (std::size_t v = 0; v < albedos_.size(); ++v)
+      if (after_[v] > before_[v])
+        albedos_[v] = world_.medium.volumes[v].albedo_at(point);
   }
 
   bool counts(std::size_t volume) const { return !settings_.only || (*settings_.only)[volume]; }
@@ -182,7 +196,7 @@ private:
         if (!counts(v))
           continue;
         const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
-        const float albedo = settings_.albedo_in_power ? 1 : volumes[v].albedo[c];
+        const float albedo = settings_.albedo_in_power ? 1 : albedos_[v][c];
         deposit(table, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
       }
     }
@@ -196,7 +210,7 @@ private:
       float tau = 0, piece = 0;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         tau += volumes[v].channel_scale[c] * 0.5f * (before_[v] + after_[v]);
-        piece += volumes[v].albedo[c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]);
+        piece += albedos_[v][c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]);
       }
       const float tr = std::exp(-tau);
       if (!(piece > 0)) {
@@ -205,16 +219,17 @@ private:
       }
       for (std::size_t v = 0; v < volumes.size(); ++v)
         if (counts(v))
-          *weight(table, volumes[v].phase_index, c, knot, ray) += tr * volumes[v].albedo[c] *
-                                                                  volumes[v].channel_scale[c] *
-                                                                  (after_[v] - before_[v]) / piece;
+          *weight(table, volumes[v].phase_index, c, knot, ray) +=
+              tr * albedos_[v][c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
     }
   }
 
   const World& world_;
   const WeightSettings& settings_;
   int channels_;
+  bool colored_;                      ///< albedos change along the ray
   std::vector<float> before_, after_; ///< optical depths at the ends of the interval at hand
+  std::vector<Rgb> albedos_;          ///< of the volumes, in its middle
   bool last_ = false;                 ///< it is the ray's last
   float length_ = 1;
 };

@@ -50,6 +50,7 @@ public:
                                                          straight_.data());
         ++counts.lookups;
         counts.contributions += c.contributions;
+        find_albedos(camera.ray().at(t));
         const Rgb light = weigh(before, after, step, gathered_, of_volumes);
         sum += light;
         deep.add_light_at(t, light);
@@ -62,6 +63,13 @@ public:
   }
 
 private:
+  /// What the volumes scatter of their extinction at a point, where the photons do not tell.
+  void find_albedos(const Vec3f& point) {
+    albedos_.clear();
+    for (const Volume& volume : world_.medium.volumes)
+      albedos_.push_back(photons_.plan().albedo_in_power ? Rgb(1) : volume.albedo_at(point));
+  }
+
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
             const std::vector<Rgb>& gathered, const VolumeLights& of_volumes = {}) const {
     const std::vector<Volume>& volumes = world_.medium.volumes;
@@ -79,8 +87,7 @@ private:
         const float share = piece[c] > 0
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes.size());
-        const float albedo = photons_.plan().albedo_in_power ? 1 : volumes[v].albedo[c];
-        const float light = whole * share * albedo * gathered[volumes[v].phase_index][c];
+        const float light = whole * share * albedos_[v][c] * gathered[volumes[v].phase_index][c];
         sum[c] += light;
         if (of_volumes) {
           Rgb of_channel;
@@ -96,6 +103,7 @@ private:
   const PhotonPass& photons_;
   bool scatter_photons_;
   float step_ = 0, reach_ = 0;
+  std::vector<Rgb> albedos_;  ///< per volume
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights
 };

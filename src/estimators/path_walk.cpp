@@ -86,7 +86,8 @@ void WalkTracer::scatter_towards_light(PathWalk& walk) const {
   const float p2 = phase.evaluate(dot(direction, sample.wi));
   // Ways to the same path: this one, a walk with a shadow ray, a walk that meets the light.
   const float by_walk = sample.pdf > 0 ? p1 * (1 + p2 / sample.pdf) : p1;
-  const Rgb value = sample.value * hit.volume->albedo * throughput * (p1 * p2 / (by_walk + drawn));
+  const Rgb value =
+      sample.value * hit.volume->albedo_at(point) * throughput * (p1 * p2 / (by_walk + drawn));
   RatioTracking shadow(medium, {{point, sample.wi}, 0, sample.distance});
   while (shadow.advance(walk.rng))
     if (!shadow.attenuate(walk.rng))
@@ -119,12 +120,13 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     gather_light(walk, hit.t);
   if (max_bounces_ && walk.bounces >= *max_bounces_)
     return false;
-  walk.throughput *= hit.volume->albedo;
+  const Vec3f point = walk.segment.ray.at(hit.t);
+  walk.throughput *= hit.volume->albedo_at(point);
   if (!survive_roulette(roulette_below, walk.throughput, walk.rng) ||
       !walk.length.survive(walk.throughput, walk.rng))
     return false;
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
-  walk.segment.ray.origin = walk.segment.ray.at(hit.t);
+  walk.segment.ray.origin = point;
   walk.light = 0;
   return sample_lights(walk);
 }

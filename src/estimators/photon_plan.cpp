@@ -38,7 +38,7 @@ double in_steps(double number) {
 /// All volumes have the same albedo, also where a forward peak is taken out.
 bool common_albedo(const Medium& medium) {
   for (const Volume& volume : medium.volumes)
-    if (volume.albedo != medium.volumes[0].albedo ||
+    if (volume.color || volume.albedo != medium.volumes[0].albedo ||
         (medium.peak && volume.phase_index != medium.volumes[0].phase_index))
       return false;
   return true;
@@ -47,13 +47,14 @@ bool common_albedo(const Medium& medium) {
 /// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
 /// from all around alike; photons of other lights would lose it. Scattering events are counted
 /// exactly where their number is limited, and neither the scene's own light nor that of surfaces is
-/// split from the peak's.
+/// split from the peak's. Where the albedo changes from place to place, so would the extinction of
+/// the medium without the peak, by channel.
 bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sampled_lights) {
   const World& world = input.world;
   const RenderSettings& settings = input.settings;
   bool possible = settings.forward_peak == ForwardPeak::automatic &&
                   settings.store == PhotonStore::fluence && !settings.max_bounces &&
-                  world.medium.emitters.empty() && !world.surfaces;
+                  world.medium.emitters.empty() && !world.surfaces && !world.medium.colored();
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     possible = possible && (sampled_lights[i] || (world.lights.traits(i).surrounds &&
                                                   !world.lights.traits(i).wants_shadow_rays));

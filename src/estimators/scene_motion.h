@@ -1,7 +1,7 @@
 #pragma once
 
 #include "transport/camera.h"
-#include "volume/velocity_field.h"
+#include "volume/vector_reader.h"
 
 #include <array>
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-using Velocities = std::vector<std::shared_ptr<const VelocityField>>; ///< by volume; null: none
+using Velocities = std::vector<std::shared_ptr<const VectorField>>; ///< by volume; null: none
 
 /// How far things move in the picture from the frame's time to a frame later: by the motion of the
 /// camera, by the transforms of volumes and meshes, and by the velocities of volumes.
@@ -31,9 +31,9 @@ public:
 private:
   /// Velocity of one volume, and the maps between the world and the lattice of the velocity.
   struct Flow {
-    std::shared_ptr<const VelocityField> velocity; ///< null: it has none
-    Affine to_index, to_world;                     ///< the latter of vectors
-    double seconds_per_frame = 0, moved = 0;       ///< the latter: time for which it was moved
+    std::shared_ptr<const VectorField> velocity; ///< null: it has none
+    Affine to_index, to_world;                   ///< the latter of vectors
+    double seconds_per_frame = 0, moved = 0;     ///< the latter: time for which it was moved
     /// World, in a second.
     Vec3d at(const Vec3d& point) const;
   };

@@ -119,13 +119,13 @@ bool SceneTracer::fly(Path& path, float t_end, float medium_end, Collision& hit)
 bool SceneTracer::collide(Path& path, const Collision& hit) const {
   if (max_bounces_ && path.scatterings >= *max_bounces_)
     return false;
-  path.throughput *= hit.volume->albedo;
+  const Vec3f point = path.ray().at(hit.t);
+  path.throughput *= hit.volume->albedo_at(point);
   if (!survive_roulette(roulette_below * path.refraction, path.throughput, path.rng) ||
       !path.length.survive(path.throughput, path.rng))
     return false;
   const PhaseFunction& phase =
       world_.medium.phases[static_cast<std::size_t>(hit.volume->phase_index)];
-  const Vec3f point = path.ray().at(hit.t);
   ++path.scatterings;
   if (path.all_light)
     path.add(lights_at_collision(path, point, phase, path.rng) * path.throughput);

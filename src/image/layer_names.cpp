@@ -1,5 +1,6 @@
 #include "image/layer_names.h"
 
+#include <algorithm>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -18,7 +19,7 @@ constexpr LayerName names[] = {{"volume_direct", "volume_direct", "VolumeDir"},
                                {"depth", "", "Depth"}, // Arnold's is the channel Z itself
                                {"depth_near", "volume_Z", ""},
                                {"position", "P", "Position"},
-                               {"motion", "motionvector", ""}};
+                               {"motion", "motionvector", "Vector"}};
 constexpr std::string_view view_layer = "ViewLayer.";
 
 /// The layer that Arnold or Cycles would write.
@@ -36,6 +37,25 @@ std::string renamed(const std::string& layer, bool arnold) {
   return std::string(view_layer) + (layer.empty() ? "Combined" : name);
 }
 
+/// Cycles' vectors are two, each the way back in time, of pixels that count from the lower left:
+/// from this frame to the one before, and from the one after to this. Both are those of a motion
+/// that goes on as it is.
+void reverse_motion(Image& image) {
+  const std::string layer = std::string(view_layer) + "Vector.";
+  for (const auto& [from, to] : {std::pair("X", "Z"), std::pair("Y", "W")}) {
+    const auto channel =
+        std::find_if(image.channels.begin(), image.channels.end(),
+                     [&](const ImageChannel& c) { return c.name == layer + from; });
+    if (channel == image.channels.end())
+      continue;
+    for (float& value : channel->data)
+      value = -value;
+    ImageChannel next = *channel;
+    next.name = layer + to;
+    image.channels.push_back(std::move(next));
+  }
+}
+
 } // namespace
 
 void rename_layers(Image& image, const std::string& renderer) {
@@ -47,6 +67,8 @@ void rename_layers(Image& image, const std::string& renderer) {
     const std::string name = arnold && layer == "depth" ? "" : renamed(layer, arnold);
     channel.name = name.empty() ? last : name + "." + last;
   }
+  if (!arnold)
+    reverse_motion(image);
   // Parts are named as their layers are.
   const auto parts = image.metadata.find("vdbeam:partCompression");
   if (parts == image.metadata.end())

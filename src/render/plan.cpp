@@ -122,8 +122,12 @@ private:
     add(Stage::photon_directions, needs_.photons && needs_.anisotropic,
         first_reason({{!needs_.photons, no_photons},
                       {!needs_.anisotropic, "all phase functions are isotropic"}}));
+    const bool grid = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
+                                  [](const VolumeSettings& v) { return !v.color_grid.empty(); });
     add(Stage::photon_color, needs_.photons && needs_.colored,
-        first_reason({{!needs_.photons, no_photons}, {!needs_.colored, "all colours are grey"}}));
+        first_reason({{!needs_.photons, no_photons},
+                      {grid, "a grid of colours multiplies the albedo"},
+                      {!needs_.colored, "all colours are grey"}}));
   }
 
   void add_camera_rays() {
@@ -167,11 +171,14 @@ private:
   std::vector<PlanStage> stages_;
 };
 
-std::uint64_t volume_memory(const std::vector<VolumeFacts>& volumes) {
+std::uint64_t volume_memory(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
   std::uint64_t bytes = 0;
-  for (const VolumeFacts& volume : volumes)
-    bytes += DensityField::bytes_of_voxels(volume.active_voxels) +
-             EmissionField::bytes_of_voxels(volume.glowing_voxels);
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    bytes += DensityField::bytes_of_voxels(volumes[i].active_voxels) +
+             EmissionField::bytes_of_voxels(volumes[i].glowing_voxels);
+    if (!scene.volumes[i].color_grid.empty())
+      bytes += ColorField::bytes_of_voxels(volumes[i].active_voxels);
+  }
   return bytes;
 }
 
@@ -210,7 +217,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   plan.shadow_ray_lights = needs.shadow_ray_lights;
   plan.unbiased =
       !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
-  plan.volume_bytes = volume_memory(volumes);
+  plan.volume_bytes = volume_memory(scene, volumes);
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);

@@ -24,7 +24,8 @@ void add_volume(const VolumeSettings& volume, const VolumeFacts& facts, PlanNeed
   needs.scatters = needs.scatters || max_component(volume.albedo) > 0;
   needs.anisotropic = needs.anisotropic || !PhaseFunction(volume.phase).isotropic();
   needs.chromatic = needs.chromatic || !is_grey(volume.extinction_scale);
-  needs.colored = needs.colored || needs.chromatic || !is_grey(volume.albedo);
+  needs.colored =
+      needs.colored || needs.chromatic || !is_grey(volume.albedo) || !volume.color_grid.empty();
 }
 
 /// Whether single scattering of a light is found by shadow rays. An estimator without photons finds

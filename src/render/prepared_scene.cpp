@@ -53,6 +53,7 @@ void keep_facts(const DensityGrid& grid, ReadVolume& read) {
   read.facts.repairs = grid.repairs;
   read.facts.active_voxels = grid.active_voxels;
   read.facts.notes = grid.notes;
+  read.facts.color = grid.color;
 }
 
 } // namespace
@@ -94,6 +95,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
     if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
       read.velocity = previous->volumes[i].velocity;
     grids.push_back(take_grid(volume, previous, read));
+    take_colors(volume, previous, read, grids.back());
     keep_facts(grids.back(), read);
     emissions.push_back(take_emission(volume, previous, read));
     read.emission = emissions.back();

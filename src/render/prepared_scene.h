@@ -3,7 +3,7 @@
 #include "estimators/photon_cache.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
-#include "volume/velocity_field.h"
+#include "volume/vector_reader.h"
 
 #include <memory>
 #include <string>
@@ -20,8 +20,10 @@ struct ReadVolume {
   DensityGrid facts;    ///< all but the field
   int index = -1;       ///< where the medium holds its field; -1: it is empty
   /// Its velocity, read where passes see it at several moments; null where it has none.
-  std::shared_ptr<const VelocityField> velocity;
+  std::shared_ptr<const VectorField> velocity;
   std::string velocity_identity; ///< what it was read from; empty: nothing was read
+  Colors colors;                 ///< of its color_grid
+  std::string color_identity;    ///< what they were read from; empty: nothing was read
 };
 
 class PreparedScene {

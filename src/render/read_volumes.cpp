@@ -3,9 +3,11 @@
 #include "estimators/plane_layers.h"
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
+#include "vdbeam/error.h"
 #include "volume/combined_grid.h"
 #include "volume/edited_field.h"
 #include "volume/moved_field.h"
+#include "volume/noise.h"
 #include "volume/refined_grid.h"
 
 #include <fmt/format.h>
@@ -45,6 +47,13 @@ std::string edits_text(const VolumeSettings& volume) {
   return noise_text(volume) + fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}|{}", volume.add, volume.mask,
                                           r.scale, r.offset, r.least, r.most.value_or(-1), r.power,
                                           r.curve, static_cast<int>(volume.interpolation));
+}
+
+/// What decides the colours that multiply a volume's albedo.
+std::string colors_text(const VolumeSettings& volume) {
+  return volume.color_grid.empty() ? ""
+                                   : fmt::format("|colors {} {}", volume.color_grid,
+                                                 static_cast<int>(volume.emission.color_space));
 }
 
 /// The box that a volume is clipped to, and what places it there.
@@ -121,6 +130,16 @@ std::string emission_identity(const VolumeSettings& volume) {
   return text;
 }
 
+/// The colours of a volume, read, or taken from `previous`.
+Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                   const std::string& identity) {
+  if (previous)
+    for (const ReadVolume& known : previous->volumes)
+      if (known.color_identity == identity)
+        return known.colors;
+  return read_colors(volume.file, volume.color_grid);
+}
+
 } // namespace
 
 /// Tells one state of a file from another.
@@ -137,7 +156,7 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
   if (!volume.needs_density())
     return {};
   const std::string edits = edits_text(volume) + box_text(volume);
-  read.identity = file_identity(volume.file) + "|" + volume.density + edits;
+  read.identity = file_identity(volume.file) + "|" + volume.density + edits + colors_text(volume);
   const auto motion = motion_of(volume, read);
   const bool edited = edits_of(volume, {}, true).changes();
   // What was edited cannot be moved: the box would move too.
@@ -188,6 +207,43 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
   };
   return make_emission(volume.emission, take(volume.emission.intensity),
                        take(volume.emission.temperature), volume.file, granted_memory());
+}
+
+void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous, ReadVolume& read,
+                 DensityGrid& grid) {
+  if (volume.color_grid.empty() || grid.field.empty() || grid.color)
+    return;
+  read.color_identity = file_identity(volume.file) + colors_text(volume);
+  read.colors = find_colors(volume, previous, read.color_identity);
+  if (!read.colors.field) {
+    grid.notes.push_back(volume.file + ": has no grid of colours (color_grid = \"auto\")");
+    return;
+  }
+  const VectorField& colors = *read.colors.field;
+  const auto note = [&](std::uint64_t voxels, const char* what) {
+    if (voxels > 0)
+      grid.notes.push_back(fmt::format("{}: color_grid \"{}\": {} voxels {}", volume.file,
+                                       volume.color_grid, voxels, what));
+  };
+  note(read.colors.limited, "have a component beyond [0, 1], which counts as 0 or 1");
+  note(colors.outliers(), "are not finite, and have the colour of those around");
+  if (ColorField::bytes_of(grid.field) > granted_memory())
+    throw FrameError(volume.file + ": its colours need more memory than there may be");
+  const auto motion = motion_of(volume, read);
+  const std::function<Vec3d(const Vec3d&)> source =
+      motion ? sources_of(grid, *motion) : [](const Vec3d& index) { return index; };
+  const ColorMatrix matrix = rgb_matrix(chromaticities_of(ColorSpace::rec709),
+                                        chromaticities_of(volume.emission.color_space));
+  const bool converts = volume.emission.color_space != ColorSpace::rec709;
+  const Affine to_colors = colors.index_to_world().inverse();
+  const Vec3d origin(grid.field.origin());
+  grid.color = std::make_shared<const ColorField>(grid.field, [&](const Vec3d& local) {
+    Vec3d world = grid.index_to_world.point(source(local + origin));
+    if (volume.noise.amplitude > 0)
+      world += noise_displacement(volume.noise, world);
+    const Vec3d color = colors.sample(to_colors.point(world));
+    return converts ? Rgb(min(max(matrix.apply(color), Vec3d(0)), Vec3d(1))) : Rgb(color);
+  });
 }
 
 void take_velocities(const Scene& scene, const PreparedScenePtr& previous,

@@ -15,6 +15,10 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
                            ReadVolume& read);
 
+/// Gives the density the colours of the volume's color_grid, moved like it.
+void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous, ReadVolume& read,
+                 DensityGrid& grid);
+
 /// Reads the velocities of volumes that passes see at several moments.
 void take_velocities(const Scene& scene, const PreparedScenePtr& previous, PreparedScene& prepared);
 

@@ -25,7 +25,7 @@ double radical_inverse(std::uint32_t n) {
 std::uint64_t bytes_of(const World& world) {
   std::uint64_t bytes = 0;
   for (const Volume& volume : world.medium.volumes)
-    bytes += volume.field.bytes();
+    bytes += volume.field.bytes() + (volume.color ? volume.color->bytes() : 0);
   for (const Emitter& emitter : world.medium.emitters)
     bytes += emitter.field->bytes();
   return bytes;

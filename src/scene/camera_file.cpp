@@ -1,5 +1,6 @@
 #include "scene/camera_file.h"
 
+#include "geometry/gltf_camera.h"
 #include "scene/scene_enums.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -22,11 +23,12 @@ constexpr std::size_t chan_numbers = 7, chan_numbers_with_fov = 8, matrix_number
 struct CameraKey {
   double frame = 0;
   std::vector<double> values; ///< 6 or 7 of a .chan file, or a matrix
-  int line = 0;
+  int line = 0;               ///< 0: the file has none
 };
 
 [[noreturn]] void fail(const std::string& path, int line, const std::string& text) {
-  throw InputError(one_line(fmt::format("{}:{}: {}", path, line, text)));
+  const std::string place = line > 0 ? fmt::format(":{}", line) : "";
+  throw InputError(one_line(fmt::format("{}{}: {}", path, place, text)));
 }
 
 /// The numbers of a line; brackets and commas, as programs print matrices, count as spaces.
@@ -63,7 +65,8 @@ CameraKey key_of(const std::vector<double>& numbers, const std::string& path, in
                    count_text(n, "number")));
 }
 
-std::vector<CameraKey> read_keys(const std::string& path) {
+/// The keys of a text file.
+std::vector<CameraKey> read_lines(const std::string& path) {
   std::ifstream stream(path);
   if (!stream)
     throw InputError(one_line(path + ": cannot be opened: no permission to read it"));
@@ -86,6 +89,25 @@ std::vector<CameraKey> read_keys(const std::string& path) {
   }
   if (keys.empty())
     throw InputError(one_line(path + ": holds no camera"));
+  return keys;
+}
+
+/// The keys of a camera of a glTF file, as matrices that act on columns, and its field of view.
+std::vector<CameraKey> read_gltf(const CameraSettings& settings, std::optional<double>& fov) {
+  constexpr double samples_per_frame = 4; // between which matrices may be mixed
+  const CameraTrack track =
+      read_gltf_camera(settings.file, settings.name, samples_per_frame * settings.file_fps);
+  fov = track.fov;
+  std::vector<CameraKey> keys;
+  for (const CameraTrack::Key& key : track.keys) {
+    CameraKey& next = keys.emplace_back();
+    next.frame = key.seconds * settings.file_fps;
+    for (int row = 0; row < 3; ++row) {
+      const Vec3d& r = key.to_world.rows[static_cast<std::size_t>(row)];
+      next.values.insert(next.values.end(), {r.x, r.y, r.z, key.to_world.translation[row]});
+    }
+    next.values.insert(next.values.end(), {0, 0, 0, 1});
+  }
   return keys;
 }
 
@@ -152,9 +174,11 @@ Vec3d turned_world(const Vec3d& v, CameraAxes axes) {
 
 CameraPose read_camera_file(const CameraSettings& settings, double time) {
   const std::string& path = settings.file;
-  const std::vector<CameraKey> keys = read_keys(path);
+  const bool gltf = is_gltf_file(path);
+  std::optional<double> fov;
+  const std::vector<CameraKey> keys = gltf ? read_gltf(settings, fov) : read_lines(path);
   const bool matrices = keys.front().values.size() == matrix_numbers;
-  const bool rows = matrices && acts_on_rows(keys, path);
+  const bool rows = matrices && !gltf && acts_on_rows(keys, path);
   const auto next = std::find_if(keys.begin(), keys.end(),
                                  [&](const CameraKey& key) { return key.frame >= time; });
   const CameraKey& after = next == keys.end() ? keys.back() : *next;
@@ -165,7 +189,7 @@ CameraPose read_camera_file(const CameraSettings& settings, double time) {
   CameraPose pose;
   if (matrices) {
     const CameraPose a = matrix_pose(before, rows, path), b = matrix_pose(after, rows, path);
-    pose = {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), {}};
+    pose = {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), fov};
   } else {
     std::vector<double> values;
     for (std::size_t i = 0; i < after.values.size(); ++i)

@@ -30,6 +30,9 @@ void add_volume(KeyTable& table) {
   table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
       .within(0, 1)
       .always_written();
+  table.add("color_grid", &V::color_grid,
+            R"(grid of colours that multiply the albedo, or three of numbers ("r,g,b"); "auto": )"
+            R"("Cd", "color" or "albedo"; "": none)");
   table.add("name", &V::name, R"(its name in Cryptomatte; "": volume0, volume1, ...)")
       .keeps_world();
   add_placement(table, &V::transform);

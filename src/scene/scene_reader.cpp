@@ -1,5 +1,6 @@
 #include "scene/scene_reader.h"
 
+#include "geometry/gltf_camera.h"
 #include "scene/animation.h"
 #include "scene/camera_file.h"
 #include "scene/toml_value.h"
@@ -374,6 +375,8 @@ void SceneReader::place_camera(const toml::table& table) {
       throw InputError(fmt::format("{}: camera.{} excludes camera.file, which says where the "
                                    "camera is",
                                    locate(fmt::format("camera.{}", name)), name));
+  if (!camera.name.empty() && !is_gltf_file(camera.file))
+    throw InputError(locate("camera.name") + ": camera.name is for cameras of glTF files");
   const CameraPose pose = read_camera_file(camera, frame_.time);
   camera.position = pose.position;
   camera.look_at = pose.position + pose.forward;

@@ -50,12 +50,13 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   for (std::size_t v = 0; v < weights_.size(); ++v) {
     const Volume& volume = medium_.volumes[v];
     const float begin = profile_.tau(knot, v), piece = profile_.tau(knot + 1, v) - begin;
-    const float sigma = volume.extinction * volume.density_inside(ray_.at(t));
+    const Vec3f point = ray_.at(t);
+    const float sigma = volume.extinction * volume.density_inside(point);
     const float exact = piece > 0 ? cube_optical_depth(volume, ray_, t_a, t) : 0;
     tau += volume.channel_scale * (begin + exact);
     linear_tau += volume.channel_scale * (begin + (length > 0 ? (t - t_a) / length : 0) * piece);
     linear_sigma += volume.channel_scale * (length > 0 ? piece / length : sigma);
-    weights_[v] = volume.albedo * volume.channel_scale * (piece > 0 ? sigma : 0);
+    weights_[v] = volume.albedo_at(point) * volume.channel_scale * (piece > 0 ? sigma : 0);
   }
   const int channels = medium_.chromatic ? 3 : 1;
   float pdf = 0;

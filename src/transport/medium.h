@@ -6,6 +6,7 @@
 #include "phase/phase_function.h"
 #include "transport/grid_traversal.h"
 #include "transport/majorant_grid.h"
+#include "volume/color_field.h"
 #include "volume/emitter.h"
 #include "volume/render_space.h"
 
@@ -15,18 +16,19 @@
 namespace vdbeam {
 
 /// A volume in render space: density grid, coefficients, phase function.
-///   sigma_t(x) = density(x) * extinction * channel_scale,  sigma_s = albedo * sigma_t
+///   sigma_t(x) = density(x) * extinction * channel_scale,  sigma_s = albedo * color(x) * sigma_t
 struct Volume {
   DensityField field;
-  MajorantGrid majorants;     ///< of the density
-  Affinef to_local;           ///< render space -> local coordinates of the field
-  float extinction = 1;       ///< per render unit, of the strongest channel
-  Rgb channel_scale{1, 1, 1}; ///< in [0, 1], the largest is 1
-  Rgb albedo{1, 1, 1};
-  std::size_t setting = 0; ///< which volume of the scene it is
-  int phase_index = 0;     ///< index into Medium::phases
-  float voxel_size = 1;    ///< smallest edge of a voxel, render units
-  bool limited = false;    ///< densities were reduced to what can be tracked
+  MajorantGrid majorants;                  ///< of the density
+  Affinef to_local;                        ///< render space -> local coordinates of the field
+  float extinction = 1;                    ///< per render unit, of the strongest channel
+  Rgb channel_scale{1, 1, 1};              ///< in [0, 1], the largest is 1
+  Rgb albedo{1, 1, 1};                     ///< where `color` does not multiply it
+  std::shared_ptr<const ColorField> color; ///< multiplies the albedo; null: nothing does
+  std::size_t setting = 0;                 ///< which volume of the scene it is
+  int phase_index = 0;                     ///< index into Medium::phases
+  float voxel_size = 1;                    ///< smallest edge of a voxel, render units
+  bool limited = false;                    ///< densities were reduced to what can be tracked
 
   Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
   Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }
@@ -34,6 +36,9 @@ struct Volume {
   /// The density at a point of which is known that it lies inside: rounding may have put it beyond
   /// a face, where a field that ends sharply is 0.
   float density_inside(const Vec3f& p) const { return field.sample(field.nearest(local_point(p))); }
+  Rgb albedo_at(const Vec3f& p) const {
+    return color ? albedo * color->sample(local_point(p)) : albedo;
+  }
   /// Offset of the 8^3 cell of a point, outside of the nearest one.
   std::size_t cell_at(const Vec3f& p) const;
   /// sigma_t of the strongest channel's majorant at a point; 0 outside.
@@ -79,6 +84,13 @@ struct Medium {
   /// There is something to look at.
   bool visible() const { return !volumes.empty() || !emitters.empty(); }
   bool isotropic() const;
+  /// The albedo of a volume changes from place to place.
+  bool colored() const {
+    for (const Volume& volume : volumes)
+      if (volume.color)
+        return true;
+    return false;
+  }
   std::size_t bytes() const;
   /// Part of the segment inside `bounds`; empty where it misses.
   Segment clip(Segment segment) const;

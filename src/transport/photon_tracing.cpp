@@ -85,9 +85,11 @@ public:
   bool collide(LightPath& path, const Collision& hit) {
     if (!path.length.survive(path.throughput, path.rng))
       return false;
+    const Vec3f point = path.segment.ray.at(hit.t);
+    const Rgb albedo = hit.volume->albedo_at(point);
     if (may_store(path) && settings_.store == PhotonStore::scatter)
-      store(path, hit, path.throughput * hit.volume->albedo);
-    if (!absorption_roulette(hit.volume->albedo, path.throughput, path.rng))
+      store(path, hit, path.throughput * albedo);
+    if (!absorption_roulette(albedo, path.throughput, path.rng))
       return false;
     if (++path.bounces == 1 && !path.met_surface)
       path.for_surfaces = lights_surfaces(path.light);
@@ -96,7 +98,6 @@ public:
         path.bounces >= *settings_.max_bounces + (path.for_surfaces ? 1 : 0))
       return false;
     const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
-    const Vec3f point = path.segment.ray.at(hit.t);
     const int paths = settings_.guide ? hold_in_window(path, point) : 1;
     if (paths == 2)
       split(path, phase, point);

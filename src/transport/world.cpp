@@ -107,6 +107,7 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
   volume.to_local = Affinef(local_to_render.inverse());
   volume.channel_scale = strongest > 0 ? settings.extinction_scale / strongest : Rgb(1);
   volume.albedo = settings.albedo;
+  volume.color = std::move(grid.color);
   double edge = infinity;
   for (int a = 0; a < 3; ++a) {
     Vec3d unit{};

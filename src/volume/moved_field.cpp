@@ -57,7 +57,7 @@ public:
   }
 
 private:
-  const VelocityField& velocity_;
+  const VectorField& velocity_;
   Affine to_velocity_, turn_;
   double time_;
 };
@@ -201,6 +201,11 @@ private:
   std::size_t bricks_ = 0;
 };
 
+/// Nothing moves.
+bool stands_still(const Motion& motion) {
+  return motion.velocity.empty() || motion.settings.time * motion.settings.scale == 0;
+}
+
 } // namespace
 
 DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
@@ -211,12 +216,21 @@ DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std:
   moved.active_voxels = grid.active_voxels;
   moved.notes = grid.notes;
   moved.field = grid.field;
-  if (grid.field.empty() || motion.velocity.empty() ||
-      motion.settings.time * motion.settings.scale == 0)
+  if (grid.field.empty() || stands_still(motion))
     return moved;
   const Displacement displacement(grid, motion);
   moved.field = FieldMover(grid.field, displacement).move(label, maximum_bytes);
   return moved;
+}
+
+std::function<Vec3d(const Vec3d& index)> sources_of(const DensityGrid& grid, const Motion& motion) {
+  if (stands_still(motion))
+    return [](const Vec3d& index) { return index; };
+  const Vec3d origin(grid.field.origin());
+  return [displacement = Displacement(grid, motion), origin](const Vec3d& index) {
+    Vec3d way;
+    return displacement.source_of(index - origin, way) + origin;
+  };
 }
 
 } // namespace vdbeam

@@ -1,12 +1,14 @@
 #pragma once
 
-#include "volume/velocity_field.h"
+#include "volume/vector_reader.h"
+
+#include <functional>
 
 namespace vdbeam {
 
 /// What moves a grid: velocities, the time that they act for [seconds], and their settings.
 struct Motion {
-  const VelocityField& velocity;
+  const VectorField& velocity;
   const VelocitySettings& settings;
 };
 
@@ -16,5 +18,9 @@ struct Motion {
 /// FrameError, opening with `label`, where the result would exceed `maximum_bytes`.
 DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
                        std::uint64_t maximum_bytes);
+
+/// A function that gives, for a point of the moved grid, where it was before; both in index
+/// coordinates. The arguments must outlive it.
+std::function<Vec3d(const Vec3d& index)> sources_of(const DensityGrid& grid, const Motion& motion);
 
 } // namespace vdbeam

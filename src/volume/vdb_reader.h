@@ -1,9 +1,11 @@
 #pragma once
 
 #include "math/affine.h"
+#include "volume/color_field.h"
 #include "volume/density_field.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,9 @@ struct GridRepairs {
 
 /// A density grid ready to render.
 struct DensityGrid {
-  DensityField field;    ///< empty() where the grid holds nothing
+  DensityField field; ///< empty() where the grid holds nothing
+  /// Multiplies the albedo, in the field's local coordinates; null: nothing does.
+  std::shared_ptr<const ColorField> color = nullptr;
   Affine index_to_world; ///< the file's map
   GridRepairs repairs;
   std::uint64_t active_voxels = 0; ///< tiles counted by the voxels they cover

@@ -98,6 +98,28 @@ MemoryScene chromatic() {
   return scene;
 }
 
+/// Colours that multiply the albedo: red on the left, blue on the right, dark at the top.
+MemoryScene colored() {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.volumes[0].albedo = {0.95f, 0.9f, 0.8f};
+  scene.scene.volumes[0].phase = test::henyey_greenstein(0.5);
+  scene.scene.volumes[0].color_grid = "memory";
+  DensityGrid& grid = scene.grids[0];
+  grid.color = std::make_shared<const ColorField>(grid.field, [](const Vec3d& local) {
+    const auto x = static_cast<float>(local.x / 24), y = static_cast<float>(local.y / 24);
+    return Rgb{1 - x, 0.6f, x} * (1 - 0.7f * y);
+  });
+  return scene;
+}
+
+/// The same beside a volume of one albedo and another phase function.
+MemoryScene colored_overlap() {
+  MemoryScene scene = overlap();
+  scene.scene.volumes[0].color_grid = "memory";
+  scene.grids[0].color = colored().grids[0].color;
+  return scene;
+}
+
 /// Mean over the image of each output that both estimators mean alike.
 void expect_agreement(const MemoryScene& scene, const PassMeans& truth, EstimatorType type,
                       int passes, double bias, double power = 0.015, bool layers = true) {
@@ -182,7 +204,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                                          Case{"lamp_inside", lamp_inside, 0.04},
                                          Case{"sun_and_sky", sun_and_sky}, Case{"overlap", overlap},
                                          Case{"grey_overlap", grey_overlap},
-                                         Case{"chromatic", chromatic}),
+                                         Case{"chromatic", chromatic}, Case{"colored", colored},
+                                         Case{"colored_overlap", colored_overlap}),
                          case_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, SingleBounce,
                          testing::Values(Case{"lamps", lamps},
@@ -194,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SingleBounce,
 // Scatter photons blur the density as well, which costs accuracy where it varies within a kernel:
 // smaller kernels, and a wider bound.
 TEST(AgreementOfStorage, ScatterPhotons) {
-  for (MemoryScene scene : {lamps(), overlap()}) {
+  for (MemoryScene scene : {lamps(), overlap(), colored_overlap()}) {
     const PassMeans truth = truth_of(scene);
     scene.scene.render.store = PhotonStore::scatter;
     scene.scene.render.radius = 0.03;

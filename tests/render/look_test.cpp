@@ -98,6 +98,51 @@ TEST_F(Look, TellsWhatIsWrong) {
             "volume.0.box_upper must be greater than box_lower along all three axes");
 }
 
+/// Colours of the file multiply the albedo where they are, move with the volume, and are forgotten
+/// by frames that do not ask for them.
+TEST_F(Look, ColorsMultiplyTheAlbedo) {
+  VolumeOptions options;
+  options.size = 24;
+  write_volume("colored", folder_.file("box.vdb"), options);
+  const std::vector<std::string> white{"volume.0.file=" + folder_.file("box.vdb"),
+                                       "volume.0.extinction=0.01", "render.max_bounces=1",
+                                       "render.passes=64"};
+  std::vector<std::string> painted = white;
+  painted.push_back("volume.0.color_grid=auto");
+  const Image plain = render(load(white)).image;
+  const auto colors_at = [&](const Image& image, double x, double y) {
+    Vec3d ratio;
+    for (int c = 0; c < 3; ++c)
+      ratio[c] = at(image.find(std::string(1, "RGB"[c]))->data, x, y) /
+                 at(plain.find(std::string(1, "RGB"[c]))->data, x, y);
+    return ratio;
+  };
+  const Image tinted = render(load(painted)).image;
+  for (const double x : {-0.6, -0.1, 0.4, 0.65}) {
+    const double middle = (std::floor(x * 4) + 0.5) / 4; // of the pixel
+    EXPECT_LT(length(colors_at(tinted, x, 0.1) - Vec3d(0.5 + middle / 2, 0.25, 0.75)), 0.01) << x;
+  }
+  painted.push_back("volume.0.translate=[0.25, 0, 0]");
+  EXPECT_LT(length(colors_at(render(load(painted)).image, 0.4, 0.1) -
+                   Vec3d(0.5 + (0.375 - 0.25) / 2, 0.25, 0.75)),
+            0.01);
+  painted.pop_back();
+  std::vector<std::string> moved = painted; // by (1, 1, 1) a second, seen after a quarter
+  moved.insert(moved.end(),
+               {"volume.0.velocity=density,density,density", "camera.shutter_open=0.2499",
+                "camera.shutter_close=0.2501", "camera.shutter_times=1"});
+  EXPECT_LT(length(colors_at(render(load(moved)).image, 0.4, 0.1) -
+                   Vec3d(0.5 + (0.375 - 0.25) / 2, 0.25, 0.75)),
+            0.01);
+  const PreparedScenePtr first = prepare_scene(load(painted)),
+                         second = prepare_scene(load(white), first);
+  EXPECT_EQ(render(load(white), second).image.find("R")->data, plain.find("R")->data);
+  EXPECT_EQ(render(load(painted), prepare_scene(load(painted), first)).image.find("R")->data,
+            tinted.find("R")->data);
+  EXPECT_THROW(render(load({"volume.0.color_grid=nothing"})), InputError);
+  EXPECT_EQ(opacity(tinted), opacity(plain));
+}
+
 TEST_F(Look, GridsAreAdded) {
   const std::vector<float> twice = opacity(render(load({"volume.0.add=density"})).image);
   expect_near(twice, opacity(render(load({"volume.0.density_scale=2"})).image));

@@ -65,6 +65,81 @@ TEST_F(CameraFile, TurnsWorlds) {
   EXPECT_EQ(settings.up, Vec3d(0, 0, 1)); // about which skies turn, whatever the camera does
 }
 
+/// Two cameras that hang from a node at (10, 0, 0). The first rises by 24 within a second from its
+/// (0, 0, 0) on, and turns by 90 degrees about Y; the second stands still at (1, 2, 3).
+const char* gltf_cameras = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [{"name": "Rig", "translation": [10, 0, 0], "children": [1, 2]},
+            {"name": "Crane", "camera": 0}, {"name": "Still", "camera": 1, "translation": [1, 2, 3]}],
+  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 1.5, "znear": 0.1}},
+              {"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}}],
+  "animations": [{"samplers": [{"input": 0, "output": 1}, {"input": 0, "output": 2}],
+    "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}},
+                 {"sampler": 1, "target": {"node": 1, "path": "rotation"}}]}],
+  "buffers": [{"byteLength": 64, "uri": "data:application/octet-stream;base64,AAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAAAADAQQAAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAPMENT8AAAAA8wQ1Pw=="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 24},
+                  {"buffer": 0, "byteOffset": 32, "byteLength": 32}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR",
+                 "min": [0], "max": [1]},
+                {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC3"},
+                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC4"}]})";
+
+class GltfCamera : public CameraFile {
+protected:
+  CameraSettings camera(const FrameTime& frame, std::vector<std::string> overrides = {}) {
+    write("shot.gltf", gltf_cameras);
+    overrides.push_back("camera.file=" + file("shot.gltf"));
+    return load("[camera]\n", overrides, frame).camera;
+  }
+};
+
+TEST_F(GltfCamera, StandsAndTurnsAsItsNodes) {
+  const auto expect_close = [](const Vec3d& a, const Vec3d& b) { // the file's are floats
+    EXPECT_LT(length(a - b), 1e-5) << a.x << " " << a.y << " " << a.z;
+  };
+  const CameraSettings first = camera({0}), half = camera({12}), last = camera({24}),
+                       later = camera({99});
+  expect_close(first.position, {10, 0, 0});
+  expect_close(first.look_at - first.position, {0, 0, -1});
+  expect_close(half.position, {10, 12, 0});
+  const double c = std::sqrt(0.5);
+  expect_close(half.look_at - half.position, {-c, 0, -c});
+  expect_close(last.position, {10, 24, 0});
+  expect_close(last.look_at - last.position, {-1, 0, 0});
+  expect_close(*last.picture_up, {0, 1, 0});
+  expect_close(later.position, last.position);
+  EXPECT_NEAR(first.fov, 0.6 * 180 / M_PI, 1e-4);
+  // A quarter of the way in time is a quarter of the turn, though keys are far apart.
+  const CameraSettings quarter = camera({6});
+  expect_close(quarter.look_at - quarter.position, {-std::sin(M_PI / 8), 0, -std::cos(M_PI / 8)});
+  expect_close(camera({12, 12.5}).position, {10, 12.5, 0});
+  expect_close(camera({25}, {"camera.file_fps=50"}).position, {10, 12, 0});
+}
+
+TEST_F(GltfCamera, ChosenByName) {
+  const CameraSettings still = camera({7}, {"camera.name=Still"});
+  EXPECT_LT(length(still.position - Vec3d(11, 2, 3)), 1e-5);
+  EXPECT_NEAR(still.fov, 0.9 * 180 / M_PI, 1e-4);
+  EXPECT_EQ(camera({7}, {"camera.name=Still", "camera.fov=20"}).fov, 20);
+}
+
+TEST_F(GltfCamera, TellsWhatIsWrong) {
+  const auto error = [&](const std::vector<std::string>& overrides) {
+    try {
+      camera({1}, overrides);
+    } catch (const Error& problem) {
+      const std::string text = problem.what();
+      return text.substr(text.find(": ") + 2);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error({"camera.name=Dolly"}), "holds no camera \"Dolly\", only \"Crane\", \"Still\"");
+  write("shot.chan", "1 0 0 0 0 0 0\n");
+  EXPECT_EQ(error_of("[camera]\nfile = \"shot.chan\"\nname = \"Crane\"\n"),
+            "s.toml:3: camera.name is for cameras of glTF files");
+  write("shot.gltf", "{");
+  EXPECT_THROW(load("[camera]\nfile = \"shot.gltf\"\n"), FrameError);
+}
+
 TEST_F(CameraFile, TellsWhatIsWrong) {
   const auto error = [&](const std::string& text) {
     write("shot.cam", text);

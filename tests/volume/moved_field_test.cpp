@@ -32,8 +32,8 @@ DensityGrid ball_grid(double voxel = 1) {
 
 /// Velocities at the voxels of the lattice for which `inside` holds, `value` being that at a point.
 template <class Value, class Inside>
-VelocityField velocities(Value value, Inside inside, bool staggered = false, double voxel = 1) {
-  VelocityField::Values values;
+VectorField velocities(Value value, Inside inside, bool staggered = false, double voxel = 1) {
+  VectorField::Values values;
   for (int a = 0; a < 3; ++a)
     values.index_to_world.rows[static_cast<std::size_t>(a)] *= voxel;
   values.staggered = staggered;
@@ -73,7 +73,7 @@ double mass(const DensityGrid& grid, const Vec3d& lower = Vec3d(-60),
   return sum;
 }
 
-DensityGrid moved(const VelocityField& velocity, double time, double voxel = 1,
+DensityGrid moved(const VectorField& velocity, double time, double voxel = 1,
                   VelocityUnits units = VelocityUnits::world) {
   VelocitySettings settings;
   settings.time = time;
@@ -84,7 +84,7 @@ DensityGrid moved(const VelocityField& velocity, double time, double voxel = 1,
 /// A ball whose velocity is known in it alone leaves the place where it was, voxel by voxel.
 TEST(MovedField, TranslatesABall) {
   const Vec3d v{13, -6, 27};
-  const VelocityField velocity = velocities([&](const Vec3d&) { return v; }, in_the_ball);
+  const VectorField velocity = velocities([&](const Vec3d&) { return v; }, in_the_ball);
   const DensityGrid still = ball_grid();
   for (const double time : {1.0, -1.0}) {
     const DensityGrid grid = moved(velocity, time);
@@ -102,7 +102,7 @@ TEST(MovedField, TranslatesABall) {
 /// second differences that linear interpolation neglects.
 TEST(MovedField, KeepsMassBetweenVoxels) {
   const Vec3d v{3.4, 0.25, -7.9};
-  const VelocityField velocity = velocities([&](const Vec3d&) { return v; }, in_the_ball);
+  const VectorField velocity = velocities([&](const Vec3d&) { return v; }, in_the_ball);
   const DensityGrid still = ball_grid(), grid = moved(velocity, 0.5);
   EXPECT_NEAR(mass(grid), mass(still), 1e-6 * mass(still));
   double worst = 0;
@@ -142,8 +142,8 @@ TEST(MovedField, StaggeredComponentsAreSampledWhereTheyLie) {
   const auto flow = [](const Vec3d& p) {
     return Vec3d{0.2 * p.x + 0.1 * p.y, 3 - 0.1 * p.x, 0.15 * p.z - 0.05 * p.y};
   };
-  const VelocityField centred = velocities(flow, everywhere);
-  const VelocityField staggered = velocities(flow, everywhere, true);
+  const VectorField centred = velocities(flow, everywhere);
+  const VectorField staggered = velocities(flow, everywhere, true);
   for (const Vec3d& p : {Vec3d(9.3, 17.2, 20.9), Vec3d(4, 5, 6), Vec3d(22.75, 8.5, 13.1)}) {
     EXPECT_LT(length(centred.sample(p) - flow(p)), 1e-5);
     EXPECT_LT(length(staggered.sample(p) - flow(p)), 1e-5);
@@ -151,7 +151,7 @@ TEST(MovedField, StaggeredComponentsAreSampledWhereTheyLie) {
 }
 
 TEST(MovedField, UnitsOfTheWorldAndOfTheIndex) {
-  const VelocityField velocity =
+  const VectorField velocity =
       velocities([](const Vec3d&) { return Vec3d(2, 0, 0); }, everywhere, false, 0.25);
   const Vec3d top{15, 16, 15};
   const DensityGrid still = ball_grid(0.25);
@@ -161,14 +161,13 @@ TEST(MovedField, UnitsOfTheWorldAndOfTheIndex) {
 }
 
 TEST(MovedField, StandsStillWithoutTimeOrVelocity) {
-  const VelocityField velocity =
-      velocities([](const Vec3d&) { return Vec3d(5, 5, 5); }, everywhere);
+  const VectorField velocity = velocities([](const Vec3d&) { return Vec3d(5, 5, 5); }, everywhere);
   const DensityGrid same = moved(velocity, 0), still = ball_grid();
   ASSERT_EQ(same.field.brick_count(), still.field.brick_count());
   for (int i = 0; i < size; ++i)
     EXPECT_EQ(value_at(same, {static_cast<double>(i), 16, 15}),
               value_at(still, {static_cast<double>(i), 16, 15}));
-  const VelocityField nothing =
+  const VectorField nothing =
       velocities([](const Vec3d&) { return Vec3d(5, 5, 5); }, [](const Vec3d&) { return false; });
   EXPECT_EQ(mass(moved(nothing, 1)), mass(still));
 }
@@ -180,7 +179,7 @@ TEST(MovedField, OutliersMoveLikeTheirNeighbours) {
       return Vec3d(std::numeric_limits<double>::infinity(), 0, 0);
     return p == Vec3d(14, 16, 15) ? Vec3d(1e7, 0, 0) : Vec3d(4, 0, 0);
   };
-  const VelocityField velocity = velocities(flow, everywhere);
+  const VectorField velocity = velocities(flow, everywhere);
   EXPECT_EQ(velocity.outliers(), 2);
   const DensityGrid grid = moved(velocity, 1), still = ball_grid();
   for (int i = 4; i < size; ++i)
@@ -236,7 +235,7 @@ TEST(MovedField, HasNoEmptyBricks) {
   const DensityGrid grid = ball_grid();
   VelocitySettings settings;
   settings.time = 1;
-  const VelocityField flow = velocities([](const Vec3d&) { return Vec3d(13, -9, 5); }, everywhere);
+  const VectorField flow = velocities([](const Vec3d&) { return Vec3d(13, -9, 5); }, everywhere);
   const DensityGrid moved = moved_grid(grid, {flow, settings}, "ball", 1 << 30);
   const DensityField& field = moved.field;
   for (std::size_t brick = 0; brick < field.brick_count(); ++brick) {

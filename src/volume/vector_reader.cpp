@@ -1,18 +1,19 @@
+#include "volume/vector_reader.h"
 #include "vdbeam/error.h"
 #include "volume/guarded_read.h"
 #include "volume/raw_grid.h"
-#include "volume/velocity_field.h"
-#include "volume/velocity_parse.h"
+#include "volume/vector_parse.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vdbeam {
 namespace {
 
-constexpr int width = VelocityField::cell_width;
+constexpr int width = VectorField::cell_width;
 constexpr std::size_t brick_size = static_cast<std::size_t>(width) * width * width;
 constexpr double most_cells = 1 << 28;
 
@@ -37,7 +38,7 @@ class Assembler {
 public:
   explicit Assembler(const std::vector<Component>& components) : components_(components) {}
 
-  VelocityField::Values assemble(const std::string& label) {
+  VectorField::Values assemble(const std::string& label) {
     if (!find_bounds())
       return {};
     double cells = 1;
@@ -107,14 +108,14 @@ private:
   }
 
   const std::vector<Component>& components_;
-  VelocityField::Values values_;
+  VectorField::Values values_;
   Vec3<std::int64_t> lower_{std::int64_t{1} << 40, std::int64_t{1} << 40, std::int64_t{1} << 40};
   Vec3<std::int64_t> upper_{-(std::int64_t{1} << 40), -(std::int64_t{1} << 40),
                             -(std::int64_t{1} << 40)};
 };
 
 /// The longest velocity that does not cross the whole lattice within a frame.
-double longest_velocity(const VelocityField::Values& values, const VelocitySettings& settings) {
+double longest_velocity(const VectorField::Values& values, const VelocitySettings& settings) {
   const Vec3d size = Vec3d(values.cells) * double{width};
   const VelocityScale meaning = scale_of(settings, values.from_mantaflow);
   const double diagonal = meaning.index ? length(size) : length(values.index_to_world.vector(size));
@@ -122,37 +123,81 @@ double longest_velocity(const VelocityField::Values& values, const VelocitySetti
   return scale > 0 ? diagonal * settings.fps / scale : std::numeric_limits<double>::infinity();
 }
 
-} // namespace
-
-std::shared_ptr<const VelocityField>
-read_velocity(const std::string& path, const VelocitySettings& settings, const ReadLimits& limits) {
+/// Reads a grid of vectors, or three of numbers; empty where `wanted` is "auto" and there is none.
+VectorField::Values read_vectors(const std::string& path, const std::string& wanted,
+                                 VectorMeaning meaning, const ReadLimits& limits) {
   const std::vector<std::string> names = lines_of(read_guarded(
-      path, limits, [&](int output) { write_velocity_names(path, settings.grid, output); }));
+      path, limits, [&](int output) { write_vector_names(path, wanted, meaning, output); }));
   if (names.empty())
-    return nullptr;
+    return {};
   std::vector<Component> components(3);
   for (int c = 0; c < 3; ++c) {
     const std::string& name = names.size() == 3 ? names[static_cast<std::size_t>(c)] : names[0];
     Component& component = components[static_cast<std::size_t>(c)];
     component.file = read_guarded(path, limits, [&](int output) {
-      write_raw_component(path, name, names.size() == 3 ? 0 : c, output);
+      write_raw_component(path, name, names.size() == 3 ? 0 : c, meaning, output);
     });
     component.grid =
         view_raw_grid(fmt::format("{}: grid \"{}\"", path, name), component.file, component.header);
     if (component.header.index_to_world != components[0].header.index_to_world)
-      throw InputError(fmt::format("{}: the grids {}, {} and {} of its velocity must have the same "
-                                   "transform",
-                                   path, names[0], names[1], names[2]));
+      throw InputError(fmt::format("{}: the grids {}, {} and {} must have the same transform", path,
+                                   names[0], names[1], names[2]));
   }
-  const std::string label = fmt::format("{}: velocity \"{}\"", path, names[0]);
-  VelocityField::Values values = Assembler(components).assemble(label);
+  const std::string label = fmt::format("{}: grid \"{}\"", path, names[0]);
+  VectorField::Values values = Assembler(components).assemble(label);
   values.index_to_world = Affine::from_matrix(components[0].header.index_to_world);
   if (!(std::abs(values.index_to_world.determinant()) > 0))
     throw InputError(label + " has a transform that is singular or not finite");
   values.staggered = components[0].header.staggered != 0;
   values.from_mantaflow = components[0].header.from_mantaflow != 0;
+  return values;
+}
+
+/// Brings colours to [0, 1]; returns how many were beyond. NaN stays.
+std::uint64_t limit_colors(std::vector<Vec3f>& colors) {
+  std::uint64_t limited = 0;
+  for (Vec3f& color : colors) {
+    const Vec3f before = color;
+    for (int c = 0; c < 3; ++c)
+      if (std::isfinite(color[c]))
+        color[c] = std::clamp(color[c], 0.0f, 1.0f);
+    limited += (before.x != color.x && !std::isnan(before.x)) ||
+               (before.y != color.y && !std::isnan(before.y)) ||
+               (before.z != color.z && !std::isnan(before.z));
+  }
+  return limited;
+}
+
+} // namespace
+
+VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow) {
+  // Blender runs Mantaflow with a step of 0.1 units for a frame of 1/25 s (at a time scale of 1).
+  constexpr double mantaflow_units = 2.5;
+  if (settings.units == VelocityUnits::automatic && from_mantaflow)
+    return {true, mantaflow_units * settings.scale};
+  return {settings.units == VelocityUnits::index, settings.scale};
+}
+
+std::shared_ptr<const VectorField>
+read_velocity(const std::string& path, const VelocitySettings& settings, const ReadLimits& limits) {
+  VectorField::Values values = read_vectors(path, settings.grid, VectorMeaning::velocity, limits);
+  if (values.table.empty() && settings.grid == "auto")
+    return nullptr;
   const double longest = longest_velocity(values, settings);
-  return std::make_shared<const VelocityField>(std::move(values), longest);
+  return std::make_shared<const VectorField>(std::move(values), longest);
+}
+
+Colors read_colors(const std::string& path, const std::string& grid, const ReadLimits& limits) {
+  VectorField::Values values = read_vectors(path, grid, VectorMeaning::color, limits);
+  Colors colors;
+  if (values.table.empty())
+    return colors;
+  // Of a tile's voxels its mean tells; leaves have bricks.
+  std::uint64_t tiles = limit_colors(values.means);
+  colors.limited = limit_colors(values.bricks) + tiles * brick_size;
+  colors.field = std::make_shared<const VectorField>(std::move(values),
+                                                     std::numeric_limits<double>::infinity());
+  return colors;
 }
 
 } // namespace vdbeam

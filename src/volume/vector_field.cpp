@@ -1,4 +1,4 @@
-#include "volume/velocity_field.h"
+#include "volume/vector_field.h"
 
 #include <tbb/parallel_for.h>
 
@@ -9,7 +9,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr int width = VelocityField::cell_width;
+constexpr int width = VectorField::cell_width;
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 bool is_missing(const Vec3f& v) {
@@ -26,8 +26,8 @@ Vec3<int> cell_at(const Vec3<int>& n, std::size_t offset) {
           static_cast<int>(offset % n.z)};
 }
 
-/// Ring by ring, a cell without a velocity takes the mean of its neighbours that have one.
-void fill_cells_without(VelocityField::Values& values) {
+/// Ring by ring, a cell without a vector takes the mean of its neighbours that have one.
+void fill_cells_without(VectorField::Values& values) {
   const Vec3<int>& n = values.cells;
   std::vector<std::size_t> ring, next;
   const auto visit_neighbours = [&](std::size_t offset, const auto& visit) {
@@ -74,7 +74,7 @@ void fill_cells_without(VelocityField::Values& values) {
 }
 
 /// The value of a voxel, or what stands for it; beyond the cells that of the nearest.
-const Vec3f& voxel_value(const VelocityField::Values& values, Vec3<int> p) {
+const Vec3f& voxel_value(const VectorField::Values& values, Vec3<int> p) {
   for (int a = 0; a < 3; ++a)
     p[a] = std::clamp(p[a], 0, width * values.cells[a] - 1);
   const std::size_t cell = cell_offset(values.cells, {p.x / width, p.y / width, p.z / width});
@@ -90,7 +90,7 @@ const Vec3f& voxel_value(const VelocityField::Values& values, Vec3<int> p) {
 }
 
 /// At a lattice point: of components on faces, the mean of the faces to both sides.
-Vec3f lattice_value(const VelocityField::Values& values, const Vec3<int>& p) {
+Vec3f lattice_value(const VectorField::Values& values, const Vec3<int>& p) {
   if (!values.staggered)
     return voxel_value(values, p);
   Vec3f result;
@@ -104,15 +104,7 @@ Vec3f lattice_value(const VelocityField::Values& values, const Vec3<int>& p) {
 
 } // namespace
 
-VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow) {
-  // Blender runs Mantaflow with a step of 0.1 units for a frame of 1/25 s (at a time scale of 1).
-  constexpr double mantaflow_units = 2.5;
-  if (settings.units == VelocityUnits::automatic && from_mantaflow)
-    return {true, mantaflow_units * settings.scale};
-  return {settings.units == VelocityUnits::index, settings.scale};
-}
-
-VelocityField::VelocityField(Values values, double longest)
+VectorField::VectorField(Values values, double longest)
     : index_to_world_(values.index_to_world), from_mantaflow_(values.from_mantaflow),
       origin_(values.origin), cells_(values.cells) {
   find_means(values, longest);
@@ -123,7 +115,7 @@ VelocityField::VelocityField(Values values, double longest)
 }
 
 /// Drops what is not to be trusted, and takes the mean of the rest of each cell.
-void VelocityField::find_means(Values& values, double longest) {
+void VectorField::find_means(Values& values, double longest) {
   const double longest_square = longest * longest;
   const auto trusted = [&](const Vec3f& v) {
     const double square = dot(Vec3d(v), Vec3d(v));
@@ -158,8 +150,8 @@ void VelocityField::find_means(Values& values, double longest) {
   }
 }
 
-/// Bricks of the cells in which, or at whose upper sides, there are velocities.
-void VelocityField::build_bricks(const Values& values) {
+/// Bricks of the cells in which, or at whose upper sides, there are vectors.
+void VectorField::build_bricks(const Values& values) {
   const Vec3<int>& n = cells_;
   table_.assign(values.table.size(), -1);
   std::size_t count = 0;
@@ -188,7 +180,7 @@ void VelocityField::build_bricks(const Values& values) {
   });
 }
 
-void VelocityField::find_bounds() {
+void VectorField::find_bounds() {
   constexpr std::size_t brick_size = std::size_t{brick_width} * brick_width * brick_width;
   cell_bounds_.resize(table_.size());
   tbb::parallel_for(std::size_t{0}, table_.size(), [&](std::size_t cell) {
@@ -203,7 +195,7 @@ void VelocityField::find_bounds() {
   });
 }
 
-Boxf VelocityField::bounds(const Boxd& index) const {
+Boxf VectorField::bounds(const Boxd& index) const {
   Vec3<int> first, last;
   for (int a = 0; a < 3; ++a) {
     const auto cell_at_index = [&](double x) { // beyond the cells those at the border
@@ -221,7 +213,7 @@ Boxf VelocityField::bounds(const Boxd& index) const {
   return bounds;
 }
 
-Vec3d VelocityField::sample(const Vec3d& index) const {
+Vec3d VectorField::sample(const Vec3d& index) const {
   const Vec3d local = index - Vec3d(origin_);
   Vec3<int> cell, voxel;
   Vec3d f;

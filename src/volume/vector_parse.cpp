@@ -1,4 +1,4 @@
-#include "volume/velocity_parse.h"
+#include "volume/vector_parse.h"
 
 #include "machine/mapped_file.h"
 #include "text/text.h"
@@ -20,10 +20,27 @@ namespace {
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
-/// How programs call velocities. Blender and EmberGen: velocity; Houdini: vel, v.
-constexpr const char* vector_names[] = {"velocity", "vel", "v", "velocities", "motion"};
-constexpr const char* triple_names[] = {
-    "vel.{}", "vel{}", "vel_{}", "velocity.{}", "velocity_{}", "velocity{}", "v{}", "v.{}", "v_{}"};
+/// How programs call such grids; "{}" is a component.
+struct UsualNames {
+  const char* what; ///< in messages
+  std::vector<const char*> vectors, triples;
+  std::vector<std::string> components; ///< one letter each
+};
+
+const UsualNames& usual_names(VectorMeaning meaning) {
+  // Blender and EmberGen: velocity; Houdini: vel, v.
+  static const UsualNames velocity{"a velocity",
+                                   {"velocity", "vel", "v", "velocities", "motion"},
+                                   {"vel.{}", "vel{}", "vel_{}", "velocity.{}", "velocity_{}",
+                                    "velocity{}", "v{}", "v.{}", "v_{}"},
+                                   {"xyz"}};
+  static const UsualNames color{
+      "a colour",
+      {std::begin(color_grid_names), std::end(color_grid_names)},
+      {"Cd.{}", "Cd{}", "Cd_{}", "color.{}", "color_{}", "albedo.{}", "albedo_{}"},
+      {"xyz", "rgb"}};
+  return meaning == VectorMeaning::velocity ? velocity : color;
+}
 
 struct NamedGrid {
   std::string name;
@@ -59,23 +76,26 @@ const NamedGrid* find(const std::vector<NamedGrid>& grids, const std::string& na
   return nullptr;
 }
 
-/// The grids that `name` stands for, "{}" being one of x, y and z; empty where they are not there.
-std::vector<std::string> find_triple(const std::vector<NamedGrid>& grids, const std::string& name) {
+/// The grids that `name` stands for, "{}" being one of three letters; empty where they are not
+/// there.
+std::vector<std::string> find_triple(const std::vector<NamedGrid>& grids, const std::string& name,
+                                     const std::string& letters) {
   std::vector<std::string> found;
-  for (const char* axis : {"x", "y", "z"})
-    if (const NamedGrid* grid = find(grids, fmt::format(fmt::runtime(name), axis));
+  for (const char letter : letters)
+    if (const NamedGrid* grid = find(grids, fmt::format(fmt::runtime(name), letter));
         grid && grid->numbers)
       found.push_back(grid->name);
   return found.size() == 3 ? found : std::vector<std::string>{};
 }
 
-std::vector<std::string> find_usual(const std::vector<NamedGrid>& grids) {
-  for (const char* name : vector_names)
+std::vector<std::string> find_usual(const std::vector<NamedGrid>& grids, const UsualNames& names) {
+  for (const char* name : names.vectors)
     if (const NamedGrid* grid = find(grids, name); grid && grid->vectors)
       return {grid->name};
-  for (const char* name : triple_names)
-    if (const auto found = find_triple(grids, name); !found.empty())
-      return found;
+  for (const char* name : names.triples)
+    for (const std::string& letters : names.components)
+      if (const auto found = find_triple(grids, name, letters); !found.empty())
+        return found;
   return {};
 }
 
@@ -147,20 +167,22 @@ void write_component(const Grid& grid, int component, int descriptor) {
 
 } // namespace
 
-void write_velocity_names(const std::string& path, const std::string& wanted, int descriptor) {
+void write_vector_names(const std::string& path, const std::string& wanted, VectorMeaning meaning,
+                        int descriptor) {
+  const UsualNames& usual = usual_names(meaning);
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
   const std::vector<NamedGrid> grids = list_grids(file);
   std::vector<std::string> names;
   if (wanted == "auto") {
-    names = find_usual(grids);
+    names = find_usual(grids, usual);
   } else {
     const std::vector<std::string> parts = split(wanted);
     if (parts.size() != 1 && parts.size() != 3)
       throw InputError(
-          fmt::format("{}: the velocity \"{}\" must name one grid of vectors, or three "
+          fmt::format("{}: \"{}\" cannot be {}: it must name one grid of vectors, or three "
                       "grids with commas between them",
-                      path, wanted));
+                      path, wanted, usual.what));
     for (const std::string& part : parts) {
       const NamedGrid* grid = find(grids, part);
       if (!grid) {
@@ -170,8 +192,9 @@ void write_velocity_names(const std::string& path, const std::string& wanted, in
         throw InputError(missing_grid_message(path, part, all));
       }
       if (parts.size() == 1 ? !grid->vectors : !grid->numbers)
-        throw InputError(fmt::format("{}: grid \"{}\" cannot be a velocity: it must hold {}", path,
-                                     part, parts.size() == 1 ? "vectors of three" : "numbers"));
+        throw InputError(fmt::format("{}: grid \"{}\" cannot be {}: it must hold {}", path, part,
+                                     usual.what,
+                                     parts.size() == 1 ? "vectors of three" : "numbers"));
       names.push_back(grid->name);
     }
   }
@@ -180,7 +203,7 @@ void write_velocity_names(const std::string& path, const std::string& wanted, in
 }
 
 void write_raw_component(const std::string& path, const std::string& name, int component,
-                         int descriptor) {
+                         VectorMeaning meaning, int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files
   const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(name));
@@ -195,8 +218,8 @@ void write_raw_component(const std::string& path, const std::string& name, int c
   else if (grid.isType<openvdb::FloatGrid>())
     write_component(static_cast<const openvdb::FloatGrid&>(grid), component, descriptor);
   else
-    throw InputError(fmt::format("{}: grid \"{}\" cannot be a velocity: it holds {}", path, name,
-                                 grid.valueType()));
+    throw InputError(fmt::format("{}: grid \"{}\" cannot be {}: it holds {}", path, name,
+                                 usual_names(meaning).what, grid.valueType()));
 }
 
 } // namespace vdbeam

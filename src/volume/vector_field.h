@@ -11,11 +11,11 @@
 
 namespace vdbeam {
 
-/// Velocities on an integer lattice, trilinear between its points; staggered ones are brought to
-/// the points by the mean of both faces. Where there is none, or one that is not to be trusted, the
-/// mean of the cell of 8^3 around is taken, and in cells without any the mean of the cells that are
-/// nearest: what moves must be able to leave the place where it was.
-class VelocityField {
+/// Vectors (velocities, colours) on an integer lattice, trilinear between its points; staggered
+/// ones are brought to the points by the mean of both faces. Where there is none, or one that is
+/// not to be trusted, the mean of the cell of 8^3 around is taken, and in cells without any the
+/// mean of the cells that are nearest: what moves must be able to leave the place where it was.
+class VectorField {
 public:
   static constexpr int cell_width = 8;
 
@@ -29,16 +29,16 @@ public:
     std::vector<Vec3f> bricks;       ///< 8^3 per brick, x-major; NaN where there is none
     std::vector<Vec3f> means;        ///< per cell: NaN, or what a tile says
   };
-  /// Velocities that are longer than `longest` count as missing.
-  VelocityField(Values values, double longest);
+  /// Vectors that are longer than `longest` count as missing.
+  VectorField(Values values, double longest);
 
   const Affine& index_to_world() const { return index_to_world_; }
   bool from_mantaflow() const { return from_mantaflow_; }
   /// At a point in index coordinates, in the grid's own units.
   Vec3d sample(const Vec3d& index) const;
-  /// Bounds of all velocities in a box of index coordinates, and of some around it.
+  /// Bounds of all vectors in a box of index coordinates, and of some around it.
   Boxf bounds(const Boxd& index) const;
-  /// Voxels whose velocity was too long or not a number.
+  /// Voxels whose vector was too long or not a number.
   std::uint64_t outliers() const { return outliers_; }
   bool empty() const { return table_.empty(); }
 
@@ -55,22 +55,8 @@ private:
   Vec3<int> cells_;
   std::vector<std::int32_t> table_; ///< brick of each cell; -1: its mean everywhere
   std::vector<Vec3f> bricks_, means_;
-  std::vector<Boxf> cell_bounds_; ///< of the velocities in each cell
+  std::vector<Boxf> cell_bounds_; ///< of the vectors in each cell
   std::uint64_t outliers_ = 0;
 };
-
-/// What a velocity's numbers mean: lengths per second of the grid's index space or of the world,
-/// times a factor.
-struct VelocityScale {
-  bool index = false;
-  double factor = 1;
-};
-VelocityScale scale_of(const VelocitySettings& settings, bool from_mantaflow);
-
-/// Reads the velocity of a VDB; null where settings.grid is "auto" and the file has none. What
-/// would cross the whole grid within a frame is an outlier. Throws as read_density_grid.
-std::shared_ptr<const VelocityField> read_velocity(const std::string& path,
-                                                   const VelocitySettings& settings,
-                                                   const ReadLimits& limits = {});
 
 } // namespace vdbeam

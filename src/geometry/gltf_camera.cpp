@@ -1,0 +1,215 @@
+#include "geometry/gltf_camera.h"
+
+#include "machine/guarded_process.h"
+#include "machine/input_file.h"
+#include "vdbeam/error.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <numbers>
+#include <set>
+
+namespace vdbeam {
+namespace {
+
+/// Enough for hours at any frame rate; what asks for more is damaged.
+constexpr double most_keys = 1e6;
+
+/// A node between the root and the camera, and what moves it; null: nothing does.
+struct Joint {
+  const aiNode* node;
+  const aiNodeAnim* motion = nullptr;
+  double ticks_per_second = 1;
+};
+
+/// The joints from the root to the camera's node.
+std::vector<Joint> joints_of(const aiScene& scene, const aiNode* node) {
+  std::vector<Joint> joints;
+  for (; node; node = node->mParent) {
+    Joint joint{node};
+    for (unsigned a = 0; a < scene.mNumAnimations && !joint.motion; ++a) {
+      const aiAnimation& animation = *scene.mAnimations[a];
+      for (unsigned c = 0; c < animation.mNumChannels && !joint.motion; ++c)
+        if (animation.mChannels[c]->mNodeName == node->mName) {
+          joint.motion = animation.mChannels[c];
+          joint.ticks_per_second = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1000;
+        }
+    }
+    joints.insert(joints.begin(), joint);
+  }
+  return joints;
+}
+
+/// The value of sorted keys at a time; `mix(a, b, share)` interpolates. Requires a key.
+template <class Key, class Mix>
+auto value_at(const Key* keys, unsigned count, double ticks, Mix mix) {
+  const Key* end = keys + count;
+  const Key* after = std::find_if(keys, end, [&](const Key& key) { return key.mTime >= ticks; });
+  if (after == end)
+    return keys[count - 1].mValue;
+  if (after == keys)
+    return keys[0].mValue;
+  const Key& before = after[-1];
+  const double width = after->mTime - before.mTime;
+  const auto share = static_cast<float>(width > 0 ? (ticks - before.mTime) / width : 1);
+  return mix(before.mValue, after->mValue, share);
+}
+
+aiMatrix4x4 matrix_at(const Joint& joint, double seconds) {
+  if (!joint.motion)
+    return joint.node->mTransformation;
+  aiVector3D scale, position;
+  aiQuaternion rotation;
+  joint.node->mTransformation.Decompose(scale, rotation, position);
+  const double ticks = seconds * joint.ticks_per_second;
+  const aiNodeAnim& motion = *joint.motion;
+  const auto linear = [](const aiVector3D& a, const aiVector3D& b, float share) {
+    return a + (b - a) * share;
+  };
+  if (motion.mNumPositionKeys > 0)
+    position = value_at(motion.mPositionKeys, motion.mNumPositionKeys, ticks, linear);
+  if (motion.mNumScalingKeys > 0)
+    scale = value_at(motion.mScalingKeys, motion.mNumScalingKeys, ticks, linear);
+  if (motion.mNumRotationKeys > 0)
+    rotation = value_at(motion.mRotationKeys, motion.mNumRotationKeys, ticks,
+                        [](const aiQuaternion& a, const aiQuaternion& b, float share) {
+                          aiQuaternion mixed;
+                          aiQuaternion::Interpolate(mixed, a, b, share);
+                          return mixed;
+                        });
+  return aiMatrix4x4(scale, rotation, position);
+}
+
+/// Times [seconds] at which the camera is sampled: all keys, and `rate` per second in between.
+std::vector<double> sample_times(const std::vector<Joint>& joints, double rate) {
+  std::set<double> keys;
+  for (const Joint& joint : joints) {
+    const auto add = [&](const auto* values, unsigned count) {
+      for (unsigned i = 0; i < count; ++i)
+        keys.insert(values[i].mTime / joint.ticks_per_second);
+    };
+    if (!joint.motion)
+      continue;
+    add(joint.motion->mPositionKeys, joint.motion->mNumPositionKeys);
+    add(joint.motion->mRotationKeys, joint.motion->mNumRotationKeys);
+    add(joint.motion->mScalingKeys, joint.motion->mNumScalingKeys);
+  }
+  if (keys.empty())
+    return {0};
+  const double length = *keys.rbegin() - *keys.begin();
+  if (!(length * rate + static_cast<double>(keys.size()) < most_keys))
+    throw std::runtime_error("its animation is too long");
+  std::vector<double> times;
+  for (const double key : keys) {
+    if (!times.empty()) {
+      const double before = times.back();
+      const int parts = std::max(1, static_cast<int>(std::ceil((key - before) * rate)));
+      for (int i = 1; i < parts; ++i)
+        times.push_back(before + (key - before) * i / parts);
+    }
+    times.push_back(key);
+  }
+  return times;
+}
+
+/// The vertical field of view [degrees]; NaN: the camera is orthographic. assimp gives that of the
+/// file times the aspect ratio.
+double fov_of(const aiCamera& camera) {
+  if (!(camera.mHorizontalFOV > 0))
+    return std::nan("");
+  const auto aspect = static_cast<double>(camera.mAspect);
+  return static_cast<double>(camera.mHorizontalFOV) / (aspect > 0 ? aspect : 1) * 180 /
+         std::numbers::pi;
+}
+
+/// assimp gives cameras the names of their nodes.
+const aiCamera& find_camera(const std::string& path, const aiScene& scene,
+                            const std::string& name) {
+  std::string names;
+  for (unsigned i = 0; i < scene.mNumCameras; ++i) {
+    const aiCamera& camera = *scene.mCameras[i];
+    if (name.empty() || camera.mName.C_Str() == name)
+      return camera;
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", camera.mName.C_Str());
+  }
+  if (names.empty())
+    throw InputError(path + ": holds no camera");
+  throw InputError(fmt::format("{}: holds no camera \"{}\", only {}", path, name, names));
+}
+
+struct RawKey {
+  double seconds;
+  std::array<double, 12> matrix;
+};
+
+/// In the child: parses the file, writes the field of view and the keys.
+void parse(const std::string& path, const std::string& name, double rate, int output) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (!scene)
+    throw std::runtime_error(importer.GetErrorString());
+  const aiCamera& camera = find_camera(path, *scene, name);
+  const aiNode* node = scene->mRootNode ? scene->mRootNode->FindNode(camera.mName) : nullptr;
+  if (!node)
+    throw std::runtime_error("its camera stands nowhere");
+  const double fov = fov_of(camera);
+  write_all(output, &fov, sizeof fov);
+  const std::vector<Joint> joints = joints_of(*scene, node);
+  for (const double seconds : sample_times(joints, rate)) {
+    aiMatrix4x4 m;
+    for (const Joint& joint : joints)
+      m *= matrix_at(joint, seconds);
+    const RawKey key{seconds,
+                     {double{m.a1}, double{m.a2}, double{m.a3}, double{m.a4}, double{m.b1},
+                      double{m.b2}, double{m.b3}, double{m.b4}, double{m.c1}, double{m.c2},
+                      double{m.c3}, double{m.c4}}};
+    write_all(output, &key, sizeof key);
+  }
+}
+
+} // namespace
+
+bool is_gltf_file(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".gltf" || extension == ".glb";
+}
+
+CameraTrack read_gltf_camera(const std::string& path, const std::string& name, double rate) {
+  const std::uint64_t bytes = open_input_file(path).bytes;
+  GuardLimits limits;
+  limits.cpu_seconds = 10 + 5e-6 * static_cast<double>(bytes);
+  limits.bytes = (std::uint64_t(512) << 20) + 200 * bytes;
+  const MappedFile file =
+      run_guarded(path, limits, [&](int output) { parse(path, name, rate, output); });
+  const std::size_t rest = file.size() - std::min(file.size(), sizeof(double));
+  if (rest < sizeof(RawKey) || rest % sizeof(RawKey) != 0)
+    throw FrameError(path + ": the reader returned too little");
+  CameraTrack track;
+  double fov = 0;
+  std::memcpy(&fov, file.data(), sizeof fov);
+  if (!std::isnan(fov))
+    track.fov = fov;
+  for (std::size_t at = sizeof fov; at < file.size(); at += sizeof(RawKey)) {
+    RawKey key;
+    std::memcpy(&key, file.data() + at, sizeof key);
+    for (const double value : key.matrix)
+      if (!std::isfinite(value))
+        throw FrameError(path + ": a camera's matrix is not finite");
+    track.keys.push_back({key.seconds, Affine::from_matrix(key.matrix)});
+  }
+  return track;
+}
+
+} // namespace vdbeam
