@@ -13,6 +13,10 @@ add_library(vdbeam_options INTERFACE)
 # level, which the bit-identity tests rely on.
 target_compile_options(vdbeam_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                        -Wno-sign-conversion -ffp-contract=off -fno-math-errno)
+# GCC 12 sees overlaps in moved strings that there are not (its bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(vdbeam_options INTERFACE -Wno-restrict)
+endif()
 if(VDBEAM_WARNINGS_AS_ERRORS)
   target_compile_options(vdbeam_options INTERFACE -Werror)
 endif()
@@ -27,5 +31,15 @@ if(VDBEAM_SANITIZE)
 endif()
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  # What ccache's manual asks for where headers are precompiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()
+
+# What most files include, compiled once for each program: a quarter to a half of the time of a build.
+set(VDBEAM_PRECOMPILED_HEADERS
+    <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map>
+    <memory> <mutex> <numeric> <optional> <random> <set> <span> <sstream> <string> <thread> <utility>
+    <variant> <vector> <fmt/format.h> <tbb/parallel_for.h>)
+# For code where the compiler takes longer than the program would gain.
+set(VDBEAM_LIGHT_OPTIMISATION $<$<CONFIG:Release>:-O1>)

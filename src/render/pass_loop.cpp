@@ -117,7 +117,7 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
     take_quick_look(quick_look, soon, image_);
     result_.quick_look = true;
     // For the report; the program has words of its own for it.
-    result_.notes.push_back(
+    result_.notes.emplace_back(
         "not one pass was finished: the image is a quick look, rough and for the eye only");
   } else {
     develop();
