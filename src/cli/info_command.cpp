@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/grid_notes.h"
 #include "cli/streams.h"
+#include "cli/surface_info.h"
 #include "geometry/mesh_reader.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
@@ -62,21 +63,6 @@ void print_file(const std::string& file) {
   print_output(text);
 }
 
-void print_mesh(const std::string& path) {
-  const Mesh mesh = read_mesh(path);
-  Boxd bounds;
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle)
-      bounds.extend(mesh.center + Vec3d(mesh.positions[vertex]));
-  std::string text = fmt::format("{}\n  triangles     {}\n  bounds        [{:.6g}, {:.6g}, {:.6g}] "
-                                 "to [{:.6g}, {:.6g}, {:.6g}]\n",
-                                 path, mesh.triangles.size(), bounds.lower.x, bounds.lower.y,
-                                 bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z);
-  for (const std::string& note : mesh.notes)
-    text += fmt::format("  looks wrong   {}\n", note);
-  print_output(text);
-}
-
 /// The VDBs of a folder, in the order of their names.
 std::vector<std::string> volumes_in(const std::string& folder) {
   std::vector<std::string> files;
@@ -134,7 +120,9 @@ int run_info(const InfoOptions& options) {
   for (const std::string& file : files) {
     try {
       if (is_mesh_file(file))
-        print_mesh(file);
+        print_output(mesh_info(file));
+      else if (is_picture_file(file))
+        print_output(picture_info(file));
       else
         print_file(file);
     } catch (const Error& error) {
@@ -152,12 +140,14 @@ int run_info(const InfoOptions& options) {
 CommandRun add_info(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
   app.add_option("files", options->files,
-                 "VDB or mesh files, folders of VDBs, or sequences like smoke.####.vdb")
+                 "VDBs, meshes (OBJ, PLY, glTF), pictures (EXR, HDR, PNG), folders of VDBs, or "
+                 "sequences like smoke.####.vdb")
       ->required()
       ->option_text("FILE...");
   app.footer(R"(Examples:
   vdbeam info cloud.vdb
   vdbeam info smoke/*.vdb
+  vdbeam info ship.obj rust.png                 triangles, bounds, UV; size, colours, range
   vdbeam info smoke/smoke.####.vdb              the first, the middle and the last frame)");
   return [options] { return run_info(*options); };
 }

@@ -13,11 +13,12 @@ constexpr double S::*sums[] = {&S::read,    &S::prepare,       &S::pilot,      &
                                &S::profile, &S::direct,        &S::path,       &S::bias,
                                &S::write,   &S::clamp_removed, &S::clamp_total};
 constexpr std::uint64_t S::*counts[] = {
-    &S::light_paths,      &S::photons_stored, &S::contributions,   &S::camera_rays,
-    &S::lookups,          &S::depth_profiles, &S::shadow_rays,     &S::emission_rays,
-    &S::camera_walks,     &S::neighbourhoods, &S::bias_rays,       &S::directions,
-    &S::maps_reused,      &S::pilot_paths,    &S::importance_rays, &S::clamped_pixels,
-    &S::light_collisions, &S::walk_collisions};
+    &S::light_paths,      &S::photons_stored,  &S::contributions,   &S::camera_rays,
+    &S::lookups,          &S::depth_profiles,  &S::shadow_rays,     &S::emission_rays,
+    &S::camera_walks,     &S::neighbourhoods,  &S::bias_rays,       &S::directions,
+    &S::maps_reused,      &S::pilot_paths,     &S::importance_rays, &S::clamped_pixels,
+    &S::light_collisions, &S::walk_collisions, &S::meshes_read,     &S::textures_read,
+    &S::trees_built};
 
 // Whoever adds a field decides here how it is added up.
 static_assert(sizeof(S) == sizeof(double) * std::size(sums) +

@@ -1,119 +1,13 @@
 #include "geometry/surface_set.h"
 
-#include "geometry/placed.h"
-#include "vdbeam/error.h"
-
-#include <embree3/rtcore.h>
+#include "geometry/shape_tree.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 
 namespace vdbeam {
 namespace {
-
-std::atomic<int> devices{0};
-
-struct SceneDeleter {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct DeviceDeleter {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
-using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
-
-/// A shape as Embree's callbacks see it.
-struct ShapeEntry {
-  const Shape* shape = nullptr;
-  double margin = 0; ///< of the boxes, for rays that Embree has rounded
-  ScenePtr scene;
-};
-
-/// One query; Embree hands its first part on to the callbacks.
-struct Query {
-  RTCIntersectContext context; // must come first
-  const std::vector<Placed>* surfaces = nullptr;
-  Vec3d origin, direction;
-  double t_begin = 0, t_end = 0, shift = 0;
-  bool camera = false, any = false;
-  unsigned local_of = RTC_INVALID_GEOMETRY_ID; ///< surface whose space `local_...` are in
-  Vec3d local_origin, local_direction;
-  unsigned found = RTC_INVALID_GEOMETRY_ID, found_primitive = 0;
-  ShapeHit hit;
-
-  Query(const Vec3d& from, const Vec3d& along, double begin, double end)
-      : origin(from), direction(along), t_begin(begin), t_end(end) {}
-
-  void enter(unsigned surface) {
-    if (surface == local_of)
-      return;
-    const Affine& map = (*surfaces)[surface].place.to_shape;
-    local_of = surface;
-    local_origin = map.point(origin);
-    local_direction = map.vector(direction);
-  }
-  /// Embree's distance for one of the given ray, rounded up.
-  float embree_distance(double t) const {
-    return std::nextafter(static_cast<float>(t - shift), infinity);
-  }
-};
-
-void shape_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& entry = *static_cast<const ShapeEntry*>(args->geometryUserPtr);
-  const Boxd box = entry.shape->bounds(args->primID);
-  const auto down = [&](double x) {
-    return std::nextafter(static_cast<float>(x - entry.margin), -infinity);
-  };
-  const auto up = [&](double x) {
-    return std::nextafter(static_cast<float>(x + entry.margin), infinity);
-  };
-  *args->bounds_o = {down(box.lower.x), down(box.lower.y), down(box.lower.z), 0,
-                     up(box.upper.x),   up(box.upper.y),   up(box.upper.z),   0};
-}
-
-/// Tests a primitive; true where it is the nearest so far. Of two at the same distance the one with
-/// the lower numbers counts, whatever Embree's order.
-bool test_primitive(const ShapeEntry& entry, unsigned primitive, Query& query) {
-  const unsigned surface = query.context.instID[0];
-  if (query.camera && !(*query.surfaces)[surface].surface.visible)
-    return false;
-  query.enter(surface);
-  const double end = query.found == RTC_INVALID_GEOMETRY_ID
-                         ? query.t_end
-                         : std::nextafter(query.hit.t, static_cast<double>(infinity));
-  const auto hit = entry.shape->intersect(primitive, query.local_origin, query.local_direction,
-                                          query.t_begin, end);
-  if (!hit)
-    return false;
-  if (query.found != RTC_INVALID_GEOMETRY_ID && hit->t == query.hit.t &&
-      std::pair(surface, primitive) > std::pair(query.found, query.found_primitive))
-    return false;
-  query.hit = *hit;
-  query.found = surface;
-  query.found_primitive = primitive;
-  return true;
-}
-
-void intersect_shape(const RTCIntersectFunctionNArguments* args) {
-  auto& query = *reinterpret_cast<Query*>(args->context);
-  const auto& entry = *static_cast<const ShapeEntry*>(args->geometryUserPtr);
-  if (!args->valid[0] || !test_primitive(entry, args->primID, query))
-    return;
-  auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-  ray.ray.tfar = std::min(ray.ray.tfar, query.embree_distance(query.hit.t));
-  ray.hit.geomID = args->geomID;
-  ray.hit.primID = args->primID;
-  ray.hit.instID[0] = args->context->instID[0];
-}
-
-void occlude_shape(const RTCOccludedFunctionNArguments* args) {
-  auto& query = *reinterpret_cast<Query*>(args->context);
-  const auto& entry = *static_cast<const ShapeEntry*>(args->geometryUserPtr);
-  if (args->valid[0] && test_primitive(entry, args->primID, query))
-    reinterpret_cast<RTCRay*>(args->ray)->tfar = -infinity;
-}
 
 /// A search for the nearest surface.
 struct Nearest {
@@ -139,27 +33,20 @@ bool approach_primitive(RTCPointQueryFunctionArguments* args) {
   return true;
 }
 
-void check(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY)
-    throw FrameError("the surfaces need more memory than there is");
-  if (error != RTC_ERROR_NONE)
-    throw FrameError("Embree cannot build its trees over the surfaces");
-}
-
 } // namespace
 
 struct SurfaceSet::Data {
   DevicePtr device;
   std::vector<Placed> surfaces;
-  std::map<const Shape*, ShapeEntry> shapes;
+  std::map<const Shape*, std::shared_ptr<const ShapeTree>> trees;
   ScenePtr scene;
   Boxd bounds;
   std::size_t bytes = 0;
+  int trees_built = 0;
 
   void place(std::vector<PlacedShape>&& placed);
-  void build_shape(ShapeEntry& entry);
-  void build(double reach);
+  void grow_trees(double reach, const Data* previous);
+  void build_scene();
   void run(Query& query) const;
 };
 
@@ -171,43 +58,40 @@ void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
     entry.bounds = mapped(entry.surface.to_render, shape.bounds());
     bounds.extend(entry.bounds);
     surfaces.push_back(std::move(entry));
-    shapes[&shape].shape = &shape;
   }
 }
 
-void SurfaceSet::Data::build_shape(ShapeEntry& entry) {
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(entry.shape->primitives()));
-  rtcSetGeometryUserData(geometry, &entry);
-  rtcSetGeometryBoundsFunction(
-      geometry, [](const RTCBoundsFunctionArguments* args) { shape_bounds(args); }, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect_shape);
-  rtcSetGeometryOccludedFunction(geometry, occlude_shape);
-  rtcCommitGeometry(geometry);
-  entry.scene.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(entry.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcAttachGeometry(entry.scene.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(entry.scene.get());
-  check(device.get());
-}
-
-void SurfaceSet::Data::build(double reach) {
-  device.reset(rtcNewDevice(nullptr));
-  if (!device)
-    throw FrameError("Embree cannot be started");
-  ++devices;
+/// A tree for each shape, those of the previous set where their boxes are wide enough.
+void SurfaceSet::Data::grow_trees(double reach, const Data* previous) {
+  device = previous ? previous->device : make_device();
   // Embree rounds rays to single precision in each shape's own space; boxes are wider by as much,
   // but never by so much that they hold nothing out.
   constexpr double rounding = 1e-6, widest = 0.01;
+  std::map<const Shape*, double> margins;
   for (const Placed& entry : surfaces) {
-    ShapeEntry& shape = shapes[entry.surface.shape.get()];
-    const double size = length(entry.surface.shape->bounds().size());
+    const Shape* shape = entry.surface.shape.get();
+    const double size = length(shape->bounds().size());
     const double local_reach = reach / least_stretch(entry.place.to_shape) + size;
-    shape.margin = std::max(shape.margin, std::min(rounding * local_reach, widest * size));
+    margins[shape] = std::max(margins[shape], std::min(rounding * local_reach, widest * size));
   }
-  for (auto& [shape, entry] : shapes)
-    build_shape(entry);
+  for (const Placed& entry : surfaces) {
+    const std::shared_ptr<const Shape>& shape = entry.surface.shape;
+    std::shared_ptr<const ShapeTree>& tree = trees[shape.get()];
+    if (tree)
+      continue;
+    const double margin = margins[shape.get()];
+    if (previous)
+      if (const auto known = previous->trees.find(shape.get()); known != previous->trees.end())
+        tree = known->second;
+    // Room for a shape that moves on: twice as much is as good.
+    if (!tree || tree->margin() < margin || tree->margin() > 8 * margin) {
+      tree = std::make_shared<const ShapeTree>(device, shape, 2 * margin);
+      ++trees_built;
+    }
+  }
+}
+
+void SurfaceSet::Data::build_scene() {
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -219,14 +103,14 @@ void SurfaceSet::Data::build(double reach) {
         matrix[4 * row + column] = static_cast<float>(map.rows[row][column]);
       matrix[4 * row + 3] = static_cast<float>(map.translation[row]);
     }
-    rtcSetGeometryInstancedScene(instance, shapes[surfaces[i].surface.shape.get()].scene.get());
+    rtcSetGeometryInstancedScene(instance, trees.at(surfaces[i].surface.shape.get())->scene());
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix);
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(scene.get(), instance, static_cast<unsigned>(i));
     rtcReleaseGeometry(instance);
   }
   rtcCommitScene(scene.get());
-  check(device.get());
+  check(device);
 }
 
 void SurfaceSet::Data::run(Query& query) const {
@@ -258,15 +142,17 @@ void SurfaceSet::Data::run(Query& query) const {
     rtcIntersect1(scene.get(), &query.context, &ray);
 }
 
-SurfaceSet::SurfaceSet(std::vector<PlacedShape> surfaces, double reach)
+SurfaceSet::SurfaceSet(std::vector<PlacedShape> surfaces, double reach, const SurfaceSet* previous)
     : data_(std::make_unique<Data>()) {
   data_->place(std::move(surfaces));
   const Boxd& box = data_->bounds;
   const double coordinate = std::max(length(box.lower), length(box.upper));
-  data_->build(reach + coordinate + length(box.size()));
+  data_->grow_trees(reach + coordinate + length(box.size()),
+                    previous ? previous->data_.get() : nullptr);
+  data_->build_scene();
   // Embree's trees over user geometry take about 60 bytes per primitive.
   constexpr std::size_t tree_bytes = 60;
-  for (const auto& [shape, entry] : data_->shapes)
+  for (const auto& [shape, tree] : data_->trees)
     data_->bytes += shape->bytes() + tree_bytes * shape->primitives();
 }
 
@@ -378,8 +264,12 @@ float SurfaceSet::sample_pdf(std::size_t surface, const Vec3f& normal) const {
   return static_cast<float>(1 / (entry.surface.shape->area() * entry.stretch(local)));
 }
 
+int SurfaceSet::trees_built() const {
+  return data_->trees_built;
+}
+
 int SurfaceSet::devices_made() {
-  return devices;
+  return vdbeam::devices_made();
 }
 
 } // namespace vdbeam

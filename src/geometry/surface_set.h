@@ -53,9 +53,10 @@ struct SurfacePoint {
 /// const and may run concurrently.
 class SurfaceSet {
 public:
-  /// `reach`: how far from the surfaces rays may begin, render units. Throws FrameError where
+  /// `reach`: how far from the surfaces rays may begin, render units. Shapes that are in the
+  /// `previous` set too, wherever they stand there, need no new tree. Throws FrameError where
   /// memory is short.
-  SurfaceSet(std::vector<PlacedShape> surfaces, double reach);
+  SurfaceSet(std::vector<PlacedShape> surfaces, double reach, const SurfaceSet* previous = nullptr);
   ~SurfaceSet();
   SurfaceSet(const SurfaceSet&) = delete;
   SurfaceSet& operator=(const SurfaceSet&) = delete;
@@ -92,6 +93,8 @@ public:
   /// The density per area with which `sample` gives a point where the surface has this normal.
   float sample_pdf(std::size_t surface, const Vec3f& normal) const;
 
+  /// Trees that were built for this set: of the shapes that the previous one did not have.
+  int trees_built() const;
   /// Embree devices made so far by this process, for tests.
   static int devices_made();
 

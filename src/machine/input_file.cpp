@@ -27,4 +27,12 @@ InputFile open_input_file(const std::string& path) {
   return file;
 }
 
+std::string file_identity(const std::string& path) {
+  struct stat status {};
+  if (path.empty() || ::stat(path.c_str(), &status) != 0)
+    return path;
+  return fmt::format("{}|{}|{}|{}.{:09}", path, status.st_ino, status.st_size,
+                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
 } // namespace vdbeam

@@ -18,4 +18,8 @@ struct InputFile {
 /// writing it.
 InputFile open_input_file(const std::string& path);
 
+/// Tells one state of a file from another: its path, size and time of change; of a file that is not
+/// there the path.
+std::string file_identity(const std::string& path);
+
 } // namespace vdbeam

@@ -1,5 +1,6 @@
 #include "render/prepared_scene.h"
 
+#include "machine/input_file.h"
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/read_volumes.h"
@@ -58,6 +59,15 @@ void keep_facts(const DensityGrid& grid, ReadVolume& read) {
 
 } // namespace
 
+void add_work(RenderStatistics& statistics, const PreparedScene& prepared) {
+  statistics.read += prepared.seconds_read;
+  statistics.prepare += prepared.seconds_build;
+  const WorldFacts::SurfaceWork& work = prepared.facts.surfaces;
+  statistics.meshes_read += static_cast<std::uint64_t>(work.meshes_read);
+  statistics.textures_read += static_cast<std::uint64_t>(work.textures_read);
+  statistics.trees_built += static_cast<std::uint64_t>(work.trees_built);
+}
+
 std::string moved_world_settings(const Scene& moment, const PreparedScene& prepared) {
   std::string text = world_settings(moment);
   for (std::size_t i = 0; i < moment.volumes.size() && i < prepared.volumes.size(); ++i)
@@ -78,6 +88,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   if (previous && previous->world_settings == prepared->world_settings) {
     prepared->world = previous->world;
     prepared->facts = previous->facts;
+    prepared->facts.surfaces = {};
     prepared->volumes = previous->volumes;
     if (previous->photon_settings == prepared->photon_settings)
       prepared->photons = previous->photons;
@@ -108,7 +119,8 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   }
   prepared->seconds_read = watch.restart();
   prepared->world = std::make_shared<const World>(
-      build_world(scene, std::move(grids), std::move(emissions), &prepared->facts));
+      build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
+                  previous ? previous->world.get() : nullptr));
   prepared->seconds_build = watch.seconds();
   take_velocities(scene, previous, *prepared);
   for (ReadVolume& read : prepared->volumes)

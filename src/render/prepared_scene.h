@@ -38,6 +38,9 @@ public:
   double seconds_read = 0, seconds_build = 0;
 };
 
+/// Adds what preparing the scene took.
+void add_work(RenderStatistics& statistics, const PreparedScene& prepared);
+
 /// Every value that the world of a scene is made from, as text; of moments of a scene that is
 /// prepared also by how much its volumes are moved.
 std::string moved_world_settings(const Scene& moment, const PreparedScene& prepared);

@@ -1,6 +1,7 @@
 #include "render/read_volumes.h"
 
 #include "estimators/plane_layers.h"
+#include "machine/input_file.h"
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
@@ -11,7 +12,6 @@
 #include "volume/refined_grid.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <sstream>
 
@@ -141,15 +141,6 @@ Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previou
 }
 
 } // namespace
-
-/// Tells one state of a file from another.
-std::string file_identity(const std::string& path) {
-  struct stat status {};
-  if (path.empty() || stat(path.c_str(), &status) != 0)
-    return path;
-  return fmt::format("{}|{}|{}|{}.{:09}", path, status.st_ino, status.st_size,
-                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
-}
 
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read) {

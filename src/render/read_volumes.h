@@ -4,9 +4,6 @@
 
 namespace vdbeam {
 
-/// Tells one state of a file from another.
-std::string file_identity(const std::string& path);
-
 /// A volume's density as the scene wants it: read, or taken from `previous`, moved and edited.
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read);

@@ -80,8 +80,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   const World& world = *prepared->world;
   for (const std::string& line : prepared->facts.notes)
     note(line);
-  result.statistics.read = prepared->seconds_read;
-  result.statistics.prepare = prepared->seconds_build;
+  add_work(result.statistics, *prepared);
   const Camera camera(scene.camera, scene.image, world.space);
   const std::vector<VolumeFacts> volumes =
       volume_facts(prepared->facts, world, camera, !scene.moments.empty());

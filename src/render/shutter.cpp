@@ -71,10 +71,8 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
     statistics.pilot += watch.seconds();
-    if (renderer.prepared->world != prepared_->world) {
-      statistics.read += renderer.prepared->seconds_read;
-      statistics.prepare += renderer.prepared->seconds_build;
-    }
+    if (renderer.prepared->world != prepared_->world)
+      add_work(statistics, *renderer.prepared);
   }
   return {*renderer.estimator, renderer.probe.get()};
 }

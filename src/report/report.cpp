@@ -157,7 +157,10 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"importance_rays", statistics.importance_rays},
                       {"pilot_paths", statistics.pilot_paths},
                       {"directions", statistics.directions},
-                      {"maps_reused", statistics.maps_reused}};
+                      {"maps_reused", statistics.maps_reused},
+                      {"meshes_read", statistics.meshes_read},
+                      {"textures_read", statistics.textures_read},
+                      {"trees_built", statistics.trees_built}};
   if (scene.render.clamp) {
     Json& clamp = report["clamp"];
     clamp["limit"] = *scene.render.clamp;

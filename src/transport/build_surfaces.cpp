@@ -1,14 +1,8 @@
 #include "transport/build_surfaces.h"
 
-#include "geometry/mesh_reader.h"
-
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
-
-#include <map>
-#include <set>
-#include <tuple>
 
 namespace vdbeam {
 namespace {
@@ -27,68 +21,20 @@ Parallelepiped thick_box(const Boxd& box) {
           {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
 }
 
-/// The files that some surface shows a picture on.
-std::set<std::string> textured_files(const std::vector<SurfaceSettings>& settings) {
-  std::set<std::string> files;
-  for (const SurfaceSettings& surface : settings)
-    if (!surface.material.texture.empty())
-      files.insert(surface.file);
-  return files;
-}
+} // namespace
 
-/// The textures of the surfaces, each picture read once.
-std::vector<std::shared_ptr<const Texture>>
-read_textures(const std::vector<SurfaceSettings>& settings, const std::vector<WorldShape>& shapes,
-              std::vector<std::string>& notes) {
-  std::map<std::tuple<std::string, TextureWrap, bool>, std::shared_ptr<const Texture>> known;
-  std::vector<std::shared_ptr<const Texture>> textures(settings.size());
+std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
+                                    SurfaceStore& store, std::vector<std::string>& notes) {
+  std::vector<WorldShape> shapes;
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    const MaterialSettings& material = settings[i].material;
-    if (material.texture.empty())
-      continue;
-    if (!shapes[i].shape->has_uvs())
+    const SurfaceStore::KnownShape& known = store.shape(settings[i], notes);
+    if (!settings[i].material.texture.empty() && !known.shape->has_uvs())
       throw InputError(fmt::format("{}: has no texture coordinates (UV), which "
                                    "mesh.{}.material.texture needs: export it with them, or leave "
                                    "out the texture",
                                    settings[i].file, i));
-    auto& texture =
-        known[{material.texture, material.texture_wrap, material.type == MaterialType::emissive}];
-    if (!texture)
-      texture = std::make_shared<const Texture>(read_texture(material, notes));
-    textures[i] = texture;
-  }
-  return textures;
-}
-
-} // namespace
-
-std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
-                                    std::vector<std::string>& notes) {
-  struct Known {
-    std::shared_ptr<const Shape> shape;
-    Vec3d center;
-  };
-  std::map<std::string, Known> files;
-  std::map<SurfaceShape, std::shared_ptr<const Shape>> simple;
-  const std::set<std::string> textured = textured_files(settings);
-  std::vector<WorldShape> shapes;
-  for (const SurfaceSettings& surface : settings) {
-    const Affine placed = Affine::from_matrix(surface.transform);
-    if (surface.shape != SurfaceShape::file) {
-      std::shared_ptr<const Shape>& shape = simple[surface.shape];
-      if (!shape)
-        shape = make_simple_shape(surface.shape);
-      shapes.push_back({shape, placed});
-      continue;
-    }
-    Known& known = files[surface.file];
-    if (!known.shape) {
-      Mesh mesh = read_mesh(surface.file, {}, textured.count(surface.file) > 0);
-      notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
-      known.center = mesh.center;
-      known.shape = make_mesh_shape(std::move(mesh));
-    }
-    shapes.push_back({known.shape, placed.after(moved(known.center))});
+    shapes.push_back(
+        {known.shape, Affine::from_matrix(settings[i].transform).after(moved(known.center))});
   }
   return shapes;
 }
@@ -105,24 +51,27 @@ Boxd world_bounds(const std::vector<WorldShape>& shapes) {
   return bounds;
 }
 
-std::shared_ptr<const Surfaces> build_surfaces(const std::vector<SurfaceSettings>& settings,
-                                               const std::vector<WorldShape>& shapes,
-                                               const RenderSpace& space,
-                                               const OccupiedRegion& medium,
-                                               std::vector<std::string>& notes) {
+std::shared_ptr<const Surfaces>
+build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<WorldShape>& shapes,
+               const RenderSpace& space, const OccupiedRegion& medium,
+               const std::shared_ptr<SurfaceStore>& store, const SurfaceSet* previous,
+               std::vector<std::string>& notes) {
   if (settings.empty())
     return nullptr;
   auto surfaces = std::make_shared<Surfaces>();
-  surfaces->textures = read_textures(settings, shapes, notes);
+  surfaces->store = store;
   std::vector<PlacedShape> placed;
   for (std::size_t i = 0; i < settings.size(); ++i) {
+    const MaterialSettings& material = settings[i].material;
+    surfaces->textures.push_back(material.texture.empty() ? nullptr
+                                                          : store->texture(material, notes));
     placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
                       surfaces->textures[i] != nullptr});
-    surfaces->materials.push_back(make_material(settings[i].material, space.scale));
+    surfaces->materials.push_back(make_material(material, space.scale));
     surfaces->lights.push_back(-1);
   }
   const double reach = static_cast<double>(length(medium.center) + medium.radius);
-  surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach);
+  surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach, previous);
   for (std::size_t i = 0; i < settings.size(); ++i)
     if (surfaces->materials[i]->is_solid())
       surfaces->solids.push_back(surfaces->set->bounds(i));

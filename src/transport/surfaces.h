@@ -3,6 +3,7 @@
 #include "geometry/surface_set.h"
 #include "image/texture.h"
 #include "materials/material.h"
+#include "transport/surface_store.h"
 
 #include <memory>
 #include <vector>
@@ -14,6 +15,7 @@ struct Surfaces {
   std::shared_ptr<const SurfaceSet> set;
   std::vector<std::shared_ptr<const Material>> materials; ///< per surface
   std::vector<std::shared_ptr<const Texture>> textures;   ///< per surface; null: none
+  std::shared_ptr<const SurfaceStore> store; ///< what they were made of, for the next frame
   std::vector<int> lights; ///< per surface: its index among the lights, -1 where it does not shine
 
   const Material& material(const SurfaceHit& hit) const {

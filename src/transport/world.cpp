@@ -196,7 +196,7 @@ void bound_region(World& world, const Boxd& bounds) {
 } // namespace
 
 World build_world(const Scene& scene, std::vector<DensityGrid> grids,
-                  std::vector<EmissionGrid> emissions, WorldFacts* facts) {
+                  std::vector<EmissionGrid> emissions, WorldFacts* facts, const World* previous) {
   World world;
   WorldFacts found;
   std::vector<Affine> maps;
@@ -213,14 +213,17 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
           mapped_bounds(local_to_world(glow.field->origin(), glow.index_to_world, settings),
                         glow.field->occupied()));
   }
-  const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, found.notes);
+  const Surfaces* known = previous ? previous->surfaces.get() : nullptr;
+  const auto store =
+      std::make_shared<SurfaceStore>(scene.surfaces, known ? known->store.get() : nullptr);
+  const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, *store, found.notes);
   world.space = choose_space(bounds.empty() ? world_bounds(shapes) : bounds);
   for (std::size_t i = 0; i < grids.size(); ++i)
     if (!emissions[i].empty()) {
       world.medium.emitters.push_back(make_emitter(emissions[i], scene.volumes[i], world.space));
       world.medium.emitters.back().setting = i;
     }
-  std::vector<PhaseSettings> known;
+  std::vector<PhaseSettings> known_phases;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VolumeSettings& settings = scene.volumes[i];
     if (grids[i].field.empty() || !settings.absorbs_or_scatters())
@@ -229,13 +232,18 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
     add_region(world.region, grids[i].field, map);
     Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, found.notes);
     volume.setting = i;
-    volume.phase_index = phase_index_of(world.medium.phases, known, settings.phase);
+    volume.phase_index = phase_index_of(world.medium.phases, known_phases, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }
   if (world.medium.visible())
     bound_region(world, bounds);
-  world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region, found.notes);
+  world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region, store,
+                                  known ? known->set.get() : nullptr, found.notes);
+  store->close();
+  if (world.surfaces)
+    found.surfaces = {store->meshes_read(), store->textures_read(),
+                      world.surfaces->set->trees_built()};
   // What stands about the medium throws light into it.
   const OccupiedRegion lit =
       world.surfaces ? lit_region(world.region, *world.surfaces->set) : world.region;

@@ -35,14 +35,21 @@ struct WorldFacts {
     std::uint64_t density = 0;  ///< active voxels; 0: the volume is left out as empty
     std::uint64_t emission = 0; ///< active voxels of its emission grids; 0: it does not glow
   };
+  /// What had to be made for the surfaces, since the previous world did not have it.
+  struct SurfaceWork {
+    int meshes_read = 0, textures_read = 0, trees_built = 0;
+  };
   std::vector<Voxels> volumes; ///< one per scene.volumes entry
+  SurfaceWork surfaces;
   std::vector<std::string> notes;
 };
 
 /// Builds the world from the volumes' fields: one grid per scene.volumes entry; of emission as
 /// many, or none at all. Throws InputError for lights that cannot be made. `facts`, unless it is
-/// null, is filled.
+/// null, is filled. Of the `previous` world meshes, textures and Embree's trees are taken as far as
+/// they are the same.
 World build_world(const Scene& scene, std::vector<DensityGrid> grids,
-                  std::vector<EmissionGrid> emissions = {}, WorldFacts* facts = nullptr);
+                  std::vector<EmissionGrid> emissions = {}, WorldFacts* facts = nullptr,
+                  const World* previous = nullptr);
 
 } // namespace vdbeam

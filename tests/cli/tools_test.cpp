@@ -1,7 +1,10 @@
 #include "cli_fixture.h"
+#include "vdbeam/image_file.h"
 #include "volume_factory.h"
 
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace vdbeam {
 namespace {
@@ -42,6 +45,44 @@ TEST_F(InfoCommand, AgreesWithRenderAboutEveryKindOfVolume) {
     EXPECT_NE(info.out.find(why), std::string::npos) << kind.name << "\n" << info.out << why;
   }
   EXPECT_GE(refused, 2); // a background, a frustum
+}
+
+TEST_F(InfoCommand, TellsOfMeshes) {
+  write("uv.obj", "v -1 0 0\nv 1 0 0\nv 1 3 0\nvt 0 0\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\n");
+  write("plain.obj", "v 9 0 0\nv 11 0 0\nv 11 3 4\nv 0 0 nan\nf 1 2 3\nf 1 2 4\n");
+  const auto result = run({"info", "uv.obj", "plain.obj"});
+  ASSERT_EQ(result.code, 0) << result.error;
+  for (const char* text :
+       {"uv.obj\n  triangles     1\n", "bounds        (-1, 0, 0) to (1, 3, 0)",
+        "size          (2, 3, 0)", "UV            yes: u from 0 to 2, v from 0 to 1\n",
+        "bounds        (9, 0, 0) to (11, 3, 4)", "UV            no: a texture cannot be shown",
+        "looks wrong   plain.obj: "})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
+}
+
+TEST_F(InfoCommand, TellsOfPictures) {
+  Image image;
+  image.width = 2;
+  image.height = 1;
+  image.primaries = chromaticities_of(ColorSpace::acescg);
+  image.channels = {{"R", {0.25f, 4}}, {"G", {-1, 0.5f}}, {"B", {HUGE_VALF, 1}}, {"Z", {1, 2}}};
+  for (ImageChannel& channel : image.channels)
+    channel.half = false;
+  write_exr(image, file("a.exr"));
+  const auto exr = run({"info", "a.exr"});
+  ASSERT_EQ(exr.code, 0) << exr.error;
+  for (const char* text :
+       {"size          2 x 1 pixels", "channels      B, G, R, Z\n",
+        "linear, with the primaries of ACEScg", "R             0.25 to 4, mean 2.125",
+        "G             -1 to 0.5, mean -0.25", "B             1 to 1, mean 1",
+        "as albedo     1 value above 1, taken for 1", "looks wrong   1 value below 0",
+        "looks wrong   1 value: infinite"})
+    EXPECT_NE(exr.out.find(text), std::string::npos) << text << "\n" << exr.out;
+  write_png(image, file("a.png"), 0, "srgb");
+  const auto png = run({"info", "a.png"});
+  EXPECT_NE(png.out.find("sRGB, made linear"), std::string::npos) << png.out << png.error;
+  write("bad.png", "no picture");
+  EXPECT_EQ(run({"info", "bad.png"}).code, 2);
 }
 
 TEST_F(InfoCommand, OneBadFileDoesNotHideTheOthers) {

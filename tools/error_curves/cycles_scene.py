@@ -16,6 +16,7 @@ What has to be minded (Blender 3.4):
 """
 
 import json
+import os
 import sys
 import time
 
@@ -160,10 +161,11 @@ def main():
     if job["sky"]:
         add_sky(job["sky"], job["sky_front"], job["settings"]["camera"]["up"], job["sky_visible"])
     set_up_render(job)
-    start = time.monotonic()
+    start, used = time.monotonic(), sum(os.times()[:2])
     bpy.ops.render.render(write_still=True)
     with open(job["result"], "w", encoding="utf-8") as file:
-        json.dump({"seconds": time.monotonic() - start, "version": bpy.app.version_string}, file)
+        json.dump({"seconds": time.monotonic() - start, "processor_seconds": sum(os.times()[:2]) - used,
+                   "version": bpy.app.version_string}, file)
 
 
 main()

@@ -107,14 +107,15 @@ def cycles_job(binary, settings, stem):
             "half_voxels": [half_voxels(binary, volume) for volume in settings.get("volume", [])]}
 
 
-def render_cycles(job, stem, **how):
-    """Renders `stem`.exr; `how`: seconds or samples, threads, seed, step_rate. What Blender tells of it."""
+def render_cycles(job, stem, limit=None, **how):
+    """Renders `stem`.exr; `how`: seconds or samples, threads, seed, step_rate. What Blender tells of it. After `limit`
+    seconds subprocess.TimeoutExpired is raised."""
     job = {"seconds": 0, "samples": 0, **job, **how, "image": str(Path(f"{stem}.exr").resolve()),
            "result": f"{stem}.blender.json"}
     job_file = Path(f"{stem}.job.json")
     job_file.write_text(json.dumps(job), encoding="utf-8")
     result = subprocess.run(["blender", "--background", "--factory-startup", "--python", CYCLES_SCENE, "--",
-                             job_file], capture_output=True, text=True, check=False)
+                             job_file], capture_output=True, text=True, check=False, timeout=limit)
     if not Path(job["result"]).exists():
         lines = (result.stdout + result.stderr).splitlines()
         errors_told = [line for line in lines if "Error:" in line] or lines or ["no message"]

@@ -1,0 +1,81 @@
+#include "transport/surface_store.h"
+
+#include "geometry/mesh_reader.h"
+#include "machine/input_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace vdbeam {
+namespace {
+
+/// A .gltf file leaves its numbers to others, by the custom of exporters to NAME.bin.
+std::string mesh_identity(const std::string& path) {
+  std::filesystem::path file(path);
+  if (file.extension() != ".gltf")
+    return file_identity(path);
+  file.replace_extension(".bin");
+  return fmt::format("{}|{}", file_identity(path), file_identity(file.string()));
+}
+
+/// What is known under a name, or null.
+template <class Map>
+const typename Map::mapped_type* find(const Map& map, const std::string& name) {
+  const auto found = map.find(name);
+  return found == map.end() ? nullptr : &found->second;
+}
+
+} // namespace
+
+SurfaceStore::SurfaceStore(const std::vector<SurfaceSettings>& settings,
+                           const SurfaceStore* previous)
+    : previous_(previous) {
+  for (const SurfaceSettings& surface : settings)
+    textured_[surface.file] = textured_[surface.file] || !surface.material.texture.empty();
+}
+
+const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surface,
+                                                    std::vector<std::string>& notes) {
+  const bool from_file = surface.shape == SurfaceShape::file, uvs = textured_[surface.file];
+  const std::string name = from_file
+                               ? fmt::format("{}|{}", mesh_identity(surface.file), uvs ? "uv" : "")
+                               : fmt::format("{}", static_cast<int>(surface.shape));
+  if (const KnownShape* known = find(shapes_, name))
+    return *known;
+  KnownShape made;
+  if (const KnownShape* known = previous_ ? find(previous_->shapes_, name) : nullptr) {
+    made = *known;
+  } else if (from_file) {
+    Mesh mesh = read_mesh(surface.file, {}, uvs);
+    ++meshes_read_;
+    made.center = mesh.center;
+    made.notes = std::move(mesh.notes);
+    made.shape = make_mesh_shape(std::move(mesh));
+  } else {
+    made.shape = make_simple_shape(surface.shape);
+  }
+  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
+  return shapes_[name] = std::move(made);
+}
+
+std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material,
+                                                     std::vector<std::string>& notes) {
+  const std::string name = fmt::format(
+      "{}|{}|{}|{}", file_identity(material.texture), static_cast<int>(material.texture_wrap),
+      static_cast<int>(material.color_space), material.type == MaterialType::emissive);
+  if (const KnownTexture* known = find(textures_, name))
+    return known->texture;
+  KnownTexture made;
+  if (const KnownTexture* known = previous_ ? find(previous_->textures_, name) : nullptr) {
+    made = *known;
+  } else {
+    made.texture = std::make_shared<const Texture>(read_texture(material, made.notes));
+    ++textures_read_;
+  }
+  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
+  textures_[name] = made;
+  return made.texture;
+}
+
+} // namespace vdbeam
