@@ -141,7 +141,7 @@ protected:
   static MemoryScene furnace() {
     MemoryScene scene;
     scene.add_box(Vec3d(-1), Vec3d(1)).extinction = 1;
-    scene.scene.render.photons = 20000;
+    scene.scene.render.photons = 4000;
     scene.add_light(LightType::environment).radiance = Rgb(1);
     scene.look({0, 0.3, 4}, {0, 0, 0}, 30, 8, 8);
     return scene;
@@ -154,7 +154,7 @@ TEST_P(PhotonStability, indices_of_a_half_and_four) {
     MaterialSettings material = glass();
     material.ior = ior;
     add_surface(scene, SurfaceShape::sphere, scaled(0.5), material);
-    expect_mean(render_passes(scene, GetParam(), 24).total[0], 1, 0.02);
+    expect_mean(render_passes(scene, GetParam(), 12).total[0], 1, 0.02);
   }
 }
 
@@ -163,13 +163,13 @@ TEST_P(PhotonStability, camera_inside_glass_in_fog) {
   MemoryScene scene = furnace();
   add_surface(scene, SurfaceShape::sphere, scaled(0.5), glass());
   scene.look({0, 0, 0}, {0, 0, -1}, 60, 8, 8);
-  expect_mean(render_passes(scene, GetParam(), 24).total[0], 2.25, 0.05);
+  expect_mean(render_passes(scene, GetParam(), 12).total[0], 2.25, 0.05);
 }
 
 TEST_P(PhotonStability, a_medium_half_inside_glass) {
   MemoryScene scene = furnace();
   add_surface(scene, SurfaceShape::sphere, moved(scaled(0.7), {1, 0, 0}), glass());
-  expect_mean(render_passes(scene, GetParam(), 24).total[0], 1, 0.02);
+  expect_mean(render_passes(scene, GetParam(), 12).total[0], 1, 0.02);
 }
 
 /// A room without an end to photons' paths: fog in it takes all light in, and without fog they end
@@ -179,12 +179,12 @@ TEST_P(PhotonStability, a_closed_room_of_mirrors) {
   VolumeSettings& fog = scene.add_box(Vec3d(-1), Vec3d(1));
   fog.extinction = 1;
   fog.albedo = Rgb(0.5f);
-  scene.scene.render.photons = 20000;
+  scene.scene.render.photons = 4000;
   add_surface(scene, SurfaceShape::sphere, scaled(0.5), of_type(MaterialType::mirror));
   add_surface(scene, SurfaceShape::sphere, moved(scaled(0.1), {0, 0.2, 0}), shining(1));
   scene.look({0.3, 0.1, 0}, {0, 0, -0.2}, 60, 8, 8);
-  const PassMeans path = render_passes(scene, EstimatorType::path, 256);
-  const PassMeans mine = render_passes(scene, GetParam(), 48);
+  const PassMeans path = render_passes(scene, EstimatorType::path, 64);
+  const PassMeans mine = render_passes(scene, GetParam(), 24);
   EXPECT_GT(path.total[0].mean(), 0.1);
   EXPECT_EQ(test::regions_apart(mine, path, 0.05), 0)
       << mine.total[0].mean() << " against " << path.total[0].mean();
