@@ -69,9 +69,9 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
     return std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
   };
   plan.stored_per_path = wanted_per_path();
-  CellTables importance =
-      view_importance(input.world, input.camera, typical_radius(input, plan, pilot.photons),
-                      least_importance, plan.importance_rays);
+  plan.view_reach = typical_radius(input, plan, pilot.photons);
+  CellTables importance = view_importance(input.world, input.camera, plan.view_reach,
+                                          least_importance, plan.importance_rays);
   if (input.settings.store == PhotonStore::fluence)
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
@@ -85,6 +85,33 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
   plan.store_probability_by_cell =
       std::make_shared<const CellTables>(std::move(thinning.store_probability));
   plan.stored_per_path = thinning.stored_per_path;
+  plan.view_factor = thinning.factor;
+}
+
+/// Whether the moment's photons can follow the plan of the scene: they have the same lights, and
+/// lengths of the same unit.
+bool may_follow(const EstimatorInput& input, const ScenePhotons& scene) {
+  return scene.space.scale == input.world.space.scale &&
+         (!scene.plan.guide || scene.plan.guide->light_shares.size() == input.world.lights.size());
+}
+
+/// The plan of the scene itself, put where the moment's render space has it. What is stored follows
+/// the moment's own cells.
+PhotonPlan follow_scene(const EstimatorInput& input, const ScenePhotons& scene) {
+  PhotonPlan plan = scene.plan;
+  plan.pilot_paths = plan.importance_rays = 0;
+  if (plan.guide) {
+    const Vec3d by = (scene.space.origin - input.world.space.origin) * scene.space.scale;
+    auto guide = std::make_shared<PathGuide>(*plan.guide);
+    guide->blocks.move(Vec3f(by));
+    plan.guide = std::move(guide);
+  }
+  if (plan.store_probability_by_cell)
+    plan.store_probability_by_cell = std::make_shared<const CellTables>(
+        store_by_view(view_importance(input.world, input.camera, plan.view_reach, least_importance,
+                                      plan.importance_rays),
+                      plan.view_factor));
+  return plan;
 }
 
 /// Chooses the neighbours at which pictures of narrow and wide kernels tell that the error is
@@ -124,6 +151,8 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
 } // namespace
 
 PhotonPlan plan_beam_photons(const EstimatorInput& input) {
+  if (input.of_scene && may_follow(input, *input.of_scene))
+    return follow_scene(input, *input.of_scene);
   PhotonPlan plan = default_photon_plan(input);
   if (!input.plan.needs(Stage::photons))
     return plan_photons(input);

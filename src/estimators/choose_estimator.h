@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/estimator.h"
+#include "estimators/beam.h"
 
 #include <string>
 
@@ -9,8 +9,8 @@ namespace vdbeam {
 /// What `estimator = "auto"` stands for in a scene.
 struct EstimatorChoice {
   EstimatorType type = EstimatorType::beam;
-  std::string reason;              ///< one clause
-  std::unique_ptr<Estimator> beam; ///< ready to render, where it was chosen
+  std::string reason;                  ///< one clause
+  std::unique_ptr<BeamEstimator> beam; ///< ready to render, where it was chosen
 };
 
 /// Of `beam` and `path` the one whose picture has the smaller error for the same work, as far as a

@@ -13,6 +13,7 @@
 namespace vdbeam {
 
 class PhotonCache;
+struct ScenePhotons;
 
 /// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
 /// number), whatever the threads.
@@ -43,16 +44,19 @@ struct EstimatorInput {
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
+  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows; null: it
+  /// makes one of its own.
+  const ScenePhotons* of_scene = nullptr;
 
   /// The same in another world, which must outlive the result too.
   EstimatorInput in(const World& other) const {
-    return {other, camera,  settings,    plan, frame,   window,
-            stop,  photons, blur_pixels, deep, objects, layers};
+    return {other,   camera,      settings, plan,    frame,  window,  stop,
+            photons, blur_pixels, deep,     objects, layers, of_scene};
   }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera,  settings,    other, frame,   window,
-            stop,  photons, blur_pixels, deep,  objects, layers};
+    return {world,   camera,      settings, other,   frame,  window,  stop,
+            photons, blur_pixels, deep,     objects, layers, of_scene};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a

@@ -33,11 +33,20 @@ struct PhotonPlan {
   double stored_per_path = 0;     ///< expected photons of a light path
   double neighbours = 0;          ///< photons in the sphere of an adaptive kernel's radius
   double collisions_per_path = 0; ///< of light paths as they are sent in the end
+  /// Where probabilities are given by cell: they are min(1, view_factor times view_importance with
+  /// the fall-off `view_reach` [render units]).
+  float view_reach = 0, view_factor = 0;
   /// What tried kernels told; null: none were tried.
   std::shared_ptr<const KernelTrialResult> trial;
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
+};
+
+/// The photons of a scene whose moments are other worlds, and where these are.
+struct ScenePhotons {
+  const PhotonPlan& plan;
+  const RenderSpace& space; ///< in which the plan is given
 };
 
 /// A plan that does not depend on what is seen of single photons: stored with one probability

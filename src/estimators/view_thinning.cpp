@@ -39,11 +39,16 @@ ViewThinning thin_by_view(const World& world, CellTables importance, const Photo
     (mean_share(values, middle) * per_path < wanted_per_path ? low : high) = middle;
   }
   thinning.stored_per_path = mean_share(values, high) * per_path;
-  thinning.store_probability = std::move(importance);
-  for (std::vector<float>& table : thinning.store_probability)
-    for (float& value : table)
-      value = std::min(1.0f, value * static_cast<float>(high));
+  thinning.factor = static_cast<float>(high);
+  thinning.store_probability = store_by_view(std::move(importance), thinning.factor);
   return thinning;
+}
+
+CellTables store_by_view(CellTables importance, float factor) {
+  for (std::vector<float>& table : importance)
+    for (float& value : table)
+      value = std::min(1.0f, value * factor);
+  return importance;
 }
 
 } // namespace vdbeam

@@ -9,6 +9,7 @@ namespace vdbeam {
 /// leaves.
 struct ViewThinning {
   CellTables store_probability;
+  float factor = 0; ///< of the importance, whose probability it is up to 1
   double stored_per_path = 0;
 };
 
@@ -22,5 +23,8 @@ std::vector<float> view_importance_at(const World& world, const CellTables& impo
 /// is stored with probability q weighs 1 / q.
 ViewThinning thin_by_view(const World& world, CellTables importance, const PhotonList& pilot,
                           double per_path, double wanted_per_path);
+
+/// The probabilities that belong to this importance and factor.
+CellTables store_by_view(CellTables importance, float factor);
 
 } // namespace vdbeam

@@ -140,8 +140,12 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     result.plan.choice = choice.reason;
     if (choice.type == EstimatorType::path)
       note(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
-    if (scene.moments.empty() && light_group_names(scene).empty())
-      shutter.take(std::move(choice.beam));
+    if (choice.beam && light_group_names(scene).empty()) {
+      if (scene.moments.empty())
+        shutter.take(std::move(choice.beam));
+      else
+        shutter.follow(choice.beam->photons().plan());
+    }
   }
   for (const std::string& line : limit_notes(scene, input))
     note(line);

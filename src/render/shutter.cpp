@@ -2,10 +2,10 @@
 
 #include "estimators/beam_plan.h"
 #include "estimators/light_groups.h"
-#include "estimators/photon_pass.h"
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/prepared_scene.h"
+#include "transport/similar_medium.h"
 
 #include <algorithm>
 #include <bit>
@@ -38,7 +38,8 @@ Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const
     : prepared(prepared_),
       camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
                              from.frame,       from.window, from.stop,     prepared->photons.get(),
-                             from.blur_pixels, from.deep,   from.objects,  from.layers},
+                             from.blur_pixels, from.deep,   from.objects,  from.layers,
+                             from.of_scene},
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
@@ -58,8 +59,6 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   const Scene& moment =
       still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
   MomentRenderer& renderer = renderer_of(moment);
-  if (!still)
-    renderer.camera = Camera(moment.camera, scene_.image, renderer.prepared->world->space);
   renderer.last_pass = pass;
   if (!renderer.estimator) {
     const Stopwatch watch;
@@ -74,26 +73,28 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
     if (renderer.prepared->world != prepared_->world)
       add_work(statistics, *renderer.prepared);
   }
+  // Estimators were made with the scene's own camera: what they plan must not depend on which pass
+  // comes first.
+  if (!still)
+    renderer.camera = Camera(moment.camera, scene_.image, renderer.prepared->world->space);
   return {*renderer.estimator, renderer.probe.get()};
 }
 
-/// The kernels depend on the scene alone, never on which moment came first.
-const EstimatorInput& Shutter::moved_input() {
-  if (moved_input_)
-    return *moved_input_;
-  moved_settings_ = input_.settings;
-  moved_plan_ = input_.plan;
-  if (input_.plan.needs(Stage::kernel_pilot) && light_group_names(scene_).empty()) {
-    const PhotonPass pilot(input_, plan_beam_photons, KernelDomain::disc);
-    moved_settings_.neighbours = static_cast<int>(std::lround(pilot.plan().neighbours));
-    for (PlanStage& stage : moved_plan_.stages)
-      if (stage.stage == Stage::kernel_pilot)
-        stage.needed = false;
+/// The plan depends on the scene alone, never on which moment came first.
+const EstimatorInput& Shutter::moment_input() {
+  if (moment_input_)
+    return *moment_input_;
+  moment_input_.emplace(input_);
+  // Only `beam` looks where photons are seen.
+  if (input_.plan.needs(Stage::photon_importance) && light_group_names(scene_).empty()) {
+    if (!scene_plan_) {
+      PassWorlds worlds(input_.world, default_photon_plan(input_).similar);
+      scene_plan_ = plan_beam_photons(input_.in(worlds.of(0)));
+    }
+    scene_photons_.emplace(ScenePhotons{*scene_plan_, input_.world.space});
+    moment_input_->of_scene = &*scene_photons_;
   }
-  moved_input_.emplace(EstimatorInput{
-      input_.world, input_.camera, moved_settings_, moved_plan_, input_.frame, input_.window,
-      input_.stop, input_.photons, input_.blur_pixels, input_.deep, input_.objects, input_.layers});
-  return *moved_input_;
+  return *moment_input_;
 }
 
 Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
@@ -103,8 +104,8 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
     const PreparedScenePtr prepared =
         &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
     renderer = std::make_unique<MomentRenderer>(
-        prepared, Camera(moment.camera, scene_.image, prepared->world->space),
-        prepared->world == prepared_->world ? input_ : moved_input(), path_plan_);
+        prepared, Camera(scene_.camera, scene_.image, prepared->world->space),
+        &moment == &scene_ ? input_ : moment_input(), path_plan_);
     if (input_.layers) {
       renderer->layers.emplace(input_.layers->at(moment));
       renderer->input.layers = &*renderer->layers;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/photon_plan.h"
 #include "render/bias_probe.h"
 #include "vdbeam/render.h"
 
@@ -14,8 +15,8 @@ namespace vdbeam {
 /// scene in an order that spreads any number of passes over the shutter (van der Corput's
 /// sequence, shifted by the seed), a pure function of the pass' number. Where the camera alone
 /// moves all passes share one world; else worlds are built when they are first needed, and kept as
-/// far as memory goes. The kernels that the scene's own moment asks for serve all of them: to try
-/// some at each would take longer than a pass.
+/// far as memory goes. What `beam` plans about its photons at the scene's own moment serves all of
+/// them: to find it out at each would take longer than a pass.
 class Shutter {
 public:
   /// What renders a pass, until the next call of `at`.
@@ -31,6 +32,8 @@ public:
 
   /// Has the estimator of a still scene without light groups that was made already.
   void take(std::unique_ptr<Estimator> ready) { ready_ = std::move(ready); }
+  /// Has the plan of the scene's own photons that was made already.
+  void follow(const PhotonPlan& plan) { scene_plan_ = plan; }
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -53,17 +56,16 @@ private:
   };
 
   MomentRenderer& renderer_of(const Scene& moment);
-  const EstimatorInput& moved_input();
+  const EstimatorInput& moment_input();
   void make_room();
 
   const Scene& scene_;
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
-  /// Settings, plan and input of the moments whose worlds are others than the scene's own.
-  RenderSettings moved_settings_;
-  RenderPlan moved_plan_;
-  std::optional<EstimatorInput> moved_input_;
+  std::optional<PhotonPlan> scene_plan_;
+  std::optional<ScenePhotons> scene_photons_;
+  std::optional<EstimatorInput> moment_input_; ///< whose photons follow those of the scene
   const std::vector<std::size_t>& probe_pixels_;
   std::unique_ptr<Estimator> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>

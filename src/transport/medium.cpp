@@ -12,7 +12,8 @@ bool Medium::isotropic() const {
 std::size_t Medium::bytes() const {
   std::size_t sum = 0;
   for (const Volume& volume : volumes)
-    sum += volume.field.bytes() + volume.majorants.bytes();
+    sum += volume.field.bytes() + volume.majorants.bytes() +
+           (volume.color ? volume.color->bytes() : 0);
   for (const Emitter& emitter : emitters)
     sum += emitter.field->bytes();
   return sum;

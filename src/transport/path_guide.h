@@ -25,6 +25,9 @@ public:
   /// The point at `within`, in [0, 1]^3, of the block (x, y, z).
   Vec3f point(const Vec3<int>& block, const Vec3f& within) const;
 
+  /// Moves the lattice [render units].
+  void move(const Vec3f& by) { lower_ += by; }
+
   bool operator==(const MediumBlocks&) const = default;
 
 private:

@@ -178,6 +178,26 @@ TEST_F(ShutterTest, PartsMergeToTheWhole) {
   expect_same(merge_partials({first.partial, rest.partial}), whole);
 }
 
+/// The same where the camera moves fast: what is planned about photons depends on no pass.
+TEST_F(ShutterTest, PartsOfAMovingCameraMergeToTheWhole) {
+  for (const char* velocity : {"auto", "none"}) {
+    const Scene scene = load({"render.estimator=beam", "render.passes=6", "render.thinning=view",
+                              std::string("volume.0.velocity=") + velocity},
+                             "shutter_close = 1\n"
+                             "look_at = { keys = [[1, [0, 0, 0]], [2, [6, 0, 0]]] }\n");
+    ASSERT_FALSE(scene.moments.empty());
+    const Image whole = render(scene).image;
+    FrameSettings first, rest;
+    first.pass_range = PassRange{0, 2};
+    first.partial = folder_.file("a.exr");
+    rest.pass_range = PassRange{3, 5};
+    rest.partial = folder_.file("b.exr");
+    render(scene, rest);
+    render(scene, first);
+    expect_same(merge_partials({first.partial, rest.partial}), whole);
+  }
+}
+
 TEST_F(ShutterTest, TheHashKnowsWhatMoves) {
   const std::string a = scene_hash(load({"camera.shutter_close=0.5"}));
   const std::string keys = "shutter_close = 0.5\n";
