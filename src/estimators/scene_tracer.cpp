@@ -1,5 +1,6 @@
 #include "estimators/scene_tracer.h"
 
+#include "materials/throws_light.h"
 #include "transport/emission.h"
 #include "transport/optical_depth.h"
 
@@ -23,11 +24,12 @@ struct SceneTracer::Path {
   float pdf = 0;              ///< with which the direction was drawn; 0: nothing else draws it
   bool skips_sampled = false; ///< light straight from lights with shadow rays counts elsewhere
   bool all_light = true;      ///< else such light counts on surfaces that it reaches straight only
-  bool from_surface = false;  ///< the present flight begins at one that is no mirror and no glass
+  bool from_surface = false;  ///< the present flight begins at one whose straight light counts
   int scatterings = 0;        ///< in the medium
   ScatteredLight light;       ///< so far; from a surface all is in `direct`
   LengthRoulette length;
   SurfaceRoulette surfaces;
+  bool begins = false;  ///< it is at its first vertex, a surface
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
 
   Ray ray() const { return {Vec3f(origin), direction}; }
@@ -39,7 +41,7 @@ struct SceneTracer::Path {
 Rgb SceneTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                               bool all_light) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
-  Path path{rng, Rgb(1), {}, direction, 0, false, all_light, false, 0, {}, {}, {}, 1};
+  Path path{rng, Rgb(1), {}, direction, 0, false, all_light, false, 0, {}, {}, {}, true, 1};
   path.add(vertex.emitted());
   path.throughput *= vertex.absorbed();
   if (bounce(path, vertex))
@@ -52,8 +54,8 @@ ScatteredLight SceneTracer::from_medium(const Ray& ray, const Rgb& throughput,
   const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
   const Vec3f direction = phase.sample(ray.direction, u_lobe, u, v);
   const float pdf = phase.evaluate(dot(ray.direction, direction));
-  Path path{rng, throughput, Vec3d(ray.origin), direction, pdf, true, true, false, 1, {}, {},
-            {},  1};
+  Path path{rng,   throughput, Vec3d(ray.origin), direction, pdf, true, true, false, 1, {}, {}, {},
+            false, 1};
   follow(path);
   return path.light;
 }
@@ -144,7 +146,10 @@ bool SceneTracer::bounce(Path& path, const SurfaceVertex& vertex) const {
   const Material& material = vertex.material();
   if (material.is_black())
     return false;
-  if (!material.is_specular())
+  const bool counts_straight =
+      !material.is_specular() && (path.all_light || path.begins || !throws_light(material));
+  path.begins = false;
+  if (counts_straight)
     path.add(lights_at_surface(vertex, path.rng) * path.throughput);
   const MaterialSample next = vertex.sample(Carried::radiance, path.rng);
   path.throughput *= next.weight;
@@ -156,7 +161,7 @@ bool SceneTracer::bounce(Path& path, const SurfaceVertex& vertex) const {
   path.origin = vertex.hit().leave(next.wi);
   path.direction = next.wi;
   path.skips_sampled = false;
-  path.from_surface = !material.is_specular();
+  path.from_surface = counts_straight;
   return true;
 }
 

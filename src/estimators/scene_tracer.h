@@ -26,8 +26,8 @@ public:
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces) {}
 
   /// Radiance that leaves a surface against `direction`, along which a camera ray meets it.
-  /// `all_light`: or without what reaches its last diffuse or rough surface from a light with
-  /// shadow rays by way of mirrors, smooth glass or the medium, which photons on the surface bring.
+  /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
+  /// the medium, and they on to other surfaces, to which photons bring it.
   Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                    bool all_light = true) const;
 

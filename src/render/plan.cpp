@@ -108,10 +108,10 @@ private:
     add(Stage::surface_photons, needs_.surface_photons,
         first_reason(
             {{needs_.surface_photons,
-              "mirrors, glass and the medium send light on to surfaces: photons bring it"},
+              "mirrors, metal, glass and the medium send light on to surfaces: photons bring it"},
              {!runs(Stage::surface_photons),
               fmt::format("the {} estimator shoots no photons", estimator_.name)},
-             {true, "paths find what mirrors, glass and the medium send on to surfaces"}}));
+             {true, "paths find what the medium sends on to surfaces"}}));
   }
 
   void add_map() {

@@ -54,14 +54,17 @@ void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator,
                   !is_grey(material.reflectance) || !is_grey(material.absorption) ||
                   !is_grey(material.radiance);
   needs.specular = needs.specular || is_specular(material);
+  needs.throws_light = needs.throws_light || material.type == MaterialType::mirror ||
+                       material.type == MaterialType::conductor ||
+                       material.type == MaterialType::dielectric;
   needs.receiver = needs.receiver || takes_photons(material);
   if (shines(material))
     needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||
                                       direct != DirectLight::photons);
 }
 
-/// Light comes to surfaces in ways that paths from there find rarely: by mirrors and glass, or by a
-/// medium that a lamp stands in or near to. From a constant sky paths find all.
+/// Light comes to surfaces in ways that paths from there find rarely: by mirrors, metal and glass,
+/// or by a medium that a lamp stands in or near to. From a constant sky paths find all.
 bool bring_light(const Scene& scene, const PlanNeeds& needs) {
   bool lamps = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                            [](const SurfaceSettings& s) { return shines(s.material); });
@@ -70,7 +73,7 @@ bool bring_light(const Scene& scene, const PlanNeeds& needs) {
     lamps = lamps || light.type == LightType::point || light.type == LightType::spot;
     sampled = sampled || light_kind(light.type).wants_shadow_rays(light);
   }
-  return (needs.specular && sampled) || (needs.scatters && lamps);
+  return (needs.throws_light && sampled) || (needs.scatters && lamps);
 }
 
 } // namespace

@@ -17,6 +17,7 @@ struct PlanNeeds {
   bool anisotropic = false;     ///< some phase function depends on the direction
   bool chromatic = false;       ///< extinction differs between channels
   bool colored = false;         ///< some colour is no grey
+  bool throws_light = false;    ///< some surface is a mirror, or of metal or glass
   bool specular = false;        ///< some surface is a mirror, or of smooth glass
   bool receiver = false;        ///< some surface is neither, and reflects light
   bool surrounded = false;      ///< some light is met by rays that leave the scene

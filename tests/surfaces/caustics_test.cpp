@@ -96,6 +96,46 @@ TEST_P(Caustics, a_mirror_doubles_a_lamp) {
   expect_mean(means.total[0], expected, 0.01 * expected);
 }
 
+/// The same with rough metal, in which path tracing finds the lamp: region by region the same.
+TEST_P(Caustics, rough_metal_beside_a_floor) {
+  MemoryScene scene = floor_from_above();
+  MaterialSettings metal = of_type(MaterialType::conductor);
+  metal.roughness = 0.5;
+  SurfaceSettings& wall = add_surface(scene, SurfaceShape::quad, scaled(1), metal);
+  wall.transform = {0, 0, 1, -0.5, 1, 0, 0, 0, 0, 1, 0, 1.001};
+  add_point_light(scene, {0.3, 0, 1});
+  const PassMeans path = render_passes(scene, EstimatorType::path, 256);
+  const PassMeans mine = render_passes(scene, GetParam(), 32);
+  EXPECT_GT(path.total[0].mean(), 1.02 * lit_floor({0.3, 0, 1})) << "nothing comes from the metal";
+  EXPECT_EQ(test::regions_apart(mine, path, 0.01), 0)
+      << mine.total[0].mean() << " against " << path.total[0].mean();
+}
+
+/// By how much the pixels' values differ from pass to pass, relative to the mean of the picture.
+double spread(const PassMeans& means, int passes) {
+  double square = 0;
+  for (const test::Samples& pixel : means.brightness)
+    square += pixel.error() * pixel.error() * passes;
+  return std::sqrt(square / static_cast<double>(means.brightness.size())) / means.total[0].mean();
+}
+
+/// Paths that find the sun in a ball of metal by chance are bright; photons have no such pixels.
+TEST_P(Caustics, a_ball_of_metal_in_the_sun_makes_no_fireflies) {
+  MemoryScene scene = floor_from_above();
+  scene.look({0, -1.5, 1.2}, {0, 0, 0}, 40, 16, 16);
+  MaterialSettings metal = of_type(MaterialType::conductor);
+  metal.roughness = 0.25;
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.3), {0, 0, 0.32}), metal).visible = false;
+  LightSettings& sun = scene.add_light(LightType::distant);
+  sun.direction = {-0.4, 0.3, -0.85};
+  sun.angular_radius = 0.27;
+  const PassMeans mine = render_passes(scene, GetParam(), 32);
+  const PassMeans path = render_passes(scene, EstimatorType::path, 512);
+  EXPECT_LT(spread(mine, 32), 0.2 * spread(path, 512));
+  EXPECT_EQ(test::regions_apart(mine, path, 0.02), 0)
+      << mine.total[0].mean() << " against " << path.total[0].mean();
+}
+
 /// A lamp so wide that path tracing meets it through a ball of glass: region by region the same.
 TEST_P(Caustics, under_a_ball_of_glass) {
   MemoryScene scene = floor_from_above();
