@@ -48,8 +48,9 @@ TEST(ColorGrid, AConstantColorIsAnAlbedo) {
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       for (int c = 0; c < 3; ++c)
         difference += std::abs(static_cast<double>(a.pixels[i][c] - b.pixels[i][c]));
-    if (type == EstimatorType::path)
+    if (type == EstimatorType::path) {
       EXPECT_EQ(difference, 0);
+    }
     for (std::size_t c = 0; c < 3; ++c) {
       test::expect_same_mean(a.total[c], b.total[c], 0.003 * a.total[c].mean());
       EXPECT_LT(b.total[c].error(), 0.01 * b.total[c].mean()); // or it would prove little
