@@ -14,6 +14,8 @@ LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
 CODE = {".h", ".cpp", ".py", ".sh", ".cmake"}
 
+# The one header that has Embree's types; only source files of its folder include it.
+EMBREE_HEADER = "geometry/shape_tree.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # No library's type belongs in the public headers.
 FOREIGN = re.compile(r"\b(openvdb|nanovdb|embree|rtc[A-Z]\w*|tbb|Imath|Imf|toml|nlohmann|hwy|CLI)\b")
@@ -44,7 +46,10 @@ def check_include(path, quote, name):
         return f"OpenVDB headers belong in src/volume/*.cpp, got {name}"
     if parts[1] != "image" and re.match(r"(OpenEXR/|Imath/)?(Imf|OpenEXR|Imath|half\.h)", name):
         return f"OpenEXR and Imath headers belong in src/image, got {name}"
-    if re.match(r"(embree3|assimp)/", name) and not (parts[1] == "geometry" and path.suffix == ".cpp"):
+    if name == EMBREE_HEADER and not (parts[1] == "geometry" and path.suffix == ".cpp"):
+        return f"{name} brings Embree with it and belongs in src/geometry/*.cpp"
+    if re.match(r"(embree3|assimp)/", name) and not (
+            parts[1] == "geometry" and (path.suffix == ".cpp" or path.as_posix().endswith(EMBREE_HEADER))):
         return f"Embree and assimp headers belong in src/geometry/*.cpp, got {name}"
     if quote == "<" or name.startswith("vdbeam/"):
         return None
