@@ -1,6 +1,7 @@
 #include "film/error_estimate.h"
 #include "film/history_means.h"
 #include "film/pair_weights.h"
+#include "film/regional_bias.h"
 
 #include <tbb/parallel_for.h>
 
@@ -103,7 +104,7 @@ std::pair<double, double> common_square(const std::vector<Batch>& batches,
 BiasStatistics bias_statistics(const PassHistory& history) {
   const std::size_t count = history.batches();
   if (count < fewest_batches)
-    return {unknown, unknown, unknown, unknown, unknown, unknown};
+    return {unknown, unknown, unknown, unknown, unknown, unknown, unknown, unknown};
   std::vector<ProbeDifferences> probes(count);
   std::vector<Differences> kernels(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
@@ -122,7 +123,12 @@ BiasStatistics bias_statistics(const PassHistory& history) {
   });
   const auto [mrse, mrse_error] = common_square(probes, pair_weight);
   const auto [blur, blur_error] = common_square(kernels, pair_weight);
-  return {mrse, mrse_error, bias, bias_error, blur, blur_error};
+  const RegionalBias of_probes(history, {probes.begin(), probes.end()}),
+      of_kernels(history, kernels);
+  const auto [hidden, hidden_error] = jackknife(count, [&](std::size_t left_out) {
+    return of_probes.without(left_out) - of_kernels.without(left_out);
+  });
+  return {mrse, mrse_error, bias, bias_error, blur, blur_error, hidden, hidden_error};
 }
 
 } // namespace vdbeam

@@ -22,8 +22,9 @@ constexpr double least_spread = 0.03;
 /// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 /// The positive part of a noisy square is too large on average. It is shrunk by this many times its
-/// squared error over itself, between none and the 1 of James and Stein.
-constexpr double blur_shrinkage = 0.75;
+/// squared error over itself, between none and the 1 of James and Stein. What only path-traced rays
+/// tell counts where it stands out.
+constexpr double blur_shrinkage = 0.75, probe_shrinkage = 2;
 constexpr std::size_t batches_of_interval = 4;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
@@ -164,25 +165,30 @@ struct SquaredBias {
   double value = 0, error = 0;
 };
 
+double positive_part(double square, double error, double shrinkage) {
+  return square > 0 ? std::max(0.0, square - shrinkage * error * error / square) : 0;
+}
+
 /// What the widths of kernels and the probes tell together, each weighted by how well it knows.
-/// Where only probes are, small values are noise more likely than bias: halfway between the
-/// positive part, which comes out too large where there is no bias, and that of James and Stein,
-/// which comes out too small where there is some.
+/// Where only probes are, small values are noise more likely than bias.
 SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
   const bool probed = std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error);
   if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
-    const double square = bias.mrse_error * bias.mrse_error;
-    const bool stands_out = probed && bias.mrse > 0 && bias.mrse * bias.mrse > 2 * square;
-    return {stands_out ? bias.mrse - 2 * square / bias.mrse : 0, probed ? bias.mrse_error : 0};
+    if (!probed)
+      return {};
+    return {positive_part(bias.mrse, bias.mrse_error, probe_shrinkage), bias.mrse_error};
   }
-  const double blur = bias.blur > 0 ? std::max(0.0, bias.blur - blur_shrinkage * bias.blur_error *
-                                                                    bias.blur_error / bias.blur)
-                                    : 0;
-  const double error = std::hypot(bias.blur_error, blur_uncertainty * blur, unseen_bias * noise);
+  const double blur = positive_part(bias.blur, bias.blur_error, blur_shrinkage);
+  double value = blur;
+  double error = std::hypot(bias.blur_error, blur_uncertainty * blur, unseen_bias * noise);
+  if (std::isfinite(bias.hidden) && std::isfinite(bias.hidden_error)) {
+    value += positive_part(bias.hidden, bias.hidden_error, probe_shrinkage);
+    error = std::hypot(error, bias.hidden_error);
+  }
   if (!probed || !(error > 0) || !(bias.mrse_error > 0))
-    return {blur, error};
+    return {value, error};
   const double a = 1 / (error * error), b = 1 / (bias.mrse_error * bias.mrse_error);
-  return {std::max(0.0, (a * blur + b * bias.mrse) / (a + b)), 1 / std::sqrt(a + b)};
+  return {std::max(0.0, (a * value + b * bias.mrse) / (a + b)), 1 / std::sqrt(a + b)};
 }
 
 } // namespace

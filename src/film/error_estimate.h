@@ -31,6 +31,9 @@ struct BiasStatistics {
   double bias, bias_error; ///< of the mean brightness, relative to it
   double blur,
       blur_error; ///< what of `mrse` comes from the width of kernels, and its standard error
+  /// What of `mrse` whole regions have in common and the width of kernels does not explain, as the
+  /// forward peak that is taken out; and its standard error.
+  double hidden, hidden_error;
 };
 
 /// Bias of the picture, from its differences to the probes and to narrower kernels.

@@ -177,6 +177,32 @@ TEST(BiasStatistics, FollowsFromNarrowerKernels) {
   EXPECT_LT(estimate.high, estimate.noise + 5 * square);
 }
 
+/// A bias that kernels of any width share is seen where it is that of whole regions, though single
+/// pixels hide it in the noise of few probes.
+TEST(BiasStatistics, SeesABiasOfWholeRegions) {
+  std::mt19937 random(15);
+  std::normal_distribution<float> noise(0, 1), little_noise(0, 0.01f);
+  Film film(width, height);
+  for (int i = 0; i < 80; ++i) {
+    PassImage pass = noisy_pass(8, 0.1, random);
+    std::vector<PixelValue> probes;
+    for (std::size_t k = 0; k < film.probe_pixels().size(); ++k) {
+      const std::size_t pixel = film.probe_pixels()[k];
+      pass.indirect[pixel] += Rgb(0.1f);
+      pass.blur.push_back({pixel, Rgb(little_noise(random))});
+      if ((k + static_cast<std::size_t>(i)) % 40 == 0)
+        probes.push_back({pixel, Rgb(mean + noise(random))});
+    }
+    film.add(pass, probes);
+  }
+  const double square = std::pow(0.1 / 1.11, 2);
+  const ErrorEstimate estimate = film.error_estimate(false);
+  // The standard error of 1,900 probes in four regions is about 0.001.
+  EXPECT_NEAR(estimate.bias_mrse, square, 0.003);
+  EXPECT_LT(estimate.low, estimate.noise + square);
+  EXPECT_GT(estimate.high, estimate.noise + square);
+}
+
 /// Beside bright pixels kernels make dark ones three times as bright: they are nine tenths of the
 /// error, which the blurred picture's own brightness would hide.
 TEST(BiasStatistics, IsRelativeToThePictureWithoutTheBlur) {
