@@ -199,6 +199,12 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   remove_side_files(loaded.frame());
 }
 
+void FrameRenderer::write_preview(const Image& image, int frame) const {
+  if (!options_.files.preview.empty())
+    write_image(image, substitute_frame(options_.files.preview, frame),
+                {options_.exposure, options_.view});
+}
+
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
   const FrameFiles& files = options_.files;
   const Stopwatch watch;
@@ -212,9 +218,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     add_metadata(result.image, loaded, result);
     // The image comes last, for it says that the frame is done; yet no preview is worth an image.
     try {
-      if (!files.preview.empty())
-        write_image(result.image, substitute_frame(files.preview, loaded.frame()),
-                    {options_.exposure, options_.view});
+      write_preview(result.image, loaded.frame());
     } catch (const FrameError& problem) {
       lost_preview = problem;
     }
@@ -228,6 +232,8 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);
     write_image(result.image, side_file(context.output, "snapshot"), {});
+  } else if (options_.early_preview) {
+    write_preview(result.image, loaded.frame()); // the quick look has served its time
   }
   result.statistics.write = watch.seconds();
   if (!files.report.empty())
@@ -258,9 +264,7 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
     write_deep_exr(deep, result.image, side_file(output(loaded.frame()), "deep"));
   }
   write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
-  if (!options_.files.preview.empty())
-    write_image(result.image, substitute_frame(options_.files.preview, loaded.frame()),
-                {options_.exposure, options_.view});
+  write_preview(result.image, loaded.frame());
 }
 
 bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,
@@ -300,10 +304,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
         fmt::format("{}: the image after {}", path, passes_text(so_far.passes.back().pass)));
   };
   if (options_.early_preview && !options_.files.preview.empty())
-    hooks.on_quick_look = [&](RenderResult& look) {
-      write_image(look.image, substitute_frame(options_.files.preview, loaded.frame()),
-                  {options_.exposure});
-    };
+    hooks.on_quick_look = [&](RenderResult& look) { write_preview(look.image, loaded.frame()); };
   RenderResult result = render(scene, loaded.prepared, frame, hooks);
   write_files(loaded, result);
   if (result.stopped_by == "stop") {

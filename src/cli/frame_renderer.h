@@ -75,6 +75,8 @@ private:
   std::string region_text() const;
   std::string why_no_image(const std::string& path, const LoadedFrame& loaded) const;
   std::string why_no_part(const std::string& path, const LoadedFrame& loaded) const;
+  /// Nothing where no preview is asked for.
+  void write_preview(const Image& image, int frame) const;
   void write_files(const LoadedFrame& loaded, RenderResult& result) const;
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 

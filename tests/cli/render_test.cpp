@@ -201,8 +201,9 @@ class Interrupt : public test::CliTest, public ::testing::WithParamInterface<int
 /// A render that would take an hour ends soon after the signal; the passes so far are in a
 /// checkpoint that opens as an image, and nothing bears the image's name.
 TEST_P(Interrupt, WritesTheImageSoFar) {
-  const pid_t child = start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
-                             "render.photons=2000", "-o", "a.exr", "--report", "r.json"});
+  const pid_t child =
+      start({"render", cloud, "--time", "1h", "--resolution", "32x18", "--set",
+             "render.photons=2000", "-o", "a.exr", "--report", "r.json", "--preview", "a.png"});
   wait_for_output(child);
   // Signals before the end of the first pass would leave nothing to write.
   kill(child, SIGUSR1);
@@ -214,8 +215,14 @@ TEST_P(Interrupt, WritesTheImageSoFar) {
   EXPECT_EQ(read_image(file("a.checkpoint.exr")).width, 32);
   const Json report = Json::parse(read("r.json"));
   EXPECT_EQ(report["stopped_by"], "stop");
-  EXPECT_GE(report["passes"].size(), 1u);
+  ASSERT_GE(report["passes"].size(), 1u);
   EXPECT_NE(result.error.find("interrupted"), std::string::npos);
+  // The preview shows them as well, no longer the quick look.
+  const std::string passes = report["passes"].back()["pass"].dump();
+  const auto again = run({"render", cloud, "--resolution", "32x18", "--set", "render.photons=2000",
+                          "--passes", passes, "-o", "b.exr", "--preview", "b.png"});
+  ASSERT_EQ(again.code, 0) << again.error;
+  EXPECT_EQ(read("a.png"), read("b.png"));
 }
 
 /// One pass of these takes hours: it is abandoned. Processor time is compared, not the clock, which
