@@ -151,7 +151,9 @@ void add_camera_keys(KeyTable& table) {
       .add("file", &C::file,
            "a .chan file, matrices or a glTF file with the camera, instead of position and look_at")
       .kind(KeyKind::file);
-  table.add("name", &C::name, R"(glTF: name of the camera or of its node; "": the first)");
+  table.add(
+      "name", &C::name,
+      R"(glTF: name of the node that holds the camera (in Blender, the camera object); "": the first)");
   table.add("file_fps", &C::file_fps, "glTF: frames in a second, of which frame 0 is the first")
       .above(0);
   table.add("file_axes", &C::file_axes, "how the world of the file is turned into this one");
