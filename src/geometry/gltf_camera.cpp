@@ -54,7 +54,8 @@ std::vector<Joint> joints_of(const aiScene& scene, const aiNode* node) {
 template <class Key, class Mix>
 auto value_at(const Key* keys, unsigned count, double ticks, Mix mix) {
   const Key* end = keys + count;
-  const Key* after = std::find_if(keys, end, [&](const Key& key) { return key.mTime >= ticks; });
+  const Key* after = std::lower_bound(keys, end, ticks,
+                                      [](const Key& key, double time) { return key.mTime < time; });
   if (after == end)
     return keys[count - 1].mValue;
   if (after == keys)

@@ -1,7 +1,9 @@
 """Parts of the machine that a test may do without, and that CI may not."""
 import os
 import sys
+from pathlib import Path
 
+DEBIAN = "/usr/bin/python3"
 SKIPPED = 77  # what CTest shows as skipped
 
 
@@ -12,3 +14,11 @@ def skip(part, reason):
     required = part in os.environ.get("VDBEAM_REQUIRE", "").split(",")
     print(f"{'failed, since VDBEAM_REQUIRE names ' + part if required else 'skipped'}: {reason}")
     sys.exit(1 if required else SKIPPED)
+
+
+def import_failed(problem):
+    """Starts the test again with Debian's Python, for which Debian's packages are; skips it where it
+    runs with that one already."""
+    if Path(sys.executable).resolve() != Path(DEBIAN).resolve() and Path(DEBIAN).exists():
+        os.execv(DEBIAN, [DEBIAN, *sys.argv])
+    skip("numpy", f"the Python module {problem.name} is missing")

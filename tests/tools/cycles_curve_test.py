@@ -9,20 +9,16 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-DEBIAN = "/usr/bin/python3"
 sys.path.insert(0, str(ROOT / "tools"))
 sys.path.insert(0, str(ROOT / "tests/support"))
-from requirements import skip
+from requirements import DEBIAN, import_failed
 
 try:
     import numpy as np
     import cycles_curve
     from error_curves import exr
 except ModuleNotFoundError as problem:
-    # Debian's packages are for Debian's Python.
-    if Path(sys.executable).resolve() != Path(DEBIAN).resolve() and Path(DEBIAN).exists():
-        os.execv(DEBIAN, [DEBIAN, *sys.argv])
-    skip("numpy", f"the Python module {problem.name} is missing")
+    import_failed(problem)
 
 SETTINGS = """{"image": {"width": 32, "height": 16}, "camera": {"up": [0, 1, 0]}, "light": [], "volume": [],
 "render": {"max_bounces": None}}"""

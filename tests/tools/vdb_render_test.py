@@ -2,27 +2,22 @@
 """How tools/error_curves/vdb_render.py puts a scene into the program's words; the program is not needed."""
 
 import copy
-import os
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-DEBIAN = "/usr/bin/python3"
 sys.path.insert(0, str(ROOT / "tools"))
 sys.path.insert(0, str(ROOT / "tests/support"))
-from requirements import skip
+from requirements import import_failed
 
 try:
     import numpy as np
     from error_curves import exr, vdb_render
     from error_curves.peers import NotWithinMeans
 except ModuleNotFoundError as problem:
-    # Debian's packages are for Debian's Python.
-    if Path(sys.executable).resolve() != Path(DEBIAN).resolve() and Path(DEBIAN).exists():
-        os.execv(DEBIAN, [DEBIAN, *sys.argv])
-    skip("numpy", f"the Python module {problem.name} is missing")
+    import_failed(problem)
 
 SETTINGS = {
     "image": {"width": 320, "height": 180},
