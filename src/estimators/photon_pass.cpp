@@ -14,11 +14,12 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
       world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
       boundary_share_(boundary_share(input, domain)) {
   const World& world = *world_;
+  constexpr double pixels_per_lattice_ray = 16; // a lattice then costs a fraction of a pass
   if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
       !input.stopped())
-    shadows_ =
-        make_shadow_lattices(world, plan_.sampled_lights,
-                             static_cast<double>(input.camera.width()) * input.camera.height());
+    shadows_ = make_shadow_lattices(world, plan_.sampled_lights,
+                                    static_cast<double>(input.camera.width()) *
+                                        input.camera.height() / pixels_per_lattice_ray);
 }
 
 /// The pilot belongs to no pass; its counts go with the first.

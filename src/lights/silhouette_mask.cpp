@@ -2,6 +2,8 @@
 
 #include "math/sampling.h"
 
+#include <bit>
+
 namespace vdbeam {
 namespace {
 
@@ -115,15 +117,13 @@ private:
   std::vector<float> depth_;
 };
 
-/// The bits of x and y interleaved.
-std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
-  const auto spread = [](std::uint32_t v) {
-    v = (v | v << 8) & 0x00ff00ffu;
-    v = (v | v << 4) & 0x0f0f0f0fu;
-    v = (v | v << 2) & 0x33333333u;
-    return (v | v << 1) & 0x55555555u;
-  };
-  return spread(x) | spread(y) << 1;
+/// Every second bit of a number, from the lowest on.
+int even_bits(std::uint32_t v) {
+  v &= 0x55555555u;
+  v = (v | v >> 1) & 0x33333333u;
+  v = (v | v >> 2) & 0x0f0f0f0fu;
+  v = (v | v >> 4) & 0x00ff00ffu;
+  return static_cast<int>((v | v >> 8) & 0x0000ffffu);
 }
 
 } // namespace
@@ -152,14 +152,15 @@ SilhouetteMask::SilhouetteMask(const Vec3f& axis, float tan_spread, const Occupi
   Raster raster(lower, upper, pixel);
   for (const Shadow& s : shadows)
     raster.draw(s);
-  for (int y = 0; y < raster.height(); ++y)
-    for (int x = 0; x < raster.width(); ++x)
-      if (raster.depth(x, y) < infinity)
-        pixels_.push_back(
-            {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), raster.depth(x, y)});
   // Along a Morton curve, so that a run of pixels is compact.
-  std::sort(pixels_.begin(), pixels_.end(),
-            [](const Pixel& a, const Pixel& b) { return morton(a.x, a.y) < morton(b.x, b.y); });
+  const auto side =
+      std::bit_ceil(static_cast<std::uint32_t>(std::max(raster.width(), raster.height())));
+  for (std::uint32_t code = 0; code < side * side; ++code) {
+    const int x = even_bits(code), y = even_bits(code >> 1);
+    if (x < raster.width() && y < raster.height() && raster.depth(x, y) < infinity)
+      pixels_.push_back(
+          {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), raster.depth(x, y)});
+  }
   corner_ = frame.origin + frame.x * lower.x + frame.y * lower.y;
   step_x_ = frame.x * pixel;
   step_y_ = frame.y * pixel;

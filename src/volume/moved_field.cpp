@@ -98,6 +98,36 @@ void for_each_cell(const Vec3<int>& n, const Visit& visit) {
   });
 }
 
+/// The field is 0 at every point of a box (local coordinates): so are all lattice points in it and
+/// around.
+bool is_zero_in(const DensityField& field, const Boxd& box) {
+  Vec3<int> first, last; // lattice points
+  for (int a = 0; a < 3; ++a) {
+    const double end = cell_width * field.cell_counts()[a] - 1;
+    first[a] = static_cast<int>(std::clamp(std::floor(box.lower[a]), 0.0, end));
+    last[a] = static_cast<int>(std::clamp(std::ceil(box.upper[a]), 0.0, end));
+  }
+  for (int i = first.x / cell_width; i <= last.x / cell_width; ++i)
+    for (int j = first.y / cell_width; j <= last.y / cell_width; ++j)
+      for (int k = first.z / cell_width; k <= last.z / cell_width; ++k) {
+        const std::int32_t entry = field.cell(i, j, k);
+        if (entry == DensityField::empty_cell)
+          continue;
+        if (entry < 0)
+          return false;
+        const Vec3<int> corner = Vec3<int>{i, j, k} * cell_width,
+                        lower = max(first - corner, Vec3<int>(0)),
+                        upper = min(last - corner, Vec3<int>(cell_width - 1));
+        for (int x = lower.x; x <= upper.x; ++x)
+          for (int y = lower.y; y <= upper.y; ++y) {
+            const float* row = field.brick(entry) + (x * brick_width + y) * brick_width;
+            if (std::any_of(row + lower.z, row + upper.z + 1, [](float v) { return v != 0; }))
+              return false;
+          }
+      }
+  return true;
+}
+
 class FieldMover {
 public:
   FieldMover(const DensityField& field, const Displacement& motion)
@@ -105,6 +135,7 @@ public:
 
   DensityField move(const std::string& label, std::uint64_t maximum_bytes) {
     find_targets(label);
+    drop_targets_of_nothing();
     number_bricks();
     if (bricks_ * DensityField::brick_size * sizeof(float) > maximum_bytes)
       throw FrameError(label + ": moved by its velocity it needs more memory than there may be");
@@ -125,6 +156,10 @@ private:
   std::size_t offset(int i, int j, int k) const {
     const Vec3<int> n = range_.counts();
     return (static_cast<std::size_t>(i) * n.y + j) * n.z + k;
+  }
+
+  Vec3d corner_of(int i, int j, int k) const {
+    return Vec3d(range_.lower + Vec3<std::int64_t>(Vec3<int>{i, j, k})) * double{cell_width};
   }
 
   /// Marks the cells that something comes to.
@@ -157,6 +192,27 @@ private:
                           static_cast<int>(k - range_.lower.z))] = 0;
     }
   }
+  /// Cells were marked generously: most of the others are told apart before they are filled.
+  void drop_targets_of_nothing() {
+    constexpr double far = 1e15, slack = 2 * near_enough;
+    const Boxd anywhere = motion_.bounds({Vec3d(-far), Vec3d(far)});
+    for_each_cell(range_.counts(), [&](int i, int j, int k) {
+      std::int32_t& cell = table_[offset(i, j, k)];
+      if (cell == DensityField::empty_cell)
+        return;
+      const Vec3d corner = corner_of(i, j, k);
+      const Boxd points{corner, corner + Vec3d(double{cell_width})};
+      // What comes to them lies among `sources`, so its velocities are the ones there.
+      Boxd sources{points.lower - anywhere.upper, points.upper - anywhere.lower};
+      for (int step = 0; step < 3; ++step) {
+        const Boxd way = motion_.bounds(sources);
+        sources = {points.lower - way.upper - Vec3d(slack),
+                   points.upper - way.lower + Vec3d(slack)};
+      }
+      if (is_zero_in(field_, sources))
+        cell = DensityField::empty_cell;
+    });
+  }
   void number_bricks() {
     for (std::int32_t& cell : table_)
       if (cell != DensityField::empty_cell)
@@ -164,8 +220,7 @@ private:
   }
   /// The lattice points of a brick, those that it shares with its neighbours too.
   void fill_brick(int i, int j, int k, float* values) const {
-    const Vec3d corner =
-        Vec3d(range_.lower + Vec3<std::int64_t>(Vec3<int>{i, j, k})) * double{cell_width};
+    const Vec3d corner = corner_of(i, j, k);
     Vec3d way; // neighbours come from near each other
     for (int x = 0; x < brick_width; ++x)
       for (int y = 0; y < brick_width; ++y)
@@ -174,7 +229,7 @@ private:
               field_.sample(Vec3f(motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}), way)));
   }
 
-  /// Cells were marked generously: rays need not look into those that nothing came to.
+  /// Rays need not look into cells that nothing came to.
   void drop_empty_bricks(std::vector<float>& values) {
     constexpr auto size = static_cast<std::ptrdiff_t>(DensityField::brick_size);
     std::int32_t kept = 0;
