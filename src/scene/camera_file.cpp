@@ -1,6 +1,7 @@
 #include "scene/camera_file.h"
 
 #include "geometry/gltf_camera.h"
+#include "machine/input_file.h"
 #include "scene/scene_enums.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -19,12 +20,7 @@ namespace {
 
 constexpr std::size_t chan_numbers = 7, chan_numbers_with_fov = 8, matrix_numbers = 16;
 
-/// One line: a frame and what the file says of it.
-struct CameraKey {
-  double frame = 0;
-  std::vector<double> values; ///< 6 or 7 of a .chan file, or a matrix
-  int line = 0;               ///< 0: the file has none
-};
+using CameraKey = CameraFile::Key;
 
 [[noreturn]] void fail(const std::string& path, int line, const std::string& text) {
   const std::string place = line > 0 ? fmt::format(":{}", line) : "";
@@ -170,35 +166,57 @@ Vec3d turned_world(const Vec3d& v, CameraAxes axes) {
   return v;
 }
 
+CameraFile::Track read_track(const CameraSettings& settings) {
+  CameraFile::Track track;
+  const bool gltf = is_gltf_file(settings.file);
+  track.keys = gltf ? read_gltf(settings, track.fov) : read_lines(settings.file);
+  track.matrices = track.keys.front().values.size() == matrix_numbers;
+  track.rows = track.matrices && !gltf && acts_on_rows(track.keys, settings.file);
+  return track;
+}
+
+/// Where the camera is between two keys: `share` of the way from one to the other.
+CameraPose pose_between(const CameraSettings& settings, const CameraFile::Track& track,
+                        const CameraKey& before, const CameraKey& after, double share) {
+  const std::string& path = settings.file;
+  if (track.matrices) {
+    const CameraPose a = matrix_pose(before, track.rows, path),
+                     b = matrix_pose(after, track.rows, path);
+    const auto mix = [&](const Vec3d& x, const Vec3d& y) { return x + (y - x) * share; };
+    return {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), track.fov};
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < after.values.size(); ++i)
+    values.push_back(before.values[i] + (after.values[i] - before.values[i]) * share);
+  const CameraPose pose = chan_pose(values, settings.file_rotation);
+  if (pose.fov && !(*pose.fov > 0 && *pose.fov < 180))
+    fail(path, after.line,
+         fmt::format("must have a field of view in (0, 180) degrees, got {:g}", *pose.fov));
+  return pose;
+}
+
 } // namespace
 
-CameraPose read_camera_file(const CameraSettings& settings, double time) {
-  const std::string& path = settings.file;
-  const bool gltf = is_gltf_file(path);
-  std::optional<double> fov;
-  const std::vector<CameraKey> keys = gltf ? read_gltf(settings, fov) : read_lines(path);
-  const bool matrices = keys.front().values.size() == matrix_numbers;
-  const bool rows = matrices && !gltf && acts_on_rows(keys, path);
-  const auto next = std::find_if(keys.begin(), keys.end(),
-                                 [&](const CameraKey& key) { return key.frame >= time; });
-  const CameraKey& after = next == keys.end() ? keys.back() : *next;
-  const CameraKey& before = next == keys.begin() || next == keys.end() ? after : *(next - 1);
-  const double width = after.frame - before.frame;
-  const double share = width > 0 ? (time - before.frame) / width : 1;
-  const auto mix = [&](const Vec3d& a, const Vec3d& b) { return a + (b - a) * share; };
-  CameraPose pose;
-  if (matrices) {
-    const CameraPose a = matrix_pose(before, rows, path), b = matrix_pose(after, rows, path);
-    pose = {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), fov};
-  } else {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < after.values.size(); ++i)
-      values.push_back(before.values[i] + (after.values[i] - before.values[i]) * share);
-    pose = chan_pose(values, settings.file_rotation);
-    if (pose.fov && !(*pose.fov > 0 && *pose.fov < 180))
-      fail(path, after.line,
-           fmt::format("must have a field of view in (0, 180) degrees, got {:g}", *pose.fov));
+CameraPose CameraFile::pose_at(const CameraSettings& settings, double time) {
+  std::shared_ptr<const Track> track;
+  {
+    const std::string identity =
+        fmt::format("{}|{}|{}", file_identity(settings.file), settings.name, settings.file_fps);
+    const std::scoped_lock lock(mutex_);
+    if (!track_ || identity != identity_)
+      track_ = std::make_shared<const Track>(read_track(settings));
+    identity_ = identity;
+    track = track_;
   }
+  const std::vector<Key>& keys = track->keys;
+  const auto next =
+      std::lower_bound(keys.begin(), keys.end(), time,
+                       [](const Key& key, double frame) { return key.frame < frame; });
+  const Key& after = next == keys.end() ? keys.back() : *next;
+  const Key& before = next == keys.begin() || next == keys.end() ? after : *(next - 1);
+  const double width = after.frame - before.frame;
+  CameraPose pose =
+      pose_between(settings, *track, before, after, width > 0 ? (time - before.frame) / width : 1);
   for (Vec3d* v : {&pose.position, &pose.forward, &pose.up})
     *v = turned_world(*v, settings.file_axes);
   pose.forward = normalize(pose.forward);

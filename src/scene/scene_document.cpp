@@ -142,10 +142,12 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
 }
 
 Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const {
-  Scene scene = SceneReader(path_, folder_, frame, missing).read(root_);
-  add_moments(scene, is_animated(root_) || !scene.camera.file.empty(), [&](double time) {
-    return SceneReader(path_, folder_, FrameTime(frame.number, time), missing).read(root_);
-  });
+  const auto at = [&](const FrameTime& moment) {
+    return SceneReader(path_, folder_, *camera_file_, moment, missing).read(root_);
+  };
+  Scene scene = at(frame);
+  add_moments(scene, is_animated(root_) || !scene.camera.file.empty(),
+              [&](double time) { return at(FrameTime(frame.number, time)); });
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
   if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
       !has_frame_pattern())

@@ -5,6 +5,7 @@
 #include "vdbeam/scene.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <toml++/toml.h>
 #include <vector>
@@ -47,6 +48,7 @@ private:
   std::filesystem::path folder_;
   toml::table root_;
   std::vector<std::string> notes_;
+  std::shared_ptr<CameraFile> camera_file_ = std::make_shared<CameraFile>();
 };
 
 /// True for a file whose name or first bytes say that it is a VDB.

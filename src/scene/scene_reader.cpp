@@ -2,7 +2,6 @@
 
 #include "geometry/gltf_camera.h"
 #include "scene/animation.h"
-#include "scene/camera_file.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
@@ -377,7 +376,7 @@ void SceneReader::place_camera(const toml::table& table) {
                                    locate(fmt::format("camera.{}", name)), name));
   if (!camera.name.empty() && !is_gltf_file(camera.file))
     throw InputError(locate("camera.name") + ": camera.name is for cameras of glTF files");
-  const CameraPose pose = read_camera_file(camera, frame_.time);
+  const CameraPose pose = camera_file_.pose_at(camera, frame_.time);
   camera.position = pose.position;
   camera.look_at = pose.position + pose.forward;
   camera.picture_up = pose.up;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/camera_file.h"
 #include "scene/scene_keys.h"
 #include "scene/validate.h"
 #include "scene/volume_time.h"
@@ -18,10 +19,11 @@ enum class MissingFile { error, black, hold };
 /// Turns the tree of a scene file into a scene, for one frame.
 class SceneReader {
 public:
-  /// `folder` is what relative paths of the file are relative to.
-  SceneReader(std::string path, std::filesystem::path folder, const FrameTime& frame,
-              MissingFile missing = MissingFile::error)
-      : path_(std::move(path)), folder_(std::move(folder)), frame_(frame), missing_(missing) {
+  /// `folder` is what relative paths of the file are relative to, `camera` its camera file.
+  SceneReader(std::string path, std::filesystem::path folder, CameraFile& camera,
+              const FrameTime& frame, MissingFile missing)
+      : path_(std::move(path)), folder_(std::move(folder)), camera_file_(camera), frame_(frame),
+        missing_(missing) {
     scene_.frame = frame;
   }
 
@@ -52,6 +54,7 @@ private:
 
   std::string path_;
   std::filesystem::path folder_;
+  CameraFile& camera_file_;
   FrameTime frame_;
   MissingFile missing_;
   std::optional<VolumeTime> time_; ///< of the volume that is being read

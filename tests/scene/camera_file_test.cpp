@@ -1,9 +1,11 @@
+#include "scene/camera_file.h"
+
 #include "scene/scene_fixture.h"
 
 namespace vdbeam {
 namespace {
 
-class CameraFile : public test::SceneTest {
+class CameraFileTest : public test::SceneTest {
 protected:
   static constexpr const char* scene_text = "[camera]\nfile = \"shot.cam\"\n";
 
@@ -22,7 +24,7 @@ protected:
   }
 };
 
-TEST_F(CameraFile, ChanTurnsAboutZThenXThenY) {
+TEST_F(CameraFileTest, ChanTurnsAboutZThenXThenY) {
   // A camera that looks along -Z, turned by 90 degrees about X looks up, and then by 90 about Y to
   // where its top was: the back, +Z, goes to +X.
   const CameraSettings settings = camera("# frame t r fov\n1 1 2 3  90 90 0  40\n");
@@ -34,7 +36,7 @@ TEST_F(CameraFile, ChanTurnsAboutZThenXThenY) {
   EXPECT_EQ(camera("1 0 0 0  90 90 0\n").fov, 30);
 }
 
-TEST_F(CameraFile, InterpolatesAndHolds) {
+TEST_F(CameraFileTest, InterpolatesAndHolds) {
   const std::string text = "10 0 0 0 0 0 0 20\n20 10 0 0 0 90 0 40\n";
   expect_near(camera(text, {13}).position, {3, 0, 0});
   EXPECT_NEAR(camera(text, {13}).fov, 26, 1e-9);
@@ -46,7 +48,7 @@ TEST_F(CameraFile, InterpolatesAndHolds) {
 }
 
 /// At (5, 6, 7), turned by 90 degrees about Y: X to -Z, and -Z, where it looks, to -X.
-TEST_F(CameraFile, MatricesOfBothConventions) {
+TEST_F(CameraFileTest, MatricesOfBothConventions) {
   const CameraSettings blender =
       camera("[[0, 0, 1, 5], [0, 1, 0, 6], [-1, 0, 0, 7], [0, 0, 0, 1]]");
   expect_near(blender.position, {5, 6, 7});
@@ -56,7 +58,7 @@ TEST_F(CameraFile, MatricesOfBothConventions) {
   expect_view(houdini, {-1, 0, 0}, {0, 1, 0});
 }
 
-TEST_F(CameraFile, TurnsWorlds) {
+TEST_F(CameraFileTest, TurnsWorlds) {
   // Blender's exporter writes .chan files with Y up; the volume has Z up.
   const CameraSettings settings =
       camera("1 1 2 3 0 0 0\n", {}, {"camera.file_axes=y_up_to_z_up", "camera.up=[0,0,1]"});
@@ -83,7 +85,7 @@ const char* gltf_cameras = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes"
                 {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC3"},
                 {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC4"}]})";
 
-class GltfCamera : public CameraFile {
+class GltfCamera : public CameraFileTest {
 protected:
   CameraSettings camera(const FrameTime& frame, std::vector<std::string> overrides = {}) {
     write("shot.gltf", gltf_cameras);
@@ -140,7 +142,7 @@ TEST_F(GltfCamera, TellsWhatIsWrong) {
   EXPECT_THROW(load("[camera]\nfile = \"shot.gltf\"\n"), FrameError);
 }
 
-TEST_F(CameraFile, TellsWhatIsWrong) {
+TEST_F(CameraFileTest, TellsWhatIsWrong) {
   const auto error = [&](const std::string& text) {
     write("shot.cam", text);
     return error_of(scene_text);
@@ -161,7 +163,25 @@ TEST_F(CameraFile, TellsWhatIsWrong) {
             "s.toml:3: camera.position excludes camera.file, which says where the camera is");
 }
 
-TEST_F(CameraFile, LensesAreChecked) {
+/// The moments of a shutter and the frames of a sequence ask for it again and again.
+TEST_F(CameraFileTest, IsReadAgainOnlyWhereItChanged) {
+  namespace fs = std::filesystem;
+  const auto text = [](int x) { return "1 " + std::to_string(x) + " 0 0 0 0 0\n"; };
+  CameraSettings settings;
+  settings.file = write("shot.chan", text(1));
+  const fs::file_time_type written = fs::last_write_time(settings.file);
+  CameraFile camera;
+  EXPECT_EQ(camera.pose_at(settings, 1).position.x, 1);
+  write("shot.chan", text(2));
+  fs::last_write_time(settings.file, written); // as if nobody had written
+  EXPECT_EQ(camera.pose_at(settings, 2).position.x, 1);
+  fs::last_write_time(settings.file, written + std::chrono::seconds(2));
+  EXPECT_EQ(camera.pose_at(settings, 1).position.x, 2);
+  settings.file = write("other.chan", text(3));
+  EXPECT_EQ(camera.pose_at(settings, 1).position.x, 3);
+}
+
+TEST_F(CameraFileTest, LensesAreChecked) {
   EXPECT_EQ(error_of("[camera]\nprojection = \"orthographic\"\n"),
             "s.toml:2: camera.projection is \"orthographic\": camera.view_height is needed too");
   EXPECT_EQ(error_of("[camera]\nf_stop = 2\n"),
