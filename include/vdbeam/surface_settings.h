@@ -64,14 +64,29 @@ inline bool is_specular(const MaterialSettings& material) {
          (material.type == MaterialType::conductor && roughness_of(material) == 0);
 }
 
+/// Shows a picture of its surroundings, if a blurred one: mirrors, and glass and metal whose lobes
+/// are so narrow that few photons arrive from where they show light from.
+inline bool shows_surroundings(const MaterialSettings& material) {
+  constexpr double narrow = 0.55; // GGX alpha 0.3
+  return is_specular(material) ||
+         ((material.type == MaterialType::dielectric ||
+           (material.type == MaterialType::conductor && max_component(material.reflectance) > 0)) &&
+          roughness_of(material) < narrow);
+}
+
 /// Photons on it tell what light it reflects: it spreads light.
 inline bool takes_photons(const MaterialSettings& material) {
-  return ((material.type == MaterialType::diffuse ||
-           material.type == MaterialType::shadow_catcher) &&
-          max_component(albedo_of(material)) > 0) ||
-         (material.type == MaterialType::dielectric && !is_specular(material)) ||
-         (material.type == MaterialType::conductor && !is_specular(material) &&
-          max_component(material.reflectance) > 0);
+  switch (material.type) {
+  case MaterialType::diffuse:
+  case MaterialType::shadow_catcher:
+    return max_component(albedo_of(material)) > 0;
+  case MaterialType::dielectric:
+    return !shows_surroundings(material);
+  case MaterialType::conductor:
+    return !shows_surroundings(material) && max_component(material.reflectance) > 0;
+  default:
+    return false;
+  }
 }
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the
@@ -83,6 +98,9 @@ struct SurfaceSettings {
   std::string name; ///< in Cryptomatte; empty: mesh0, mesh1, ...
   SurfaceShape shape = SurfaceShape::file;
   std::string file; ///< path, frame pattern already substituted
+  /// file: triangles that meet at this angle at most, in degrees, stand for a curved surface; 0:
+  /// they are flat.
+  double smooth_angle = 0;
   MaterialSettings material;
   bool visible = true; ///< to the camera; a hidden surface still stops and scatters light
   /// Row-major affine 3x4 matrix from the shape's own space to the world.

@@ -10,6 +10,14 @@
 
 namespace vdbeam {
 
+/// The photons of a pass, in the medium and on surfaces.
+struct PhotonMaps {
+  PhotonMap medium, surfaces;
+
+  std::size_t bytes() const { return medium.bytes() + surfaces.bytes(); }
+  PhotonMaps copy() const { return {medium.copy(), surfaces.copy()}; }
+};
+
 /// Photon maps of passes, for later frames of a sequence in which nothing but the camera moves:
 /// with correlated seeds their passes have the same photons. Maps are kept as they are before
 /// anything that depends on the camera. All frames must have the same world.
@@ -18,18 +26,19 @@ public:
   /// Keeps maps of up to `capacity` bytes in all.
   explicit PhotonCache(std::uint64_t capacity) : capacity_(capacity) {}
 
-  /// The map of these photons with kernels of these radii; null where it is not there.
-  std::shared_ptr<const PhotonMap> find(const PhotonPassSettings& photons,
-                                        const RadiusSettings& radii) const;
+  /// The maps of these photons with kernels of these radii, from which those on surfaces follow;
+  /// null where they are not there.
+  std::shared_ptr<const PhotonMaps> find(const PhotonPassSettings& photons,
+                                         const RadiusSettings& radii) const;
   /// Keeps a copy, unless there is no room for it. Maps of the same pass with other photons go.
-  void keep(const PhotonPassSettings& photons, const RadiusSettings& radii, const PhotonMap& map);
+  void keep(const PhotonPassSettings& photons, const RadiusSettings& radii, const PhotonMaps& maps);
   std::uint64_t bytes() const;
 
 private:
   struct Entry {
     PhotonPassSettings photons;
     RadiusSettings radii;
-    std::shared_ptr<const PhotonMap> map;
+    std::shared_ptr<const PhotonMaps> maps;
   };
 
   mutable std::mutex mutex_;

@@ -36,29 +36,29 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
   if (!input_.plan.needs(Stage::photons) && !input_.plan.needs(Stage::surface_photons)) {
-    map_ = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
+    maps_.medium = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
     return;
   }
   count_pilot(statistics);
   // Only the boundary's correction depends on the camera.
   make_maps(pass, radii, statistics);
   const Stopwatch watch;
-  clear_of_surfaces(world, map_);
+  clear_of_surfaces(world, maps_.medium);
   if (input_.blur_pixels)
-    narrow_map_ = map_.divide_power(boundary_share_, PassImage::blur_narrowing);
+    narrow_map_ = maps_.medium.divide_power(boundary_share_, PassImage::blur_narrowing);
   else
-    map_.divide_power(boundary_share_);
+    maps_.medium.divide_power(boundary_share_);
   statistics.radii += watch.seconds();
-  statistics.photons_stored += map_.size();
+  statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);
-  statistics.neighbourhoods += adaptive ? map_.size() : 0;
+  statistics.neighbourhoods += adaptive ? maps_.medium.size() : 0;
   statistics.neighbours = adaptive ? plan_.neighbours : 0;
-  statistics.directions += map_.has_directions() ? map_.size() : 0;
-  if (map_.size() > 0)
-    statistics.bytes_per_photon = map_.bytes() / map_.size();
+  statistics.directions += maps_.medium.has_directions() ? maps_.medium.size() : 0;
+  if (maps_.medium.size() > 0)
+    statistics.bytes_per_photon = maps_.medium.bytes() / maps_.medium.size();
 }
 
-/// The maps of a pass: an earlier frame's, or new ones. Those of surfaces are not kept.
+/// The maps of a pass: an earlier frame's, or new ones.
 void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatistics& statistics) {
   const EstimatorInput input = input_.in(*world_);
   PhotonPassSettings settings = pass_settings(input, plan_, static_cast<std::uint64_t>(pass));
@@ -67,9 +67,9 @@ void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatisti
     settings.surface_photon_lights = lights_of_surfaces(input);
   if (!input_.plan.needs(Stage::photons))
     settings.store_probability = 0;
-  PhotonCache* cache = on_surfaces ? nullptr : input_.photons;
+  PhotonCache* cache = input_.photons;
   if (const auto kept = cache ? cache->find(settings, radii) : nullptr) {
-    map_ = kept->copy();
+    maps_ = kept->copy();
     ++statistics.maps_reused;
     return;
   }
@@ -82,17 +82,17 @@ void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatisti
   statistics.light_paths += settings.paths;
   statistics.light_collisions += static_cast<std::uint64_t>(
       std::llround(traced.mean_collisions * static_cast<double>(settings.paths)));
-  map_ = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
-                          input_.settings.kernel_shape);
-  statistics.order += map_.times().order;
-  statistics.radii += map_.times().radii;
-  statistics.build += map_.times().build;
+  maps_.medium = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
+                                  input_.settings.kernel_shape);
+  statistics.order += maps_.medium.times().order;
+  statistics.radii += maps_.medium.times().radii;
+  statistics.build += maps_.medium.times().build;
   if (on_surfaces)
-    surface_map_ =
+    maps_.surfaces =
         PhotonMap::build(std::move(traced.surface_photons), input_.photon_channels(),
                          surface_radii(input, plan_, pass), input_.settings.kernel_shape);
   if (cache && !stopped)
-    cache->keep(settings, radii, map_);
+    cache->keep(settings, radii, maps_);
 }
 
 } // namespace vdbeam

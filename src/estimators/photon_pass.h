@@ -2,6 +2,7 @@
 
 #include "estimators/direct_light.h"
 #include "estimators/kernel_support.h"
+#include "estimators/photon_cache.h"
 #include "estimators/photon_plan.h"
 #include "transport/similar_medium.h"
 
@@ -21,19 +22,18 @@ public:
 
   /// Drops the map until the next pass: where passes see different worlds, each has its own.
   void release() {
-    map_ = {};
+    maps_ = {};
     narrow_map_ = {};
-    surface_map_ = {};
   }
 
   const PhotonPlan& plan() const { return plan_; }
   /// Tell where direct light is to be looked for; empty where they cannot.
   const ShadowLattices& shadows() const { return shadows_; }
-  const PhotonMap& map() const { return map_; }
+  const PhotonMap& map() const { return maps_.medium; }
   /// The same photons in narrower kernels; empty where nobody asked for the blur.
   const PhotonMap& narrow_map() const { return narrow_map_; }
   /// Photons on surfaces: what mirrors, glass and the medium send on to them.
-  const PhotonMap& surface_map() const { return surface_map_; }
+  const PhotonMap& surface_map() const { return maps_.surfaces; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
   const World& world() const { return *world_; }
 
@@ -48,7 +48,8 @@ private:
   ShadowLattices shadows_;
   KernelShare boundary_share_;
   bool pilot_counted_ = false;
-  PhotonMap map_, narrow_map_, surface_map_;
+  PhotonMaps maps_;
+  PhotonMap narrow_map_;
 };
 
 } // namespace vdbeam

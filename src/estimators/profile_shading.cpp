@@ -65,12 +65,15 @@ void add_coverage(const EstimatorInput& input, const CameraRay& camera, const De
 } // namespace
 
 Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
-                   const Rgb& tr, bool camera) {
+                   const Rgb& tr, bool camera,
+                   const std::function<float(std::size_t light)>& weight) {
   Rgb beyond, sum;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
     if ((camera && !world.lights.traits(i).visible) || world.lights[i].surface() >= 0)
       continue;
-    const LightHit hit = world.lights[i].emitted_radiance(segment);
+    LightHit hit = world.lights[i].emitted_radiance(segment);
+    if (weight)
+      hit.radiance *= weight(i);
     if (hit.distance == infinity)
       beyond += hit.radiance;
     else

@@ -4,6 +4,8 @@
 #include "estimators/estimator.h"
 #include "transport/depth_profile.h"
 
+#include <functional>
+
 namespace vdbeam {
 
 /// What a camera ray sees of the surface at which it ends.
@@ -20,9 +22,10 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    std::uint64_t& emission_rays, const SeenSurface& surface = {});
 
 /// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
-/// is `tr`. `camera`: only those that the camera sees.
+/// is `tr`. `camera`: only those that the camera sees. `weight`, if given: factor of each light.
 Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
-                   const Rgb& tr, bool camera);
+                   const Rgb& tr, bool camera,
+                   const std::function<float(std::size_t light)>& weight = {});
 
 /// exp(-tau) all along the profile.
 Rgb transmittance(const Medium& medium, const DepthProfile& profile);

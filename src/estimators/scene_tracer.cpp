@@ -39,10 +39,10 @@ struct SceneTracer::Path {
 };
 
 Rgb SceneTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                              bool all_light) const {
+                              bool all_light, float emitted) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   Path path{rng, Rgb(1), {}, direction, 0, false, all_light, false, 0, {}, {}, {}, true, 1};
-  path.add(vertex.emitted());
+  path.add(vertex.emitted() * emitted);
   path.throughput *= vertex.absorbed();
   if (bounce(path, vertex))
     follow(path);

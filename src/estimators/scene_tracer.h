@@ -28,13 +28,19 @@ public:
   /// Radiance that leaves a surface against `direction`, along which a camera ray meets it.
   /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
   /// the medium, and they on to other surfaces, to which photons bring it.
-  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                   bool all_light = true) const;
+  /// `emitted`: factor of what the surface itself emits.
+  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng, bool all_light = true,
+                   float emitted = 1) const;
 
   /// Light of a path that scatters first at ray.origin, coming along ray.direction, but for what
   /// comes there straight from lights with shadow rays (direct_light).
   ScatteredLight from_medium(const Ray& ray, const Rgb& throughput, const PhaseFunction& phase,
                              Rng& rng) const;
+
+  /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
+  /// shadow rays, weighted against the direction that `vertex` draws (balance heuristic).
+  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;
+  bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
 
 private:
   struct Path;
@@ -48,7 +54,6 @@ private:
                     const Transmittance& transmittance) const;
   Rgb lights_at_collision(const Path& path, const Vec3f& point, const PhaseFunction& phase,
                           Rng& rng) const;
-  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb lights_met(const Path& path, float t_end) const;
 
   const World& world_;

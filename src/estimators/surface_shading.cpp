@@ -6,6 +6,8 @@
 #include "estimators/surface_photons.h"
 #include "transport/emission.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vdbeam {
@@ -16,6 +18,24 @@ namespace {
 constexpr int paths_per_ray = 4;
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
+/// Interfaces beyond the first at which a path goes both ways.
+constexpr int most_splits = 1;
+/// A smaller share of the light is not worth a path of its own.
+constexpr float least_share = 1e-3f;
+
+bool go_both_ways(const SpecularBranches& ways) {
+  return max_component(ways.reflected.weight) > least_share &&
+         max_component(ways.refracted.weight) > least_share;
+}
+
+/// Of the paths that go on from the first interface, how many are reflected there: by the share of
+/// the light, at least one each way.
+int reflected_paths(const SpecularBranches& ways) {
+  if (!go_both_ways(ways))
+    return 0;
+  const float share = max_component(ways.reflected.weight);
+  return std::clamp(static_cast<int>(std::lround(paths_per_ray * share)), 1, paths_per_ray - 1);
+}
 
 /// The ray that leaves a surface, up to the next.
 CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& direction) {
@@ -33,6 +53,39 @@ CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& directi
 
 } // namespace
 
+/// A camera ray that goes on from surface to surface.
+struct SurfaceShading::Chain {
+  Rng& rng;
+  RenderStatistics& counts;
+  Rgb throughput;
+  Vec3d origin{}; ///< of the present segment
+  Vec3f direction{};
+  float pdf = 0;   ///< with which the direction was drawn; 0: nothing else draws it
+  float scale = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
+  int splits = most_splits;
+  SurfaceRoulette length{};
+
+  /// Leaves a surface one of several ways, all of which are followed.
+  void take_share(const SurfaceVertex& vertex, const MaterialSample& way) {
+    leave(vertex, way);
+    scale *= max_component(way.weight);
+  }
+  /// Leaves it the only way that is followed.
+  void take_all(const SurfaceVertex& vertex, const MaterialSample& way) {
+    leave(vertex, way);
+    scale *= way.refraction;
+  }
+  bool survives_roulette() { return survive_roulette(roulette_below * scale, throughput, rng); }
+
+private:
+  void leave(const SurfaceVertex& vertex, const MaterialSample& way) {
+    throughput *= way.weight;
+    origin = vertex.hit().leave(way.wi);
+    direction = way.wi;
+    pdf = way.pdf;
+  }
+};
+
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                                GatherAlong gather)
     : world_(photons.world()), photons_(photons), gather_(std::move(gather)),
@@ -44,63 +97,127 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
                                  RenderStatistics& counts) const {
   if (!camera.hit)
     return {};
-  if (world_.surfaces->material(*camera.hit).is_shadow_catcher()) {
-    Rng rng(key, RngStage::surface, pixel * paths_per_ray);
+  const auto path_rng = [&](int i) {
+    return Rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
+  };
+  const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
+  if (vertex.material().is_shadow_catcher()) {
+    Rng rng = path_rng(0);
     return {{}, caught_shadow(world_, camera, rng)};
   }
-  const Vec3f& direction = camera.ray().direction;
-  const SurfaceVertex vertex(*world_.surfaces, *camera.hit, direction);
-  const bool by_photons = shows_photons(vertex);
+  if (vertex.material().shows_surroundings())
+    return {shown_by(vertex, path_rng, counts)};
   Rgb sum, photons;
   for (int i = 0; i < paths_per_ray; ++i) {
-    Rng rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
-    if (!by_photons)
-      sum += follow(*camera.hit, direction, rng, counts);
-    else
-      sum += tracer_.from_surface(*camera.hit, direction, rng, false);
-    if (by_photons && i == 0) // the same for all
-      photons = SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
+    Rng rng = path_rng(i);
+    sum += tracer_.from_surface(*camera.hit, camera.ray().direction, rng, !shows_photons(vertex));
+    if (i == 0) // the same for all
+      photons = by_photons(vertex, rng);
   }
   return {sum / static_cast<float>(paths_per_ray) + photons};
 }
 
-Rgb SurfaceShading::follow(SurfaceHit hit, Vec3f direction, Rng& rng,
-                           RenderStatistics& counts) const {
-  const Medium& medium = world_.medium;
-  Rgb throughput(1), sum;
-  float refraction = 1;
-  SurfaceRoulette length;
-  DepthProfile profile;
-  for (;;) {
-    const SurfaceVertex vertex(*world_.surfaces, hit, direction);
-    if (!vertex.material().is_specular() || vertex.material().is_black()) {
-      const bool by_photons = shows_photons(vertex);
-      Rgb light = tracer_.from_surface(hit, direction, rng, !by_photons);
-      if (by_photons)
-        light += SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
-      return sum + light * throughput;
+/// What the first surface shows of its surroundings: the mean over a few paths. Glass sends some of
+/// them either way.
+template <class PathRng>
+Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+                             RenderStatistics& counts) const {
+  const SpecularBranches ways = vertex.branches(Carried::radiance);
+  const int reflected = reflected_paths(ways), refracted = paths_per_ray - reflected;
+  Rgb sum;
+  for (int i = 0; i < paths_per_ray; ++i) {
+    Rng rng = path_rng(i);
+    Chain chain{rng, counts, vertex.absorbed()};
+    if (reflected == 0) {
+      Rgb light = scatter(vertex, chain);
+      light += follow(chain);
+      sum += light / paths_per_ray;
+      continue;
     }
-    const MaterialSample next = vertex.sample(Carried::radiance, rng);
-    throughput *= vertex.absorbed() * next.weight;
-    refraction *= next.refraction;
-    if (!survive_roulette(roulette_below * refraction, throughput, rng) ||
-        !length.survive(throughput, rng))
-      return sum;
-    const CameraRay ray = next_ray(world_, hit.leave(next.wi), next.wi);
-    profile.build(medium, ray.segment, cutoff_);
-    const Rgb tr = transmittance(medium, profile);
-    Rgb radiance = lights_through(world_, ray.whole(), profile, tr, false);
-    if (!ray.segment.empty())
-      radiance += emission_along(medium, ray.segment, profile, cutoff_);
-    if (!profile.empty())
-      radiance += in_scattered(ray, profile, rng, counts);
-    sum += radiance * throughput;
-    throughput *= tr;
-    if (!ray.hit || !survive_roulette(roulette_below * refraction, throughput, rng))
-      return sum;
-    hit = *ray.hit;
-    direction = next.wi;
+    chain.take_share(vertex, i < reflected ? ways.reflected : ways.refracted);
+    sum += follow(chain) / static_cast<float>(i < reflected ? reflected : refracted);
   }
+  return sum;
+}
+
+/// Sends the chain on from a surface; returns the light of lights that the surface reflects to it,
+/// or what is seen the other way where it goes both ways.
+Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
+  const SpecularBranches ways =
+      chain.splits > 0 ? vertex.branches(Carried::radiance) : SpecularBranches();
+  if (go_both_ways(ways)) {
+    --chain.splits;
+    Chain other = chain;
+    other.take_share(vertex, ways.reflected);
+    chain.take_share(vertex, ways.refracted);
+    return follow(other);
+  }
+  Rgb light;
+  if (!vertex.material().is_specular())
+    light = tracer_.lights_at_surface(vertex, chain.rng) * chain.throughput;
+  chain.take_all(vertex, vertex.sample(Carried::radiance, chain.rng));
+  return light;
+}
+
+/// What the chain sees from its present segment on, times its throughput.
+Rgb SurfaceShading::follow(Chain chain) const {
+  Rgb sum;
+  DepthProfile profile;
+  while (chain.survives_roulette() && chain.length.survive(chain.throughput, chain.rng)) {
+    const CameraRay ray = next_ray(world_, chain.origin, chain.direction);
+    profile.build(world_.medium, ray.segment, cutoff_);
+    const Rgb tr = transmittance(world_.medium, profile);
+    sum += along(ray, profile, tr, chain) * chain.throughput;
+    chain.throughput *= tr;
+    if (!ray.hit || !chain.survives_roulette())
+      return sum;
+    const SurfaceVertex vertex(*world_.surfaces, *ray.hit, chain.direction);
+    if (!vertex.material().shows_surroundings())
+      return sum + at_end(vertex, chain) * chain.throughput;
+    chain.throughput *= vertex.absorbed();
+    sum += scatter(vertex, chain);
+  }
+  return sum;
+}
+
+/// The radiance that a segment of the chain adds.
+Rgb SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
+                          Chain& chain) const {
+  Rgb radiance = lights_through(world_, ray.whole(), profile, tr, false, [&](std::size_t i) {
+    const Light& light = world_.lights[i];
+    return sampled_too(i, chain)
+               ? chain.pdf / (chain.pdf + light.incident_pdf(ray.ray().origin, chain.direction))
+               : 1.0f;
+  });
+  if (!ray.segment.empty())
+    radiance += emission_along(world_.medium, ray.segment, profile, cutoff_);
+  if (!profile.empty())
+    radiance += in_scattered(ray, profile, chain.rng, chain.counts);
+  return radiance;
+}
+
+/// What leaves the surface at which the chain ends.
+Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, Chain& chain) const {
+  float emitted = 1;
+  if (const int light = vertex.light(); light >= 0)
+    if (const auto i = static_cast<std::size_t>(light); sampled_too(i, chain))
+      emitted =
+          chain.pdf / (chain.pdf + world_.lights[i].surface_pdf(vertex.hit(), chain.direction));
+  return tracer_.from_surface(vertex.hit(), chain.direction, chain.rng, !shows_photons(vertex),
+                              emitted) +
+         by_photons(vertex, chain.rng);
+}
+
+/// The surface that the segment leaves has sent a shadow ray to this light as well.
+bool SurfaceShading::sampled_too(std::size_t light, const Chain& chain) const {
+  return chain.pdf > 0 && tracer_.samples_light(light);
+}
+
+/// The part of a surface's light that photons bring, if they do.
+Rgb SurfaceShading::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
+  if (!shows_photons(vertex))
+    return {};
+  return SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
 }
 
 /// Light that the medium scatters into the ray: once, by shadow rays; else by photons.

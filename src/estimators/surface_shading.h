@@ -14,11 +14,13 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 
 /// The surfaces that camera rays meet, for estimators that gather photons.
 ///
-/// Behind mirrors and smooth glass the camera ray goes on, reflected or refracted at random, and
-/// photons are gathered along each of its segments: light that glass throws into the medium is seen
-/// there too. At any other surface path tracing goes on (SceneTracer), which finds all of its light
-/// but what mirrors, glass or the medium, met first of all, send on from lights: caustics, the glow
-/// of fog about a lamp, and whatever becomes of them. Photons that lie on the surface bring these.
+/// Behind mirrors, glass and metal, if they are not very rough, the camera ray goes on, and photons
+/// are gathered along each of its segments: light that glass throws into the medium is seen there
+/// too. At the first two interfaces of glass it goes both ways, reflected and refracted, from then
+/// on one of them at random: the faint reflection of a bright lamp is no matter of chance. At any
+/// other surface path tracing goes on (SceneTracer), which finds all of its light but what mirrors,
+/// glass or the medium, met first of all, send on from lights: caustics, the glow of fog about a
+/// lamp, and whatever becomes of them. Photons that lie on the surface bring these.
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.
@@ -33,7 +35,17 @@ private:
   bool shows_photons(const SurfaceVertex& vertex) const {
     return photons_on_surfaces_ && vertex.material().takes_photons();
   }
-  Rgb follow(SurfaceHit hit, Vec3f direction, Rng& rng, RenderStatistics& counts) const;
+  struct Chain;
+
+  template <class PathRng>
+  Rgb shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+               RenderStatistics& counts) const;
+  Rgb scatter(const SurfaceVertex& vertex, Chain& chain) const;
+  Rgb follow(Chain chain) const;
+  Rgb along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr, Chain& chain) const;
+  Rgb at_end(const SurfaceVertex& vertex, Chain& chain) const;
+  bool sampled_too(std::size_t light, const Chain& chain) const;
+  Rgb by_photons(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
                    RenderStatistics& counts) const;
 

@@ -10,6 +10,9 @@
 
 namespace vdbeam {
 
+/// Unit vectors at the corners of a triangle.
+using CornerNormals = std::array<Vec3f, 3>;
+
 /// Triangles. Positions are relative to `center`, so that single precision loses nothing where a
 /// mesh was modelled far from its origin.
 struct Mesh {
@@ -17,11 +20,12 @@ struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Uv> uvs;                                 ///< per position, or none
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
-  std::vector<std::string> notes;                      ///< for the user: repairs
+  std::vector<CornerNormals> normals; ///< per triangle, of the surface that it stands for, or none
+  std::vector<std::string> notes;     ///< for the user: repairs
 
   std::size_t bytes() const {
     return positions.size() * sizeof(Vec3f) + uvs.size() * sizeof(Uv) +
-           triangles.size() * sizeof triangles[0];
+           triangles.size() * sizeof triangles[0] + normals.size() * sizeof normals[0];
   }
 };
 

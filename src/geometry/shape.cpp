@@ -135,6 +135,14 @@ public:
     };
     return {mean(&Uv::u), mean(&Uv::v)};
   }
+  bool is_smooth() const override { return !mesh_.normals.empty(); }
+  Vec3d shading_normal(std::size_t i, const Vec3d& point) const override {
+    const auto [b1, b2] = barycentric(i, point);
+    const auto& [a, b, c] = mesh_.normals[i];
+    const Vec3d mean = Vec3d(a) * (1 - b1 - b2) + Vec3d(b) * b1 + Vec3d(c) * b2;
+    const Vec3d flat = cross(vertex(i, 1) - vertex(i, 0), vertex(i, 2) - vertex(i, 0));
+    return dot(mean, flat) > 0 ? mean : flat;
+  }
   std::size_t bytes() const override {
     return mesh_.bytes() + area_until_.size() * sizeof area_until_[0];
   }

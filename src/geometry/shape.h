@@ -61,6 +61,13 @@ public:
   virtual bool has_uvs() const { return true; }
   /// Of a point of a primitive.
   virtual Uv uv(std::size_t primitive, const Vec3d& point) const = 0;
+  /// It is shaded as the curved surface that its primitives stand for.
+  virtual bool is_smooth() const { return false; }
+  /// Of that surface at a point of a primitive, of any length but 0, towards the front.
+  virtual Vec3d shading_normal(std::size_t primitive, const Vec3d& point) const {
+    static_cast<void>(primitive), static_cast<void>(point);
+    return {};
+  }
   virtual std::size_t bytes() const { return 0; }
   Boxd bounds() const;
 

@@ -165,14 +165,22 @@ std::optional<SurfaceHit> SurfaceSet::intersect(const Vec3d& origin, const Vec3d
   data_->run(query);
   if (query.found == RTC_INVALID_GEOMETRY_ID)
     return std::nullopt;
+  const Placed& entry = data_->surfaces[query.found];
   SurfaceHit hit;
   hit.t = query.hit.t;
   hit.position = origin + direction * hit.t;
-  hit.normal = Vec3f(data_->surfaces[query.found].normal(query.hit.normal));
+  hit.normal = Vec3f(entry.normal(query.hit.normal));
+  hit.shading_normal = hit.normal;
   hit.surface = static_cast<int>(query.found);
   hit.primitive = query.found_primitive;
-  if (data_->surfaces[query.found].surface.textured)
+  if (entry.surface.textured)
     hit.uv = uv(hit);
+  if (entry.surface.shape->is_smooth()) {
+    const Vec3d local = entry.place.to_shape.point(hit.position);
+    hit.shading_normal =
+        Vec3f(entry.normal(entry.surface.shape->shading_normal(hit.primitive, local)));
+    hit.smooth = true;
+  }
   return hit;
 }
 

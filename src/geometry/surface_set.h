@@ -24,6 +24,10 @@ struct SurfaceHit {
   double t = 0;   ///< distance along the ray
   Vec3d position; ///< render space
   Vec3f normal;   ///< unit, geometric, towards the front
+  /// Unit, of the curved surface that triangles stand for, by which the surface scatters light;
+  /// else the geometric one.
+  Vec3f shading_normal;
+  bool smooth = false; ///< the two differ
   int surface = 0;
   std::size_t primitive = 0; ///< of its shape
   Uv uv;                     ///< of surfaces that show a picture

@@ -10,7 +10,7 @@ class Conductor final : public Material {
 public:
   explicit Conductor(const MaterialSettings& settings)
       : Material(MaterialType::conductor), reflectance_(settings.reflectance),
-        facets_(roughness_of(settings)) {}
+        facets_(roughness_of(settings)), narrow_(vdbeam::shows_surroundings(settings)) {}
 
   Rgb evaluate(const Vec3f& wo_, const Vec3f& wi_) const override {
     if (!(wo_.z * wi_.z > 0))
@@ -39,13 +39,14 @@ public:
     return {wi, weight, density, 1};
   }
   bool is_black() const override { return max_component(reflectance_) <= 0; }
-  bool takes_photons() const override { return !is_black() && facets_.wide(); }
+  bool shows_surroundings() const override { return narrow_; }
 
 private:
   static Vec3f upwards(const Vec3f& w) { return {w.x, w.y, std::abs(w.z)}; }
 
   Rgb reflectance_;
   Microfacets facets_;
+  bool narrow_;
 };
 
 } // namespace

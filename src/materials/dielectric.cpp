@@ -15,21 +15,42 @@ public:
   Rgb evaluate(const Vec3f&, const Vec3f&) const override { return {}; }
   float pdf(const Vec3f&, const Vec3f&) const override { return 0; }
   MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const override {
-    const float eta = wo.z > 0 ? ior_ : 1 / ior_, cos_o = std::abs(wo.z);
-    float cos_t = 0;
-    const float reflected = fresnel_dielectric(cos_o, eta, cos_t);
-    if (rng.uniform() < reflected)
-      return {{-wo.x, -wo.y, wo.z}, Rgb(1), 0, 1};
-    const Vec3f wi{-wo.x / eta, -wo.y / eta, std::copysign(cos_t, -wo.z)};
-    // Radiance over the square of the index is what stays constant along a refracted ray.
-    const float factor = carried == Carried::radiance ? 1 / (eta * eta) : 1;
-    return {normalize(wi), Rgb(factor), 0, factor};
+    const Interface at(wo, ior_);
+    return rng.uniform() < at.reflected ? reflection(wo) : refraction(wo, at, carried);
+  }
+  SpecularBranches branches(const Vec3f& wo, Carried carried) const override {
+    const Interface at(wo, ior_);
+    SpecularBranches ways{reflection(wo), {}};
+    ways.reflected.weight *= at.reflected;
+    if (at.reflected < 1) {
+      ways.refracted = refraction(wo, at, carried);
+      ways.refracted.weight *= 1 - at.reflected;
+    }
+    return ways;
   }
   bool is_specular() const override { return true; }
   Rgb absorption() const override { return absorption_; }
   bool is_solid() const override { return solid_; }
 
 private:
+  struct Interface {
+    Interface(const Vec3f& wo, float ior)
+        : eta(wo.z > 0 ? ior : 1 / ior),
+          reflected(fresnel_dielectric(std::abs(wo.z), eta, cos_refracted)) {}
+
+    float eta; ///< index on the far side over that on the side of wo
+    float cos_refracted = 0;
+    float reflected; ///< share of the light (Fresnel)
+  };
+
+  static MaterialSample reflection(const Vec3f& wo) { return {{-wo.x, -wo.y, wo.z}, Rgb(1), 0, 1}; }
+  static MaterialSample refraction(const Vec3f& wo, const Interface& at, Carried carried) {
+    const Vec3f wi{-wo.x / at.eta, -wo.y / at.eta, std::copysign(at.cos_refracted, -wo.z)};
+    // Radiance over the square of the index is what stays constant along a refracted ray.
+    const float factor = carried == Carried::radiance ? 1 / (at.eta * at.eta) : 1;
+    return {normalize(wi), Rgb(factor), 0, factor};
+  }
+
   float ior_;
   Rgb absorption_;
   bool solid_;

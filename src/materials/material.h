@@ -22,6 +22,11 @@ struct MaterialSample {
   float refraction = 1;
 };
 
+/// The ways on from a specular surface, each with its own weight; 0: there is no such way.
+struct SpecularBranches {
+  MaterialSample reflected, refracted;
+};
+
 /// How a surface scatters light, in its own frame: z is the normal on its front. `wo` points the
 /// way the path came from, `wi` the way it goes on; both leave the surface.
 class Material {
@@ -35,9 +40,16 @@ public:
   virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
   /// `evaluate` is 0 for all directions: shadow rays are no use.
   virtual bool is_specular() const { return false; }
-  /// Photons that arrive tell what light it reflects: it spreads light so far that some of them
-  /// come from where it shows it from.
-  virtual bool takes_photons() const { return !is_specular() && !is_black(); }
+  /// Of a specular surface: all ways on, of which `sample` chooses one.
+  virtual SpecularBranches branches(const Vec3f& wo, Carried carried) const {
+    static_cast<void>(wo), static_cast<void>(carried);
+    return {};
+  }
+  /// It shows a picture of its surroundings, if a blurred one: what camera rays show of it is found
+  /// by rays that go on, as photons that arrive rarely come from where it shows light from.
+  virtual bool shows_surroundings() const { return is_specular() && !is_black(); }
+  /// Photons that arrive tell what light it reflects.
+  bool takes_photons() const { return !is_black() && !shows_surroundings(); }
   /// Nothing leaves it but what it emits.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back.

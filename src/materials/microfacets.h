@@ -15,9 +15,6 @@ public:
       // Of smoother ones single precision cannot tell the peak from its surroundings.
       : alpha_(std::max(1e-3f, static_cast<float>(roughness * roughness))) {}
 
-  /// Whether they spread light so far that photons, which come from single directions, show it.
-  bool wide() const { return alpha_ >= 0.05f; }
-
   /// Density of facets with normal h, by their area seen from above.
   float distribution(const Vec3f& h) const {
     const float a2 = alpha_ * alpha_;

@@ -11,13 +11,16 @@ public:
 
   Rgb evaluate(const Vec3f&, const Vec3f&) const override { return {}; }
   float pdf(const Vec3f&, const Vec3f&) const override { return 0; }
-  MaterialSample sample(const Vec3f& wo, Carried, Rng&) const override {
-    return {{-wo.x, -wo.y, wo.z}, reflectance_, 0, 1};
-  }
+  MaterialSample sample(const Vec3f& wo, Carried, Rng&) const override { return reflected(wo); }
+  SpecularBranches branches(const Vec3f& wo, Carried) const override { return {reflected(wo), {}}; }
   bool is_specular() const override { return true; }
   bool is_black() const override { return max_component(reflectance_) <= 0; }
 
 private:
+  MaterialSample reflected(const Vec3f& wo) const {
+    return {{-wo.x, -wo.y, wo.z}, reflectance_, 0, 1};
+  }
+
   Rgb reflectance_;
 };
 

@@ -12,7 +12,7 @@ public:
       : Material(MaterialType::dielectric), ior_(static_cast<float>(settings.ior)),
         absorption_(settings.absorption / static_cast<float>(scale)),
         solid_(settings.solid || max_component(settings.absorption) > 0),
-        facets_(roughness_of(settings)) {}
+        facets_(roughness_of(settings)), narrow_(vdbeam::shows_surroundings(settings)) {}
 
   Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const override {
     const Facet f = facet(wo, wi);
@@ -53,7 +53,7 @@ public:
   }
   Rgb absorption() const override { return absorption_; }
   bool is_solid() const override { return solid_; }
-  bool takes_photons() const override { return facets_.wide(); }
+  bool shows_surroundings() const override { return narrow_; }
 
 private:
   /// The facets that send light from wi to wo, turned so that wo is above.
@@ -92,6 +92,7 @@ private:
   Rgb absorption_;
   bool solid_;
   Microfacets facets_;
+  bool narrow_;
 };
 
 } // namespace

@@ -123,6 +123,13 @@ void add_mesh(KeyTable& table) {
   table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
       .kind(KeyKind::file)
       .types({"file"});
+  table
+      .add(
+          "smooth_angle", &S::smooth_angle,
+          "triangles that meet at this angle at most look like one curved surface; 0: all are flat")
+      .unit("degrees")
+      .within(0, 180)
+      .types({"file"});
   table.add("visible", &S::visible, "whether the camera sees it; it stops light in any case");
   table.add("name", &S::name, R"(its name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
   add_placement(table, &S::transform);

@@ -41,8 +41,12 @@ SurfaceVertex::SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit,
       light_(surfaces.lights[static_cast<std::size_t>(hit.surface)]) {
   if (const auto& texture = surfaces.textures[static_cast<std::size_t>(hit.surface)])
     shown_ = texture->at(hit.uv);
-  orthonormal_frame(hit_.normal, tangent_, bitangent_);
+  orthonormal_frame(hit_.shading_normal, tangent_, bitangent_);
   wo_ = to_local(-direction);
+  // A curved surface is seen from the side from which its triangles are.
+  constexpr float least_cosine = 1e-3f;
+  if (hit_.smooth)
+    wo_.z = std::copysign(std::max(std::abs(wo_.z), least_cosine), -dot(direction, hit_.normal));
 }
 
 Rgb SurfaceVertex::absorbed() const {
@@ -52,12 +56,38 @@ Rgb SurfaceVertex::absorbed() const {
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
+/// How much of the power of a photon goes on, for each unit of radiance that a path would take the
+/// other way: with two normals the cosines do not cancel (Veach, Robust Monte Carlo Methods for
+/// Light Transport Simulation, 1997, eq. 5.17). Bounded: at the horizon little light is at stake.
+float SurfaceVertex::power_factor(const Vec3f& local, const Vec3f& wi) const {
+  constexpr float most = 8;
+  const float in = std::abs(dot(hit_.normal, from_local(wo_))),
+              out = std::abs(dot(hit_.normal, wi));
+  const float factor = out * std::abs(wo_.z) / (in * std::abs(local.z));
+  return factor < most ? factor : most;
+}
+
+/// The same in render space, with the texture.
+MaterialSample SurfaceVertex::shown(MaterialSample local, Carried carried) const {
+  local.weight *= shown_;
+  Vec3f wi = from_local(local.wi);
+  if (hit_.smooth) {
+    if (changes_side(local.wi, wi))
+      wi = mirrored(wi);
+    if (carried == Carried::power)
+      local.weight *= power_factor(local.wi, wi);
+  }
+  local.wi = normalize(wi);
+  return local;
+}
+
 MaterialSample SurfaceVertex::sample(Carried carried, Rng& rng) const {
-  MaterialSample result = material_.sample(wo_, carried, rng);
-  result.weight *= shown_;
-  const Vec3f local = result.wi;
-  result.wi = normalize(tangent_ * local.x + bitangent_ * local.y + hit_.normal * local.z);
-  return result;
+  return shown(material_.sample(wo_, carried, rng), carried);
+}
+
+SpecularBranches SurfaceVertex::branches(Carried carried) const {
+  const SpecularBranches local = material_.branches(wo_, carried);
+  return {shown(local.reflected, carried), shown(local.refracted, carried)};
 }
 
 } // namespace vdbeam

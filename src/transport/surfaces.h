@@ -53,14 +53,46 @@ public:
   /// What absorption inside left of the light on its way from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
-  Rgb evaluate(const Vec3f& wi) const { return material_.evaluate(wo_, to_local(wi)) * shown_; }
-  float pdf(const Vec3f& wi) const { return material_.pdf(wo_, to_local(wi)); }
+  Rgb evaluate(const Vec3f& wi) const {
+    return sum_of<Rgb>(wi, [&](const Vec3f& local) { return material_.evaluate(wo_, local); }) *
+           shown_;
+  }
+  float pdf(const Vec3f& wi) const {
+    return sum_of<float>(wi, [&](const Vec3f& local) { return material_.pdf(wo_, local); });
+  }
   /// Where the path goes on; the direction is in render space.
   MaterialSample sample(Carried carried, Rng& rng) const;
+  /// Of a specular material: all ways on, in render space.
+  SpecularBranches branches(Carried carried) const;
 
 private:
+  MaterialSample shown(MaterialSample local, Carried carried) const;
+  float power_factor(const Vec3f& local, const Vec3f& wi) const;
   Vec3f to_local(const Vec3f& v) const {
-    return {dot(v, tangent_), dot(v, bitangent_), dot(v, hit_.normal)};
+    return {dot(v, tangent_), dot(v, bitangent_), dot(v, hit_.shading_normal)};
+  }
+  Vec3f from_local(const Vec3f& v) const {
+    return tangent_ * v.x + bitangent_ * v.y + hit_.shading_normal * v.z;
+  }
+  // A curved surface would send some light through its triangles that it ought to reflect, and the
+  // other way round. Such directions are mirrored at the triangle: no light leaks or is lost.
+  bool changes_side(const Vec3f& local, const Vec3f& wi) const {
+    return (local.z > 0) != (dot(hit_.normal, wi) > 0);
+  }
+  Vec3f mirrored(const Vec3f& wi) const { return wi - hit_.normal * (2 * dot(hit_.normal, wi)); }
+  /// The sum of a function over those of the material's own directions that go to wi.
+  template <class Value, class Function>
+  Value sum_of(const Vec3f& wi, const Function& function) const {
+    const Vec3f local = to_local(wi);
+    if (!hit_.smooth)
+      return function(local);
+    Value sum{};
+    if (!changes_side(local, wi))
+      sum += function(local);
+    const Vec3f image = mirrored(wi), local_image = to_local(image);
+    if (changes_side(local_image, image))
+      sum += function(local_image);
+    return sum;
   }
 
   SurfaceHit hit_;

@@ -64,6 +64,29 @@ TEST(Materials, sampled_and_evaluated_reflectance_agree) {
     }
 }
 
+/// The ways on from glass are those between which samples choose, with the chances as weights.
+TEST(Materials, both_ways_of_glass_are_what_samples_choose_between) {
+  for (const float side : {1.0f, -1.0f})
+    for (const double angle : {0.0, 30.0, 60.0})
+      for (const Carried carried : {Carried::radiance, Carried::power}) {
+        const auto clear = glass(1.5);
+        const Vec3f wo = at_angle(angle, side);
+        const SpecularBranches ways = clear->branches(wo, carried);
+        test::Samples reflected, refracted;
+        Rng rng({}, RngStage::test, 7);
+        for (int i = 0; i < 20000; ++i) {
+          const MaterialSample sample = clear->sample(wo, carried, rng);
+          const bool up = sample.wi.z * wo.z > 0;
+          const MaterialSample& way = up ? ways.reflected : ways.refracted;
+          EXPECT_EQ(sample.wi, way.wi);
+          reflected.add(up ? static_cast<double>(sample.weight.x) : 0);
+          refracted.add(up ? 0 : static_cast<double>(sample.weight.x));
+        }
+        test::expect_mean(reflected, static_cast<double>(ways.reflected.weight.x), 1e-6);
+        test::expect_mean(refracted, static_cast<double>(ways.refracted.weight.x), 1e-6);
+      }
+}
+
 /// Rough glass reflects and refracts; the bright peak of transmission takes the most samples.
 TEST(Materials, rough_glass_is_sampled_as_it_is_evaluated) {
   for (const float side : {1.0f, -1.0f})

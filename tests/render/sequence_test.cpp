@@ -107,6 +107,28 @@ std::vector<std::uint64_t> reused_maps(const std::vector<std::string>& more) {
 
 using Counts = std::vector<std::uint64_t>;
 
+/// With a floor, a ball of glass and a lamp, photons lie on surfaces too.
+TEST(PhotonReuse, WorksOnSurfacesToo) {
+  PreparedScenePtr prepared;
+  Counts counts;
+  for (int frame = 1; frame <= 4; ++frame) {
+    Scene scene = small_cloud(frame, {"render.thinning=even"});
+    SurfaceSettings& floor = scene.surfaces.emplace_back();
+    floor.shape = SurfaceShape::quad;
+    floor.transform = {4, 0, 0, 0, 0, 0, 4, -0.9, 0, -4, 0, 0};
+    SurfaceSettings& ball = scene.surfaces.emplace_back();
+    ball.shape = SurfaceShape::sphere;
+    ball.transform = {0.4, 0, 0, -1, 0, 0.4, 0, -0.4, 0, 0, 0.4, 1};
+    ball.material.type = MaterialType::dielectric;
+    scene.camera.position.x += 0.1 * frame;
+    prepared = prepare_scene(scene, prepared);
+    const RenderResult result = render_frame(scene, frame, prepared);
+    counts.push_back(result.statistics.maps_reused);
+    EXPECT_TRUE(same_pixels(result.image, render_alone(scene, frame))) << frame;
+  }
+  EXPECT_EQ(counts, (Counts{0, 0, 3, 3}));
+}
+
 TEST(PhotonReuse, OfAStillVolumeUnderAMovingCameraIsExact) {
   // The second frame is the first that is known to share its world with another.
   EXPECT_EQ(reused_maps({"render.thinning=even"}), (Counts{0, 0, 3, 3}));
@@ -174,7 +196,7 @@ TEST(PhotonCache, KeepsNoMoreThanItMay) {
     photons.position.push_back(Vec3f(static_cast<float>(i)));
     photons.power.push_back(Rgb(1));
   }
-  const PhotonMap map = PhotonMap::build(photons, 1, {}, KernelShape::biweight);
+  const PhotonMaps map{PhotonMap::build(photons, 1, {}, KernelShape::biweight), {}};
   PhotonCache cache(2 * map.bytes());
   PhotonPassSettings settings;
   settings.paths = 10;
@@ -187,7 +209,7 @@ TEST(PhotonCache, KeepsNoMoreThanItMay) {
   EXPECT_EQ(cache.bytes(), 2 * map.bytes());
   settings.key.pass = 1;
   ASSERT_NE(cache.find(settings, radii), nullptr);
-  EXPECT_EQ(cache.find(settings, radii)->size(), 64u);
+  EXPECT_EQ(cache.find(settings, radii)->medium.size(), 64u);
   settings.key.pass = 2;
   EXPECT_EQ(cache.find(settings, radii), nullptr);
   // Other photons of a pass replace those that are there.

@@ -1,0 +1,163 @@
+// Meshes that are shaded as the curved surfaces that they stand for.
+#include "support/render_passes.h"
+#include "support/surface_scene.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace vdbeam {
+namespace {
+
+using test::MemoryScene;
+using test::PassMeans;
+using test::render_passes;
+using test::TempFolder;
+using namespace test::surfaces;
+
+/// A ball of radius 1 by `rings` rings of twice as many quadrilaterals, which are triangles at the
+/// poles.
+std::string write_ball(const TempFolder& folder, int rings) {
+  std::ostringstream text;
+  text.precision(17);
+  for (int i = 0; i <= rings; ++i)
+    for (int j = 0; j < 2 * rings; ++j) {
+      const double theta = M_PI * i / rings, phi = M_PI * j / rings;
+      const double r = i == 0 || i == rings ? 0 : std::sin(theta);
+      text << "v " << r * std::cos(phi) << " " << r * std::sin(phi) << " " << std::cos(theta)
+           << "\n";
+    }
+  const auto vertex = [&](int i, int j) { return i * 2 * rings + j % (2 * rings) + 1; };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < 2 * rings; ++j)
+      text << "f " << vertex(i, j) << " " << vertex(i + 1, j) << " " << vertex(i + 1, j + 1) << " "
+           << vertex(i, j + 1) << "\n";
+  const std::string path = folder.file("ball.obj");
+  test::write_bytes(path, text.str());
+  return path;
+}
+
+SurfaceSettings& add_mesh(MemoryScene& scene, const std::string& file, double smooth_angle,
+                          const Transform& at, const MaterialSettings& material) {
+  SurfaceSettings& mesh = add_surface(scene, SurfaceShape::file, at, material);
+  mesh.file = file;
+  mesh.smooth_angle = smooth_angle;
+  return mesh;
+}
+
+MaterialSettings white() {
+  MaterialSettings material;
+  material.albedo = Rgb(1);
+  return material;
+}
+
+/// A coarse ball in an even sky, whatever it is made of, is not seen: nothing is lost or won where
+/// the two normals differ, not even at the horizon.
+TEST(SmoothMeshes, furnace) {
+  const TempFolder folder;
+  const std::string ball = write_ball(folder, 5);
+  for (const MaterialSettings& material :
+       {white(), of_type(MaterialType::mirror), of_type(MaterialType::dielectric)}) {
+    MemoryScene scene;
+    add_mesh(scene, ball, 90, scaled(0.5), material);
+    scene.add_light(LightType::environment).radiance = Rgb(1);
+    scene.look({0, 0.3, 4}, {0, 0, 0}, 18, 16, 16);
+    for (const EstimatorType estimator : {EstimatorType::path, EstimatorType::beam}) {
+      const PassMeans means = render_passes(scene, estimator, 4);
+      for (const Rgb& pixel : means.pixels)
+        EXPECT_NEAR(pixel.x, 1, 2e-3) << static_cast<int>(material.type);
+    }
+  }
+}
+
+/// Photons that a curved ball of white or glass sends through fog: the same law.
+TEST(SmoothMeshes, furnace_of_photons) {
+  const TempFolder folder;
+  const std::string ball = write_ball(folder, 6);
+  for (const MaterialSettings& material : {white(), of_type(MaterialType::dielectric)}) {
+    MemoryScene scene;
+    scene.add_box(Vec3d(-1), Vec3d(1)).extinction = 2;
+    add_mesh(scene, ball, 90, scaled(0.5), material);
+    scene.add_light(LightType::environment).radiance = Rgb(1);
+    scene.scene.render.photons = 20000;
+    scene.look({0, 0.3, 4}, {0, 0, 0}, 34, 16, 16);
+    expect_mean(render_passes(scene, EstimatorType::beam, 24).total[0], 1, 0.01);
+  }
+}
+
+/// By how much a picture differs from another, relative to the mean.
+double difference(const PassMeans& a, const PassMeans& b) {
+  double sum = 0, mean = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    sum += std::abs(static_cast<double>(mean_component(a.pixels[i] - b.pixels[i])));
+    mean += static_cast<double>(mean_component(b.pixels[i]));
+  }
+  return sum / mean;
+}
+
+/// A coarse ball of mirror or glass shows the sky much as a true ball does, and flat triangles do
+/// not.
+TEST(SmoothMeshes, show_the_sky_like_a_ball) {
+  const TempFolder folder;
+  const std::string ball = write_ball(folder, 12);
+  for (const MaterialType type : {MaterialType::mirror, MaterialType::dielectric}) {
+    const auto picture = [&](double smooth_angle) {
+      MemoryScene scene;
+      if (smooth_angle < 0)
+        add_surface(scene, SurfaceShape::sphere, scaled(1), of_type(type));
+      else
+        add_mesh(scene, ball, smooth_angle, scaled(1), of_type(type));
+      LightSettings& sky = scene.add_light(LightType::sky);
+      sky.zenith = Rgb(0.2f);
+      sky.ground = Rgb(3);
+      scene.look({0, 0, 10}, {0, 0, 0}, 8, 32, 32);
+      return render_passes(scene, EstimatorType::beam, 64);
+    };
+    const PassMeans truth = picture(-1);
+    const double smooth = difference(picture(60), truth), flat = difference(picture(0), truth);
+    EXPECT_LT(smooth, 0.04) << static_cast<int>(type);
+    EXPECT_LT(smooth, 0.5 * flat) << static_cast<int>(type);
+  }
+}
+
+/// A box whose corners are shaded as round: no light comes in, however the normals point.
+TEST(SmoothMeshes, no_light_leaks_into_a_box) {
+  const TempFolder folder;
+  const std::string path = folder.file("box.obj");
+  test::write_bytes(path, "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
+                          "v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\n"
+                          "f 3 4 8 7\nf 4 1 5 8\n");
+  MemoryScene scene;
+  add_mesh(scene, path, 180, scaled(1), {});
+  scene.add_box(Vec3d(-0.9), Vec3d(0.9)).extinction = 0.5;
+  scene.add_light(LightType::environment).radiance = Rgb(1);
+  LightSettings& sun = scene.add_light(LightType::distant);
+  sun.direction = {-0.5, -0.6, -0.62};
+  sun.irradiance = Rgb(1000);
+  scene.look({-0.8, -0.8, -0.7}, {0, 0, 0}, 90, 8, 8);
+  for (const EstimatorType estimator : {EstimatorType::path, EstimatorType::beam})
+    EXPECT_EQ(render_passes(scene, estimator, 8).total[0].mean(), 0) << estimator.name;
+}
+
+/// Sunlight through a lens of triangles onto a floor: photons as path tracing has it.
+TEST(SmoothMeshes, focus_light_with_every_estimator) {
+  const TempFolder folder;
+  MemoryScene scene;
+  add_surface(scene, SurfaceShape::quad, scaled(2), white()).material.albedo = Rgb(0.6f);
+  add_mesh(scene, write_ball(folder, 10), 60, moved(scaled(0.4), {0, 0, 0.7}),
+           of_type(MaterialType::dielectric))
+      .visible = false;
+  LightSettings& sun = scene.add_light(LightType::distant);
+  sun.direction = {0, 0, -1};
+  sun.angular_radius = 10;
+  scene.scene.render.photons = 20000;
+  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.4 / 1000) * 180 / M_PI, 16, 16);
+  const PassMeans path = render_passes(scene, EstimatorType::path, 256);
+  for (const EstimatorType estimator : {EstimatorType::beam, EstimatorType::march})
+    EXPECT_EQ(test::regions_apart(render_passes(scene, estimator, 32), path, 0.03), 0)
+        << estimator.name;
+}
+
+} // namespace
+} // namespace vdbeam
