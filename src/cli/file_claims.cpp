@@ -4,8 +4,6 @@
 #include "text/text.h"
 #include "vdbeam/error.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -28,12 +26,6 @@ fs::path behind_links(fs::path path) {
     path = path.parent_path() / target; // an absolute target replaces the folder
   }
   return path;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 } // namespace

@@ -27,12 +27,8 @@ public:
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 };
 
-/// What every estimator is made from; the references must outlive it.
-struct EstimatorInput {
-  const World& world;
-  const Camera& camera;
-  const RenderSettings& settings;
-  const RenderPlan& plan; ///< which stages run; no estimator decides that again
+/// What estimators are told beyond the scene; what is pointed to must outlive them.
+struct EstimatorTask {
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
   PixelRegion window = {};
@@ -47,16 +43,24 @@ struct EstimatorInput {
   /// Of a moment of the scene: the photons of the scene itself, whose plan it follows; null: it
   /// makes one of its own.
   const ScenePhotons* of_scene = nullptr;
+};
+
+/// What every estimator is made from; the references must outlive it.
+struct EstimatorInput : EstimatorTask {
+  EstimatorInput(const World& world_, const Camera& camera_, const RenderSettings& settings_,
+                 const RenderPlan& plan_, const EstimatorTask& task = {})
+      : EstimatorTask(task), world(world_), camera(camera_), settings(settings_), plan(plan_) {}
+
+  const World& world;
+  const Camera& camera;
+  const RenderSettings& settings;
+  const RenderPlan& plan; ///< which stages run; no estimator decides that again
 
   /// The same in another world, which must outlive the result too.
-  EstimatorInput in(const World& other) const {
-    return {other,   camera,      settings, plan,    frame,  window,  stop,
-            photons, blur_pixels, deep,     objects, layers, of_scene};
-  }
+  EstimatorInput in(const World& other) const { return {other, camera, settings, plan, *this}; }
   /// The same with the plan of another estimator, which must outlive the result too.
   EstimatorInput with(const RenderPlan& other) const {
-    return {world,   camera,      settings, other,   frame,  window,  stop,
-            photons, blur_pixels, deep,     objects, layers, of_scene};
+    return {world, camera, settings, other, *this};
   }
 
   /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a

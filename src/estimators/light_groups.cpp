@@ -10,14 +10,20 @@ namespace {
 
 constexpr const char* rest = "rest";
 
+/// What is asked of a group: its photons are its own.
+EstimatorTask task_of(const EstimatorTask& of_all) {
+  EstimatorTask task = of_all;
+  task.photons = nullptr;
+  task.of_scene = nullptr;
+  return task;
+}
+
 /// One group and what renders it.
 struct Group {
   Group(const EstimatorInput& from, const EstimatorType& type, const std::vector<bool>& lights,
         bool with_emission)
-      : world(from.world), plan(from.plan), input{world,     from.camera,  from.settings,
-                                                  plan,      from.frame,   from.window,
-                                                  from.stop, nullptr,      from.blur_pixels,
-                                                  from.deep, from.objects, from.layers} {
+      : world(from.world), plan(from.plan),
+        input(world, from.camera, from.settings, plan, task_of(from)) {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();

@@ -1,6 +1,7 @@
 #include "estimators/profile_shading.h"
 
 #include "estimators/deep_ray.h"
+#include "estimators/opacity_pieces.h"
 #include "transport/emission.h"
 
 namespace vdbeam {
@@ -43,18 +44,8 @@ void add_coverage(const EstimatorInput& input, const CameraRay& camera, const De
                   float left, std::size_t pixel, PassImage& image) {
   const Medium& medium = input.world.medium;
   std::vector<float> sums(medium.volumes.size());
-  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot) {
-    const Rgb before = profile.channels(medium, knot - 1), after = profile.channels(medium, knot);
-    for (int c = 0; c < 3; ++c) {
-      const float piece = after[c] - before[c];
-      if (!(piece > 0))
-        continue;
-      const float added = std::exp(-before[c]) * -std::expm1(-piece) / (3 * piece);
-      for (std::size_t v = 0; v < sums.size(); ++v)
-        sums[v] += added * medium.volumes[v].channel_scale[c] *
-                   (profile.tau(knot, v) - profile.tau(knot - 1, v));
-    }
-  }
+  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot)
+    add_opacity(medium, profile, knot, [&](std::size_t v, float share) { sums[v] += share; });
   const SceneObjects& objects = *input.objects;
   for (std::size_t v = 0; v < sums.size(); ++v)
     image.coverage[objects.of_volume[medium.volumes[v].setting]][pixel] += sums[v];

@@ -1,5 +1,6 @@
 #include "estimators/ray_layers.h"
 
+#include "estimators/opacity_pieces.h"
 #include "estimators/plane_layers.h"
 #include "estimators/scene_objects.h"
 
@@ -26,23 +27,16 @@ void for_each_piece(const Medium& medium, const DepthProfile& profile, const Vis
   Piece piece;
   const std::size_t volumes = medium.volumes.size();
   for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot) {
-    const Rgb before = profile.channels(medium, knot - 1), after = profile.channels(medium, knot);
     piece.added.assign(volumes, 0);
+    add_opacity(medium, profile, knot,
+                [&](std::size_t v, float share) { piece.added[v] += share; });
     piece.total = 0;
-    for (int c = 0; c < 3; ++c) {
-      const float depth = after[c] - before[c];
-      if (!(depth > 0))
-        continue;
-      const float added = std::exp(-before[c]) * -std::expm1(-depth) / (3 * depth);
-      for (std::size_t v = 0; v < volumes; ++v)
-        piece.added[v] += added * medium.volumes[v].channel_scale[c] *
-                          (profile.tau(knot, v) - profile.tau(knot - 1, v));
-    }
     for (const float added : piece.added)
       piece.total += added;
     if (!(piece.total > 0))
       continue;
-    const float depth = mean_component(after) - mean_component(before);
+    const float depth = mean_component(profile.channels(medium, knot)) -
+                        mean_component(profile.channels(medium, knot - 1));
     piece.t = profile.t(knot - 1) + mean_collision(depth) * (profile.t(knot) - profile.t(knot - 1));
     visit(piece);
   }

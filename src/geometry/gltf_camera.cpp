@@ -2,6 +2,7 @@
 
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <assimp/Importer.hpp>
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -181,9 +181,7 @@ void parse(const std::string& path, const std::string& name, double rate, int ou
 } // namespace
 
 bool is_gltf_file(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   return extension == ".gltf" || extension == ".glb";
 }
 

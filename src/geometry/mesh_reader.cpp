@@ -2,6 +2,7 @@
 
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -26,9 +26,7 @@ constexpr const char* kinds = "an .obj, .ply, .gltf or .glb file";
 } // namespace
 
 bool is_mesh_file(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   return extension == ".obj" || extension == ".ply" || extension == ".gltf" || extension == ".glb";
 }
 

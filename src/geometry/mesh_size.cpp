@@ -2,6 +2,7 @@
 
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
+#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <nlohmann/json.hpp>
@@ -93,9 +94,7 @@ std::string json_of_glb(std::istream& file) {
 }
 
 MeshSize foretell(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension)
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   std::ifstream file(path, std::ios::binary);
   if (extension == ".ply")
     return foretell_ply(file);

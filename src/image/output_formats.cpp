@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 namespace vdbeam {
@@ -50,9 +48,7 @@ std::string output_extensions() {
 }
 
 const OutputFormat& output_format(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   for (const OutputFormat& format : formats)
     if (format.extension == extension)
       return format;

@@ -98,8 +98,8 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   const bool correlated = scene.render.seeds == SeedPolicy::correlated;
   const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(scene.frame.number);
   PassLoop loop(scene, frame, hooks, window, result);
-  EstimatorInput input{world, camera, scene.render,       result.plan,
-                       key,   window, &loop.stop_token(), prepared->photons.get()};
+  EstimatorInput input(world, camera, scene.render, result.plan,
+                       {key, window, &loop.stop_token(), prepared->photons.get()});
   std::vector<std::size_t> blur_pixels;
   if (result.plan.needs(Stage::bias) && result.plan.needs(Stage::beam_query)) {
     blur_pixels = choose_blur_pixels(window, camera.width(), loop.probe_pixels());

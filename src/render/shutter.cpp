@@ -31,15 +31,19 @@ std::uint64_t bytes_of(const World& world) {
   return bytes;
 }
 
+/// What is asked of a moment: all that is asked of the scene, with photons of its own.
+EstimatorTask task_of(const EstimatorTask& scene, const PreparedScene& moment) {
+  EstimatorTask task = scene;
+  task.photons = moment.photons.get();
+  return task;
+}
+
 } // namespace
 
 Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const Camera& camera_,
                                         const EstimatorInput& from, const RenderPlan& path_plan)
-    : prepared(prepared_),
-      camera(camera_), input{*prepared->world, camera,      from.settings, from.plan,
-                             from.frame,       from.window, from.stop,     prepared->photons.get(),
-                             from.blur_pixels, from.deep,   from.objects,  from.layers,
-                             from.of_scene},
+    : prepared(prepared_), camera(camera_),
+      input(*prepared->world, camera, from.settings, from.plan, task_of(from, *prepared)),
       path_input(input.with(path_plan)) {}
 
 Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,

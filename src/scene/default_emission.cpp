@@ -1,10 +1,10 @@
 #include "scene/default_emission.h"
 
+#include "text/text.h"
 #include "volume/blackbody.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -29,12 +29,6 @@ struct GridExtent {
 };
 
 constexpr const char* flame_names[] = {"flame", "flames", "fire", "heat", "burn"};
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 GridExtent find_extent(const std::vector<std::vector<GridSummary>>& summaries,
                        const std::string& name) {

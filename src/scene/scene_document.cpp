@@ -115,9 +115,7 @@ bool only_camera_moves(const toml::table& root) {
 } // namespace
 
 bool is_vdb_file(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(fs::path(path).extension().string());
   if (extension == ".vdb")
     return true;
   char magic[4] = {};

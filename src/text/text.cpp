@@ -57,6 +57,13 @@ std::string one_line(const std::string& text) {
   return result;
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z')
+      c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 std::string join_words(const std::vector<std::string>& words, const std::string& conjunction) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -16,6 +16,9 @@ std::optional<std::string> nearest_word(const std::string& word,
 /// 160 bytes is cut off and marked by "...".
 std::string one_line(const std::string& text);
 
+/// With small letters for the capitals of ASCII.
+std::string lower_case(std::string text);
+
 /// "a, b and c" (or the last joined by `conjunction`).
 std::string join_words(const std::vector<std::string>& words, const std::string& conjunction);
 

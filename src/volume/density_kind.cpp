@@ -1,16 +1,13 @@
 #include "volume/density_kind.h"
 
-#include <algorithm>
-#include <cctype>
+#include "text/text.h"
+
 #include <fmt/format.h>
 
 namespace vdbeam {
 
 bool is_level_set(const GridSummary& grid) {
-  std::string text = grid.grid_class;
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text == "level set";
+  return lower_case(grid.grid_class) == "level set";
 }
 
 GridKind kind_of(const GridSummary& grid) {

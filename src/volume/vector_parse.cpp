@@ -59,12 +59,6 @@ std::vector<NamedGrid> list_grids(openvdb::io::File& file) {
   return grids;
 }
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// The grid of this name, capitals aside.
 const NamedGrid* find(const std::vector<NamedGrid>& grids, const std::string& name) {
   for (const NamedGrid& grid : grids)

@@ -17,7 +17,7 @@ public:
   TestFrame(const TestFrame&) = delete;
 
   EstimatorInput input(std::uint64_t frame = 1) const {
-    return {world, camera, settings, plan, frame};
+    return {world, camera, settings, plan, {frame}};
   }
   std::unique_ptr<Estimator> estimator(std::uint64_t frame = 1) const {
     return make_estimator(settings.estimator, input(frame));
