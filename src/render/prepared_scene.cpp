@@ -1,6 +1,6 @@
 #include "render/prepared_scene.h"
 
-#include "machine/input_file.h"
+#include "geometry/gltf_files.h"
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/read_volumes.h"
@@ -23,7 +23,7 @@ std::string settings_text(const Scene& scene, const Wanted& wanted) {
       const std::string value = key.format(key.get(scene, i));
       text += key_path(key, i) + "=" + value + ";";
       if (key.kind == KeyKind::file)
-        text += file_identity(std::get<std::string>(key.get(scene, i))) + ";";
+        text += mesh_identity(std::get<std::string>(key.get(scene, i))) + ";";
     }
   }
   return text;

@@ -1,9 +1,11 @@
 #include "estimators/plane_layers.h"
+#include "geometry/gltf_files.h"
 #include "scene/content_hash.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/scene_file.h"
 
 #include <bit>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace vdbeam {
@@ -26,6 +28,14 @@ void add(ContentHash& hash, const KeyValue& value) {
   else if (const auto* list = std::get_if<std::vector<double>>(&value))
     for (const double x : *list)
       hash.add_number(std::bit_cast<std::uint64_t>(x + 0.0)); // -0 is 0
+}
+
+/// A file with those that it names.
+void add_file(ContentHash& hash, const std::string& path) {
+  hash.add_number(hash_file(path));
+  for (const std::string& file : gltf_files(path))
+    if (std::filesystem::is_regular_file(file))
+      hash.add_number(hash_file(file));
 }
 
 /// What passes see at other moments; the files are those of the scene itself.
@@ -51,7 +61,7 @@ std::string hash_scene(const Scene& scene, bool with_stop_rule) {
       if (absent)
         hash.add_number(0);
       else if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
-        hash.add_number(hash_file(std::get<std::string>(value)));
+        add_file(hash, std::get<std::string>(value));
       else
         add(hash, value);
     }

@@ -1,24 +1,14 @@
 #include "transport/surface_store.h"
 
+#include "geometry/gltf_files.h"
 #include "geometry/mesh_reader.h"
 #include "geometry/smooth_normals.h"
 #include "machine/input_file.h"
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 namespace vdbeam {
 namespace {
-
-/// A .gltf file leaves its numbers to others, by the custom of exporters to NAME.bin.
-std::string mesh_identity(const std::string& path) {
-  std::filesystem::path file(path);
-  if (file.extension() != ".gltf")
-    return file_identity(path);
-  file.replace_extension(".bin");
-  return fmt::format("{}|{}", file_identity(path), file_identity(file.string()));
-}
 
 /// What is known under a name, or null.
 template <class Map>

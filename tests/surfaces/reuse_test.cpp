@@ -100,6 +100,31 @@ TEST_F(SurfaceReuse, what_changes_is_made_again) {
   EXPECT_EQ(next(), (Work{0, 0, 2}));
 }
 
+/// A .gltf file whose numbers are in a file of another name.
+TEST_F(SurfaceReuse, buffers_of_gltf_files_are_part_of_them) {
+  std::ofstream(folder_.file("triangle.gltf"))
+      << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "buffers": [{"byteLength": 36, "uri" : "points.bin"}],
+    "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [-2, -2, 0], "max": [2, 2, 0]}]})";
+  const auto write_points = [&](float size) {
+    const float points[9] = {-size, -size, 0, size, -size, 0, 0, size, 0};
+    std::ofstream(folder_.file("points.bin"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(points), sizeof points);
+  };
+  write_points(1);
+  const std::vector<std::string> more = {"mesh.1.file=" + folder_.file("triangle.gltf")};
+  EXPECT_EQ(next(more), (Work{2, 1, 3}));
+  EXPECT_EQ(next(more), (Work{0, 0, 0}));
+  const std::string before = scene_hash(load(more));
+  write_points(1.5f);
+  make_newer("points.bin");
+  EXPECT_EQ(next(more), (Work{1, 0, 1}));
+  EXPECT_NE(scene_hash(load(more)), before);
+}
+
 TEST_F(SurfaceReuse, moments_of_a_shutter_share_all_of_it) {
   const RenderResult result =
       render(load({"camera.shutter_close=1", "mesh.0.translate={keys=[[1,[0,0,0]],[2,[1,1,0]]]}"}));
