@@ -11,6 +11,7 @@
 #include "render/pass_window.h"
 #include "render/quick_look.h"
 #include "report/image_metadata.h"
+#include "scene/shutter.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/metrics.h"
@@ -122,6 +123,11 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
   } else {
     develop();
   }
+  const int times = shutter_times(scene_.camera);
+  if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() < times)
+    note(fmt::format("the open shutter was seen at {} only, one in each pass: blur may show as "
+                     "steps; render at least {} passes",
+                     count_text(static_cast<std::uint64_t>(film_.passes()), "moment"), times));
   if (film_.invalid_values() > 0)
     note(fmt::format("{} pixel values were not finite and count as 0", film_.invalid_values()));
   if (scene_.render.clamp)

@@ -17,6 +17,10 @@ bool may_have_velocity(const Scene& scene) {
 
 } // namespace
 
+int shutter_times(const CameraSettings& camera) {
+  return camera.shutter_times > 0 ? camera.shutter_times : usual_times;
+}
+
 void add_moments(Scene& scene, bool animated, const std::function<Scene(double time)>& scene_at) {
   scene.moments.clear();
   scene.next.clear();
@@ -25,7 +29,7 @@ void add_moments(Scene& scene, bool animated, const std::function<Scene(double t
   const CameraSettings& camera = scene.camera;
   if (!camera.has_shutter() || !(animated || may_have_velocity(scene)))
     return;
-  const int times = camera.shutter_times > 0 ? camera.shutter_times : usual_times;
+  const int times = shutter_times(camera);
   const double length = camera.shutter_close - camera.shutter_open;
   const auto time_of = [&](int part, int parts) {
     return scene.frame.time + camera.shutter_open + (part + 0.5) / parts * length;

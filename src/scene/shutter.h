@@ -6,6 +6,9 @@
 
 namespace vdbeam {
 
+/// Moments of the shutter's time at which volumes and lights are seen.
+int shutter_times(const CameraSettings& camera);
+
 /// Fills scene.moments where its shutter is open for some time and something moves: keys that are
 /// animated (`animated`), or volumes that may have velocities. `scene_at` gives the scene at
 /// another time [frames]. Moments lie in the middles of equal parts of the shutter's time; cameras

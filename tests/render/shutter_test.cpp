@@ -71,6 +71,19 @@ TEST_F(ShutterTest, NoTimeNoBlur) {
   EXPECT_TRUE(nothing_moves.moments.empty());
 }
 
+/// A time limit may end a frame before its passes have seen the whole of the shutter's time.
+TEST_F(ShutterTest, TellsOfTooFewPasses) {
+  const auto notes_of = [&](const std::string& passes) {
+    std::string all;
+    for (const std::string& note :
+         render(load({"camera.shutter_close=1", "render.passes=" + passes})).notes)
+      all += note + "\n";
+    return all;
+  };
+  EXPECT_NE(notes_of("5").find("the open shutter was seen at 5 moments only"), std::string::npos);
+  EXPECT_EQ(notes_of("16").find("open shutter"), std::string::npos);
+}
+
 /// The blurred picture is the mean of the pictures at the moments: each pass is that of the scene
 /// with the volume moved. Optical depths are small, so opacity adds up to the mass of the ball, and
 /// its centre tells how far it came.
