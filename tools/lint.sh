@@ -22,9 +22,12 @@ if ((format)); then
 fi
 if ((tidy)); then
   mapfile -t sources < <(printf '%s\n' "${files[@]}" | grep '^src/.*\.cpp$')
-  # g++ alone knows some of the flags that the build uses.
+  # g++ alone can read the header that it precompiled, and knows some of the flags that the build uses.
+  mkdir -p build/tidy
+  sed -E 's/-Winvalid-pch -include [^ ]*cmake_pch\.hxx//g' build/release/compile_commands.json \
+    > build/tidy/compile_commands.json
   printf '%s\0' "${sources[@]}" | xargs -0 -n 1 -P "$(nproc)" \
-    "$(command -v clang-tidy-14 || echo clang-tidy)" -p build/release --quiet \
+    "$(command -v clang-tidy-14 || echo clang-tidy)" -p build/tidy --quiet \
     --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument || status=1
 fi
 exit "$status"

@@ -129,11 +129,12 @@ public:
       return {};
     const auto [b1, b2] = barycentric(i, point);
     const auto& [a, b, c] = mesh_.triangles[i];
-    const auto mean = [&](float Uv::*part) {
-      const auto at = [&](std::uint32_t k) { return static_cast<double>(mesh_.uvs[k].*part); };
-      return static_cast<float>(at(a) * (1 - b1 - b2) + at(b) * b1 + at(c) * b2);
-    };
-    return {mean(&Uv::u), mean(&Uv::v)};
+    const Uv &first = mesh_.uvs[a], &second = mesh_.uvs[b], &third = mesh_.uvs[c];
+    const auto u = static_cast<double>(first.u) * (1 - b1 - b2) +
+                   static_cast<double>(second.u) * b1 + static_cast<double>(third.u) * b2;
+    const auto v = static_cast<double>(first.v) * (1 - b1 - b2) +
+                   static_cast<double>(second.v) * b1 + static_cast<double>(third.v) * b2;
+    return {static_cast<float>(u), static_cast<float>(v)};
   }
   bool is_smooth() const override { return !mesh_.normals.empty(); }
   Vec3d shading_normal(std::size_t i, const Vec3d& point) const override {

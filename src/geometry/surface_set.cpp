@@ -222,7 +222,8 @@ double SurfaceSet::area(std::size_t surface) const {
   constexpr int points = 64;
   double sum = 0;
   for (int i = 0; i < points * points; ++i) {
-    const double u = (i % points + 0.5) / points, v = (i / points + 0.5) / points;
+    const int row = i / points;
+    const double u = (i % points + 0.5) / points, v = (row + 0.5) / points;
     sum += entry.stretch(shape.sample((i + 0.5) / (points * points), u, v).normal);
   }
   return shape.area() * sum / (points * points);
