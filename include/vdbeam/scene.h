@@ -35,7 +35,7 @@ struct VolumeSettings {
   DensityRemap remap;
   Interpolation interpolation = Interpolation::linear; ///< of density and emission
   std::string add;        ///< names of grids that are added to the density: "a, b"
-  std::string mask;       ///< name of a grid whose values multiply the density; empty: none
+  std::string mask;       ///< names of grids whose values multiply the density; empty: none
   std::string color_grid; ///< a vec3 grid, or "r,g,b", that multiplies the albedo; "auto"; empty
   NoiseSettings noise;    ///< displaces density and emission
   std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]

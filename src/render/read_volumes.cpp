@@ -78,10 +78,10 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   return edits;
 }
 
-/// The density and what is added to it.
-std::vector<std::string> density_names(const VolumeSettings& volume) {
-  std::vector<std::string> names{volume.density};
-  std::istringstream list(volume.add);
+/// The names of a list like "a, b".
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream list(text);
   for (std::string name; std::getline(list, name, ',');) {
     const auto first = name.find_first_not_of(' '), last = name.find_last_not_of(' ');
     if (first != std::string::npos)
@@ -91,21 +91,23 @@ std::vector<std::string> density_names(const VolumeSettings& volume) {
 }
 
 DensityGrid masked_density(const VolumeSettings& volume, DensityGrid grid) {
-  if (volume.mask.empty())
-    return grid;
-  const DensityGrid mask = read_density_grid(volume.file, volume.mask, {}, Background::ignored);
-  GridEdits edits;
-  edits.to_world = grid.index_to_world;
-  edits.mask = &mask;
-  edits.mask_to_world = mask.index_to_world;
-  grid.field = edited_field(grid.field, edits);
+  for (const std::string& name : names_in(volume.mask)) {
+    const DensityGrid mask = read_density_grid(volume.file, name, {}, Background::ignored);
+    GridEdits edits;
+    edits.to_world = grid.index_to_world;
+    edits.mask = &mask;
+    edits.mask_to_world = mask.index_to_world;
+    grid.field = edited_field(grid.field, edits);
+  }
   return grid;
 }
 
-/// The density as its file has it, with all that is added, times its mask, displaced by noise.
+/// The density as its file has it, with all that is added, times its masks, displaced by noise.
 DensityGrid read_density(const VolumeSettings& volume) {
   std::vector<DensityGrid> grids;
-  for (const std::string& name : density_names(volume)) {
+  std::vector<std::string> names = names_in(volume.add);
+  names.insert(names.begin(), volume.density);
+  for (const std::string& name : names) {
     grids.push_back(read_density_grid(volume.file, name));
     if (volume.interpolation == Interpolation::cubic)
       grids.back() = refined_grid(grids.back(), volume.file, granted_memory());

@@ -38,7 +38,8 @@ void add_volume(KeyTable& table) {
   add_placement(table, &V::transform);
 
   table.add("add", &V::add, R"(names of grids that are added to the density, "a, b"; "": none)");
-  table.add("mask", &V::mask, R"(name of a grid whose values multiply the density; "": none)");
+  table.add("mask", &V::mask,
+            R"(names of grids whose values multiply the density, "a, b"; "": none)");
   using D = DensityRemap;
   table.add("density_scale", &D::scale, "the density's values are multiplied by this");
   table.add("density_offset", &D::offset, "then this is added to values above 0");

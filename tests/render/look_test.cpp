@@ -82,6 +82,16 @@ TEST_F(Look, AMaskMultiplies) {
   EXPECT_THROW(render(load({"volume.0.mask=nothing"})), InputError);
 }
 
+TEST_F(Look, SeveralMasksMultiply) {
+  VolumeOptions options;
+  options.size = 24;
+  write_volume("colored", folder_.file("box.vdb"), options); // tints of 1/4 and 3/4 in all of it
+  const std::string file = "volume.0.file=" + folder_.file("box.vdb");
+  expect_near(opacity(render(load({file, "volume.0.mask=tint_g, tint_b"})).image),
+              opacity(render(load({file, "volume.0.density_scale=0.1875"})).image));
+  EXPECT_THROW(render(load({file, "volume.0.mask=tint_g, nothing"})), InputError);
+}
+
 TEST_F(Look, TellsWhatIsWrong) {
   const auto error = [&](const std::vector<std::string>& overrides) {
     try {
