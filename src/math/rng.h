@@ -22,7 +22,8 @@ enum class RngStage : std::uint64_t {
   test,
   walk,
   split,
-  surface
+  surface,
+  line
 };
 
 /// Everything that identifies a stream, except the index within its stage.

@@ -1,8 +1,11 @@
 #include "transport/similar_medium.h"
 
+#include "math/sampling.h"
 #include "phase/truncated_phase.h"
+#include "transport/optical_depth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vdbeam {
 
@@ -15,6 +18,12 @@ constexpr int passes_of_first_order = 64;
 /// The first order takes no larger share than this for a peak. With more, light that is scattered
 /// twice by small angles, towards which one looks at a sun through the medium, is too dark.
 constexpr float largest_first_peak = 0.6f;
+
+/// In media of this typical depth without the peak or more, the first order is the lowest; in
+/// thinner ones it is one higher whenever the depth halves. There light is scattered but a few
+/// times, and the truncation of each scattering shows (docs/decisions.md).
+constexpr double depth_of_lowest_order = 24;
+constexpr double most_orders_for_thinness = 4;
 
 /// The volume with the share `f` of its scattering taken for no scattering; adds to `peak` what
 /// leads back.
@@ -59,37 +68,68 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order) {
   return similar;
 }
 
+double typical_depth(const Medium& medium) {
+  constexpr std::uint64_t lines = 512;
+  if (medium.empty())
+    return 0;
+  const Vec3f centre = medium.bounds.center();
+  const float radius = length(medium.bounds.upper - centre);
+  double sum = 0, squares = 0;
+  for (std::uint64_t line = 0; line < lines; ++line) {
+    Rng rng({}, RngStage::line, line);
+    const float u = rng.uniform(), v = rng.uniform();
+    const Vec3f direction = sample_sphere(u, v);
+    Vec3f across, up;
+    orthonormal_frame(direction, across, up);
+    const float r = radius * std::sqrt(rng.uniform()), phi = 2 * pi * rng.uniform();
+    const Vec3f origin =
+        centre + across * (r * std::cos(phi)) + up * (r * std::sin(phi)) - direction * radius;
+    const double through =
+        max_component(exact_transmittance(medium, {{origin, direction}, 0, 2 * radius}));
+    const double depth =
+        std::min<double>(opaque_optical_depth, -std::log(std::max(1e-30, through)));
+    sum += depth;
+    squares += depth * depth;
+  }
+  return sum > 0 ? squares / sum : 0;
+}
+
 PassWorlds::PassWorlds(const World& world, bool take_out)
     : world_(world), take_out_(take_out), first_order_(least_truncation_order) {
+  if (!take_out)
+    return;
+  int lowest = least_truncation_order;
   const auto leaves_enough = [&](const PhaseFunction& phase) {
-    return truncate_peak(phase, first_order_).forward <= largest_first_peak;
+    return truncate_peak(phase, lowest).forward <= largest_first_peak;
   };
-  if (take_out)
-    while (first_order_ < most_truncation_order &&
-           !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
-      ++first_order_;
+  while (lowest < most_truncation_order &&
+         !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
+    ++lowest;
+  first_order_ = lowest;
+  if (const auto medium = similar_medium(world.medium, lowest))
+    first_order_ += std::clamp(std::log2(depth_of_lowest_order / typical_depth(*medium)), 0.0,
+                               most_orders_for_thinness);
 }
 
 int PassWorlds::order(int pass) const {
-  int result = first_order_;
-  for (std::int64_t until = passes_of_first_order; pass >= until && result < most_truncation_order;
-       until *= 3)
+  // Multiples of the golden ratio spread the passes of one more evenly.
+  const double spread = std::fmod(0.5 + 0.61803398875 * pass, 1.0);
+  int result = static_cast<int>(first_order_ + spread);
+  for (std::int64_t until = passes_of_first_order; pass >= until; until *= 3)
     ++result;
-  return result;
+  return std::min(result, most_truncation_order);
 }
 
 const World& PassWorlds::of(int pass) {
   if (!take_out_)
     return world_;
-  if (order_ != order(pass)) {
-    order_ = order(pass);
-    similar_.reset();
-    if (const auto medium = similar_medium(world_.medium, order_)) {
-      similar_ = std::make_unique<World>(world_);
-      similar_->medium = *medium;
+  const auto [at, is_new] = similar_.try_emplace(order(pass));
+  if (is_new)
+    if (const auto medium = similar_medium(world_.medium, at->first)) {
+      at->second = std::make_unique<World>(world_);
+      at->second->medium = *medium;
     }
-  }
-  return similar_ ? *similar_ : world_;
+  return at->second ? *at->second : world_;
 }
 
 } // namespace vdbeam

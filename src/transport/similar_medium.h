@@ -2,6 +2,7 @@
 
 #include "transport/world.h"
 
+#include <map>
 #include <memory>
 
 namespace vdbeam {
@@ -21,18 +22,23 @@ public:
   /// `world` must outlive this. `take_out`: false where the scene's own medium is wanted.
   PassWorlds(const World& world, bool take_out);
 
-  /// The world of a pass; the reference holds until the next call for a pass of another order.
+  /// The world of a pass.
   const World& of(int pass);
 
-  /// The truncation order of a pass: at first one that leaves enough of each phase function, then
-  /// one more whenever the number of passes has tripled.
+  /// The truncation order of a pass: at first one that leaves enough of each phase function, higher
+  /// where the medium is thin; then one more whenever the number of passes has tripled.
   int order(int pass) const;
 
 private:
   const World& world_;
   bool take_out_;
-  int first_order_, order_ = 0;
-  std::unique_ptr<World> similar_;
+  double first_order_; ///< what is beyond a whole number is the share of passes of one more
+  std::map<int, std::unique_ptr<World>> similar_; ///< by order; null where no peak is taken out
 };
+
+/// How deep the medium is for light that crosses it: the mean optical depth of straight lines in
+/// all directions, weighted by the optical depth itself, so that thin skins about dense cores do
+/// not count. Lines count as no deeper than opaque_optical_depth.
+double typical_depth(const Medium& medium);
 
 } // namespace vdbeam

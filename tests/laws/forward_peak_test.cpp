@@ -1,6 +1,7 @@
 // Media whose forward peak is taken out of multiple scattering obey the laws and agree with path.
 #include "estimators/photon_plan.h"
 #include "phase/truncated_phase.h"
+#include "transport/optical_depth.h"
 #include "transport/similar_medium.h"
 
 #include "support/memory_scene.h"
@@ -80,10 +81,10 @@ TEST_P(ForwardPeak, FurnaceOfLumps) {
       scene.add_light(LightType::environment).radiance = Rgb(1);
       scene.scene.render.estimator = GetParam();
       scene.scene.render.photons = 40000;
-      scene.scene.render.neighbours = 100;
+      scene.scene.render.neighbours = 300;
       if (sampled)
         scene.scene.render.direct = DirectLight::sampled;
-      const Picture picture = render(scene, 32);
+      const Picture picture = render(scene, 64);
       double worst = 0;
       for (std::size_t i = 0; i < picture.mean.size(); ++i) {
         // 5 standard errors, and the bias of kernels at rims.
@@ -163,8 +164,41 @@ float mean_cosine(const PhaseFunction& phase) {
   return static_cast<float>(legendre_moments(phase, 2)[1]);
 }
 
+/// Lines through a ball of radius R are 4/3 R long on average, and 2 R squared.
+TEST(TypicalDepth, IsThatOfChordsWeightedByTheirLength) {
+  const double sigma = 3, radius = 0.4;
+  MemoryScene scene;
+  const DensityField ball = closed_field({8, 8, 8}, [](int i, int j, int k) {
+    const double d =
+        std::sqrt((i - 31.5) * (i - 31.5) + (j - 31.5) * (j - 31.5) + (k - 31.5) * (k - 31.5));
+    return d < 0.4 * 64 ? 1.0 : 0.0;
+  });
+  scene.add(ball, box_map({8, 8, 8}, Vec3d(-0.5), Vec3d(0.5))).extinction = sigma;
+  EXPECT_NEAR(typical_depth(scene.world().medium), 1.5 * radius * sigma, 0.1 * radius * sigma);
+  scene.scene.volumes[0].extinction = 1e6;
+  EXPECT_NEAR(typical_depth(scene.world().medium), opaque_optical_depth, 0.1);
+}
+
+/// Where light is scattered but a few times, the truncation of each scattering shows. The mean
+/// order grows steadily as the medium gets thinner, so that no frame of a sequence jumps.
+TEST(PassWorlds, TakeOutLessOfThinMedia) {
+  double before = 4;
+  for (const double depth : {100.0, 60.0, 40.0, 25.0, 15.0, 10.0, 6.0, 4.0, 2.5, 1.5}) {
+    const MemoryScene scene = lumps(depth, henyey_greenstein(0.85));
+    const World world = scene.world();
+    const PassWorlds worlds(world, true);
+    double mean = 0;
+    for (int pass = 0; pass < 64; ++pass)
+      mean += worlds.order(pass) / 64.0;
+    EXPECT_GE(mean, before);
+    EXPECT_LT(mean, before + 1.5);
+    before = mean;
+  }
+  EXPECT_GT(before, 7.5);
+}
+
 TEST(PassWorlds, TakeOutLessAndLess) {
-  const MemoryScene scene = lumps(10, henyey_greenstein(0.9));
+  const MemoryScene scene = lumps(1000, henyey_greenstein(0.9));
   const World world = scene.world();
   PassWorlds worlds(world, true);
   float before = 1;
