@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace vdbeam {
 namespace {
 
@@ -80,6 +82,20 @@ PhaseFunction PhaseFunction::polynomial(const std::vector<double>& coefficients)
   return result;
 }
 
+PhaseFunction PhaseFunction::table(std::vector<float> cosines) {
+  PhaseFunction result;
+  result.lobe_count_ = 0;
+  result.cosines_ = std::make_shared<const std::vector<float>>(std::move(cosines));
+  return result;
+}
+
+float PhaseFunction::evaluate_table(float cos_theta) const {
+  const std::vector<float>& c = *cosines_;
+  const auto above = std::upper_bound(c.begin() + 1, c.end() - 1, cos_theta);
+  const float share = 1 / static_cast<float>(c.size() - 1);
+  return share / (2 * pi * (*above - *(above - 1)));
+}
+
 void PhaseFunction::set_lobe(int i, const DraineLobe& lobe) {
   lobes_[i] = lobe;
   const double g = std::abs(static_cast<double>(lobe.g)), alpha = lobe.alpha;
@@ -93,8 +109,16 @@ void PhaseFunction::set_lobe(int i, const DraineLobe& lobe) {
 }
 
 Vec3f PhaseFunction::sample(const Vec3f& direction, float u_lobe, float u, float v) const {
-  const DraineLobe& lobe = lobes_[lobe_count_ == 2 && u_lobe >= lobes_[0].weight ? 1 : 0];
-  const float x = sample_draine_one_minus_cos(lobe.g, lobe.alpha, u);
+  float x = 0; // 1 - cos
+  if (cosines_) {
+    const float place = u * static_cast<float>(cosines_->size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(place), cosines_->size() - 2);
+    const float* c = cosines_->data() + i;
+    x = 1 - (c[0] + (c[1] - c[0]) * (place - static_cast<float>(i)));
+  } else {
+    const DraineLobe& lobe = lobes_[lobe_count_ == 2 && u_lobe >= lobes_[0].weight ? 1 : 0];
+    x = sample_draine_one_minus_cos(lobe.g, lobe.alpha, u);
+  }
   const float sin_theta = std::sqrt(x * (2 - x)); // exact for small angles, unlike 1 - cos^2
   const float phi = 2 * pi * v;
   Vec3f tangent, bitangent;
@@ -104,7 +128,7 @@ Vec3f PhaseFunction::sample(const Vec3f& direction, float u_lobe, float u, float
 }
 
 bool PhaseFunction::isotropic() const {
-  if (coefficient_count_ > 1)
+  if (coefficient_count_ > 1 || cosines_)
     return false;
   for (int i = 0; i < lobe_count_; ++i)
     if (lobes_[i].g != 0 || lobes_[i].alpha != 0)

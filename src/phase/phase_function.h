@@ -3,6 +3,7 @@
 #include "vdbeam/scene.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace vdbeam {
@@ -39,8 +40,8 @@ struct PhaseTerm {
 /// A phase function as a blend of at most two Draine lobes: every model that the scene file offers
 /// has this form, so that the beam query needs one formula.
 /// cos_theta is between the directions of travel before and after; 1 is straight ahead.
-/// A phase function may also be a polynomial of the cosine (truncate_peak), for evaluation in
-/// integrals only.
+/// For media without their forward peak (truncate_peak) a phase function may also be a polynomial
+/// of the cosine, for evaluation in integrals only, or a table, to draw directions from.
 class PhaseFunction {
 public:
   PhaseFunction() = default;
@@ -51,11 +52,16 @@ public:
   /// lobes and cannot be sampled.
   static PhaseFunction polynomial(const std::vector<double>& coefficients);
   static constexpr int most_coefficients = 12;
+  /// From a table of equal shares: scattering has a cosine between cosines[i] and cosines[i + 1]
+  /// with the same chance for every i, uniformly. `cosines`: increasing, from -1 to 1.
+  static PhaseFunction table(std::vector<float> cosines);
 
   /// Value [1/sr]; integrates to 1 over the sphere.
   float evaluate(float cos_theta) const {
     if (coefficient_count_ > 0)
       return evaluate_polynomial(cos_theta);
+    if (cosines_)
+      return evaluate_table(cos_theta);
     const float first = terms_[0].value(cos_theta);
     return lobe_count_ == 1 ? first : first + terms_[1].value(cos_theta);
   }
@@ -68,12 +74,16 @@ public:
   int coefficient_count() const { return coefficient_count_; }
   float coefficient(int power) const { return coefficients_[power]; }
 
+  /// Of a table; null: it is none.
+  const std::vector<float>* cosines() const { return cosines_.get(); }
+
   int lobe_count() const { return lobe_count_; }
   const DraineLobe& lobe(int i) const { return lobes_[i]; }
   const PhaseTerm& term(int i) const { return terms_[i]; }
 
 private:
   void set_lobe(int i, const DraineLobe& lobe);
+  float evaluate_table(float cos_theta) const;
   float evaluate_polynomial(float cos_theta) const {
     float value = 0;
     for (int i = coefficient_count_ - 1; i >= 0; --i)
@@ -86,6 +96,7 @@ private:
   int lobe_count_ = 1;
   int coefficient_count_ = 0;
   std::array<float, most_coefficients> coefficients_{};
+  std::shared_ptr<const std::vector<float>> cosines_;
 };
 
 } // namespace vdbeam

@@ -17,7 +17,8 @@ std::vector<double> legendre_moments(const PhaseFunction& phase, int count);
 struct TruncatedPhase {
   float forward = 0; ///< fraction of scattering in the peak; 0: the phase function is unchanged
   PhaseFunction gathered; ///< p' as a polynomial; may be negative, for use under an integral only
-  PhaseFunction traced;   ///< Henyey-Greenstein of the mean cosine of p': to draw directions from
+  /// To draw directions from: p' where it is positive, tilted so that the mean cosine stays.
+  PhaseFunction traced;
 };
 
 /// Orders that `truncate_peak` takes.

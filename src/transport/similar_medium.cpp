@@ -20,10 +20,10 @@ constexpr int passes_of_first_order = 64;
 constexpr float largest_first_peak = 0.6f;
 
 /// In media of this typical depth without the peak or more, the first order is the lowest; in
-/// thinner ones it is one higher whenever the depth halves. There light is scattered but a few
-/// times, and the truncation of each scattering shows (docs/decisions.md).
+/// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
+/// few times, and the truncation of each scattering shows (docs/decisions.md).
 constexpr double depth_of_lowest_order = 24;
-constexpr double most_orders_for_thinness = 4;
+constexpr double most_order_for_thinness = 8;
 
 /// The volume with the share `f` of its scattering taken for no scattering; adds to `peak` what
 /// leads back.
@@ -106,9 +106,12 @@ PassWorlds::PassWorlds(const World& world, bool take_out)
          !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
     ++lowest;
   first_order_ = lowest;
-  if (const auto medium = similar_medium(world.medium, lowest))
-    first_order_ += std::clamp(std::log2(depth_of_lowest_order / typical_depth(*medium)), 0.0,
-                               most_orders_for_thinness);
+  if (lowest >= most_order_for_thinness)
+    return;
+  if (const auto medium = similar_medium(world.medium, lowest)) {
+    const double more = std::log2(depth_of_lowest_order / typical_depth(*medium));
+    first_order_ = std::clamp(lowest + more, first_order_, most_order_for_thinness);
+  }
 }
 
 int PassWorlds::order(int pass) const {

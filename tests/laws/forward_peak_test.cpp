@@ -84,7 +84,7 @@ TEST_P(ForwardPeak, FurnaceOfLumps) {
       scene.scene.render.neighbours = 300;
       if (sampled)
         scene.scene.render.direct = DirectLight::sampled;
-      const Picture picture = render(scene, 64);
+      const Picture picture = render(scene, 96);
       double worst = 0;
       for (std::size_t i = 0; i < picture.mean.size(); ++i) {
         // 5 standard errors, and the bias of kernels at rims.
