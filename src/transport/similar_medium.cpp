@@ -23,7 +23,7 @@ constexpr float largest_first_peak = 0.6f;
 /// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
 /// few times, and the truncation of each scattering shows (docs/decisions.md).
 constexpr double depth_of_lowest_order = 24;
-constexpr double most_order_for_thinness = 8;
+constexpr int most_order_for_thinness = 8;
 
 /// The volume with the share `f` of its scattering taken for no scattering; adds to `peak` what
 /// leads back.
@@ -106,11 +106,19 @@ PassWorlds::PassWorlds(const World& world, bool take_out)
          !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
     ++lowest;
   first_order_ = lowest;
-  if (lowest >= most_order_for_thinness)
+  const auto has_peak = [&](int order) {
+    return std::any_of(
+        world.medium.phases.begin(), world.medium.phases.end(),
+        [&](const PhaseFunction& phase) { return truncate_peak(phase, order).forward > 0; });
+  };
+  int highest = most_order_for_thinness;
+  while (highest > lowest && !has_peak(highest))
+    --highest;
+  if (lowest >= highest)
     return;
   if (const auto medium = similar_medium(world.medium, lowest)) {
     const double more = std::log2(depth_of_lowest_order / typical_depth(*medium));
-    first_order_ = std::clamp(lowest + more, first_order_, most_order_for_thinness);
+    first_order_ = std::clamp<double>(lowest + more, lowest, highest);
   }
 }
 
