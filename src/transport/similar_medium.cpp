@@ -40,6 +40,29 @@ Volume similar_volume(const Volume& volume, float f, PeakTakenOut& peak) {
   return similar;
 }
 
+/// The order of the first passes; what is beyond a whole number is the share of passes of one more.
+double first_order(const Medium& medium) {
+  const auto forward = [](const PhaseFunction& phase, int order) {
+    return truncate_peak(phase, order).forward;
+  };
+  int lowest = least_truncation_order, highest = most_order_for_thinness;
+  while (lowest < most_truncation_order &&
+         std::any_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
+           return forward(phase, lowest) > largest_first_peak;
+         }))
+    ++lowest;
+  // Not so high that there is no peak to take out.
+  while (highest > lowest &&
+         std::all_of(medium.phases.begin(), medium.phases.end(),
+                     [&](const PhaseFunction& phase) { return forward(phase, highest) == 0; }))
+    --highest;
+  const auto similar = highest > lowest ? similar_medium(medium, lowest) : nullptr;
+  if (!similar)
+    return lowest;
+  const double more = std::log2(depth_of_lowest_order / typical_depth(*similar));
+  return std::clamp<double>(lowest + more, lowest, highest);
+}
+
 } // namespace
 
 std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order) {
@@ -95,32 +118,8 @@ double typical_depth(const Medium& medium) {
 }
 
 PassWorlds::PassWorlds(const World& world, bool take_out)
-    : world_(world), take_out_(take_out), first_order_(least_truncation_order) {
-  if (!take_out)
-    return;
-  int lowest = least_truncation_order;
-  const auto leaves_enough = [&](const PhaseFunction& phase) {
-    return truncate_peak(phase, lowest).forward <= largest_first_peak;
-  };
-  while (lowest < most_truncation_order &&
-         !std::all_of(world.medium.phases.begin(), world.medium.phases.end(), leaves_enough))
-    ++lowest;
-  first_order_ = lowest;
-  const auto has_peak = [&](int order) {
-    return std::any_of(
-        world.medium.phases.begin(), world.medium.phases.end(),
-        [&](const PhaseFunction& phase) { return truncate_peak(phase, order).forward > 0; });
-  };
-  int highest = most_order_for_thinness;
-  while (highest > lowest && !has_peak(highest))
-    --highest;
-  if (lowest >= highest)
-    return;
-  if (const auto medium = similar_medium(world.medium, lowest)) {
-    const double more = std::log2(depth_of_lowest_order / typical_depth(*medium));
-    first_order_ = std::clamp<double>(lowest + more, lowest, highest);
-  }
-}
+    : world_(world), take_out_(take_out),
+      first_order_(take_out ? first_order(world.medium) : least_truncation_order) {}
 
 int PassWorlds::order(int pass) const {
   // Multiples of the golden ratio spread the passes of one more evenly.
