@@ -1,5 +1,6 @@
 #include "geometry/gltf_camera.h"
 
+#include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "text/text.h"
@@ -156,6 +157,7 @@ struct RawKey {
 /// In the child: parses the file, writes the field of view and the keys.
 void parse(const std::string& path, const std::string& name, double rate, int output) {
   Assimp::Importer importer;
+  open_uris(importer);
   const aiScene* scene = importer.ReadFile(path, 0);
   if (!scene)
     throw std::runtime_error(importer.GetErrorString());

@@ -2,6 +2,7 @@
 
 #include "machine/input_file.h"
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -26,7 +27,29 @@ std::string value_at(const std::string& json, std::size_t after_key) {
   return end == std::string::npos ? std::string() : json.substr(quote + 1, end - quote - 1);
 }
 
+/// A URI with each %20 and the like replaced by its character; what is no such code stays.
+std::string percent_decoded(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    const char* digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2 && code != 0) {
+      text += static_cast<char>(code);
+      i += 2;
+    } else {
+      text += uri[i];
+    }
+  }
+  return text;
+}
+
 } // namespace
+
+std::string named_by_uri(const std::string& path) {
+  std::error_code failed;
+  return std::filesystem::exists(path, failed) ? path : percent_decoded(path);
+}
 
 std::vector<std::string> gltf_files(const std::string& path) {
   std::error_code failed;
@@ -42,7 +65,7 @@ std::vector<std::string> gltf_files(const std::string& path) {
   for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at + 1))
     if (const std::string uri = value_at(json, at + key.size());
         !uri.empty() && uri.rfind("data:", 0) != 0)
-      files.push_back((folder / uri).string());
+      files.push_back(named_by_uri((folder / uri).string()));
   return files;
 }
 

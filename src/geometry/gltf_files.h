@@ -5,6 +5,10 @@
 
 namespace vdbeam {
 
+/// The file that is named by a path of which the end is a URI: this path where there is such a
+/// file, else that in which %20 and the like are decoded.
+std::string named_by_uri(const std::string& path);
+
 /// The files that a .gltf file names (`uri`: buffers with its numbers, pictures), as paths, in
 /// their order; not what it holds itself (`data:`). None of other files, and where it cannot be
 /// read, which reading the mesh will complain about.
