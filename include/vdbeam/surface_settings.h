@@ -97,9 +97,10 @@ enum class SurfaceShape { file, sphere, quad, disk };
 struct SurfaceSettings {
   std::string name; ///< in Cryptomatte; empty: mesh0, mesh1, ...
   SurfaceShape shape = SurfaceShape::file;
-  std::string file; ///< path, frame pattern already substituted
-  /// file: triangles that meet at this angle at most, in degrees, stand for a curved surface; 0:
-  /// they are flat.
+  std::string file;         ///< path, frame pattern already substituted
+  bool file_normals = true; ///< file: its normals, if any, tell what curved surface it stands for
+  /// file, without normals: triangles that meet at this angle at most, in degrees, stand for a
+  /// curved surface; 0: they are flat.
   double smooth_angle = 0;
   MaterialSettings material;
   bool visible = true; ///< to the camera; a hidden surface still stops and scatters light

@@ -93,13 +93,15 @@ std::string colors_text(const Image& image, const std::string& extension) {
 } // namespace
 
 std::string mesh_info(const std::string& path) {
-  const Mesh mesh = read_mesh(path, {}, true);
+  const Mesh mesh = read_mesh(path, {.uvs = true, .normals = true});
   const Boxd bounds = bounds_of(mesh);
+  const char* normals = mesh.normals.empty() ? "no: triangles are flat without smooth_angle"
+                                             : "yes: they shade it unless file_normals = false";
   std::string text = fmt::format(
       "{}\n  triangles     {}\n  vertices      {}\n  bounds        {} to {}\n  size          {}\n"
-      "  UV            {}\n",
+      "  UV            {}\n  normals       {}\n",
       path, mesh.triangles.size(), mesh.positions.size(), point_text(bounds.lower),
-      point_text(bounds.upper), point_text(bounds.size()), uv_text(mesh));
+      point_text(bounds.upper), point_text(bounds.size()), uv_text(mesh), normals);
   for (const std::string& note : mesh.notes)
     text += fmt::format("  looks wrong   {}\n", note);
   return text;

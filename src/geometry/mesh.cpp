@@ -1,5 +1,6 @@
 #include "geometry/mesh.h"
 
+#include "geometry/corner_normals.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -73,6 +74,8 @@ Mesh repair_mesh(const RawMesh& raw, const std::string& label) {
     mesh.notes.push_back(fmt::format("{}: triangles left out: {}", label, text));
   if (mesh.triangles.empty())
     throw FrameError(label + ": holds no triangle that can be used");
+  if (!raw.normals.empty())
+    take_normals(raw.normals, label, mesh);
   return mesh;
 }
 

@@ -20,8 +20,10 @@ struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Uv> uvs;                                 ///< per position, or none
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
-  std::vector<CornerNormals> normals; ///< per triangle, of the surface that it stands for, or none
-  std::vector<std::string> notes;     ///< for the user: repairs
+  /// Per triangle, of the surface that it stands for, or none; zero at corners for which the file
+  /// gives no normal (geometry/corner_normals.h).
+  std::vector<CornerNormals> normals;
+  std::vector<std::string> notes; ///< for the user: repairs
 
   std::size_t bytes() const {
     return positions.size() * sizeof(Vec3f) + uvs.size() * sizeof(Uv) +
@@ -32,12 +34,14 @@ struct Mesh {
 /// Triangles as a file has them: nothing in it is checked yet.
 struct RawMesh {
   std::vector<Vec3d> positions;
-  std::vector<Uv> uvs; ///< as many, or none
+  std::vector<Uv> uvs;        ///< as many, or none
+  std::vector<Vec3f> normals; ///< as many, of any length, zero where there is none; or none
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 /// Drops triangles that have an index beyond the vertices, a vertex that is not finite, or no area,
-/// and tells of them in the notes; recentres the rest. Throws FrameError where none is left.
+/// and tells of them in the notes; recentres the rest. Normals that cannot be used are zero, and
+/// told of too. Throws FrameError where no triangle is left.
 Mesh repair_mesh(const RawMesh& raw, const std::string& label);
 
 } // namespace vdbeam

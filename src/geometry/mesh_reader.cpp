@@ -1,11 +1,15 @@
 #include "geometry/mesh_reader.h"
 
+#include "geometry/gltf_camera.h"
+#include "geometry/gltf_json.h"
+#include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <assimp/Importer.hpp>
@@ -27,7 +31,7 @@ constexpr const char* kinds = "an .obj, .ply, .gltf or .glb file";
 
 bool is_mesh_file(const std::string& path) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  return extension == ".obj" || extension == ".ply" || extension == ".gltf" || extension == ".glb";
+  return extension == ".obj" || extension == ".ply" || is_gltf_file(path);
 }
 
 namespace {
@@ -37,6 +41,24 @@ std::uint64_t check_file(const std::string& path) {
   if (!is_mesh_file(path))
     throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
   return bytes;
+}
+
+/// assimp reads as many normals as a glTF file says that there are, and takes them for one per
+/// vertex.
+void check_gltf_normals(const std::string& path) {
+  const nlohmann::json gltf = read_gltf_json(path);
+  for (const auto& mesh : gltf.at("meshes"))
+    for (const auto& primitive : mesh.at("primitives")) {
+      const auto& attributes = primitive.at("attributes");
+      if (!attributes.contains("NORMAL"))
+        continue;
+      const std::uint64_t normals = accessor_count(gltf, attributes.at("NORMAL"));
+      const std::uint64_t vertices = accessor_count(gltf, attributes.at("POSITION"));
+      if (normals != vertices)
+        throw FrameError(fmt::format("{}: has {} normals for the {} vertices of a mesh: export it "
+                                     "again, or set mesh.N.file_normals = false",
+                                     path, normals, vertices));
+    }
 }
 
 /// What a sound file of this size can need at most. An OBJ file needs about two bytes per index, of
@@ -56,6 +78,24 @@ Affine to_affine(const aiMatrix4x4& m) {
   return map;
 }
 
+/// The normals of a part that has been appended; zero where it has none.
+void append_normals(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
+  if (!mesh.mNormals)
+    return;
+  raw.normals.resize(raw.positions.size());
+  // They go by the transposed inverse; what is left of its determinant is their length.
+  const auto &x = map.rows[0], &y = map.rows[1], &z = map.rows[2];
+  const double sign = map.determinant() < 0 ? -1 : 1;
+  const Vec3d c0 = cross(y, z) * sign, c1 = cross(z, x) * sign, c2 = cross(x, y) * sign;
+  const std::size_t first = raw.positions.size() - mesh.mNumVertices;
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& a = mesh.mNormals[i];
+    const Vec3d n{a.x, a.y, a.z};
+    const Vec3d mapped{dot(c0, n), dot(c1, n), dot(c2, n)};
+    raw.normals[first + i] = Vec3f(normalize(mapped));
+  }
+}
+
 void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
   const auto first = static_cast<std::uint32_t>(raw.positions.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
@@ -64,6 +104,7 @@ void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
     if (const aiVector3D* uv = mesh.mTextureCoords[0])
       raw.uvs.push_back({static_cast<float>(uv[i].x), static_cast<float>(uv[i].y)});
   }
+  append_normals(mesh, map, raw);
   // A map that mirrors turns triangles inside out.
   const bool mirrors = map.determinant() < 0;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
@@ -91,15 +132,23 @@ void append_node(const aiScene& scene, const aiNode& node, const Affine& parent,
 }
 
 struct Counts {
-  std::uint64_t positions = 0, uvs = 0, triangles = 0;
+  std::uint64_t positions = 0, uvs = 0, normals = 0, triangles = 0;
 };
 
-/// In the child: parses the file and writes counts, positions, texture coordinates and triangles.
-void parse(const std::string& path, bool with_uvs, int output) {
+/// In the child: parses the file and writes counts, positions, texture coordinates, normals and
+/// triangles.
+void parse(const std::string& path, const MeshParts& parts, int output) {
+  if (parts.normals && is_gltf_file(path))
+    try {
+      check_gltf_normals(path);
+    } catch (const nlohmann::json::exception&) { // assimp will complain
+    }
   Assimp::Importer importer;
+  open_uris(importer);
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_COLORS | (with_uvs ? 0 : int{aiComponent_TEXCOORDS}) |
+                              (parts.normals ? 0 : int{aiComponent_NORMALS}) |
+                                  aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+                                  (parts.uvs ? 0 : int{aiComponent_TEXCOORDS}) |
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   const aiScene* scene = importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
@@ -111,10 +160,14 @@ void parse(const std::string& path, bool with_uvs, int output) {
     append_node(*scene, *scene->mRootNode, {}, raw);
   if (raw.uvs.size() != raw.positions.size())
     raw.uvs.clear();
-  const Counts counts{raw.positions.size(), raw.uvs.size(), raw.triangles.size()};
+  if (!raw.normals.empty())
+    raw.normals.resize(raw.positions.size());
+  const Counts counts{raw.positions.size(), raw.uvs.size(), raw.normals.size(),
+                      raw.triangles.size()};
   write_all(output, &counts, sizeof counts);
   write_all(output, raw.positions.data(), raw.positions.size() * sizeof raw.positions[0]);
   write_all(output, raw.uvs.data(), raw.uvs.size() * sizeof raw.uvs[0]);
+  write_all(output, raw.normals.data(), raw.normals.size() * sizeof raw.normals[0]);
   write_all(output, raw.triangles.data(), raw.triangles.size() * sizeof raw.triangles[0]);
 }
 
@@ -133,10 +186,10 @@ bool take(const std::byte*& data, std::uint64_t& rest, std::uint64_t count,
 
 } // namespace
 
-Mesh read_mesh(const std::string& path, const MeshLimits& limits, bool with_uvs) {
+Mesh read_mesh(const std::string& path, const MeshParts& parts, const MeshLimits& limits) {
   const std::uint64_t bytes = check_file(path);
   const MappedFile file = run_guarded(path, guard_limits(bytes, limits),
-                                      [&](int output) { parse(path, with_uvs, output); });
+                                      [&](int output) { parse(path, parts, output); });
   RawMesh raw;
   Counts counts;
   std::uint64_t rest = file.size();
@@ -145,7 +198,7 @@ Mesh read_mesh(const std::string& path, const MeshLimits& limits, bool with_uvs)
     const std::byte* data = file.data() + sizeof counts;
     rest -= sizeof counts;
     if (take(data, rest, counts.positions, raw.positions) &&
-        take(data, rest, counts.uvs, raw.uvs) &&
+        take(data, rest, counts.uvs, raw.uvs) && take(data, rest, counts.normals, raw.normals) &&
         take(data, rest, counts.triangles, raw.triangles) && rest == 0)
       return repair_mesh(raw, path);
   }

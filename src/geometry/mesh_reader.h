@@ -13,14 +13,19 @@ struct MeshLimits {
   std::uint64_t bytes = std::uint64_t(16) << 30; ///< of memory
 };
 
+/// What of a mesh file is wanted beyond its triangles.
+struct MeshParts {
+  bool uvs = false;     ///< the first texture coordinates, if all of its parts have them
+  bool normals = false; ///< if some of its parts have them
+};
+
 /// Whether the name of a file says that it is one that read_mesh reads.
 bool is_mesh_file(const std::string& path);
 
 /// Reads the triangles of an OBJ, PLY or glTF file, all of its nodes in their places; polygons are
-/// triangulated, lines and points left out. `with_uvs`: and the first texture coordinates, if all
-/// of its parts have them. The file is parsed in a guarded child process
+/// triangulated, lines and points left out. The file is parsed in a guarded child process
 /// (machine/guarded_process.h). Throws InputError for what is no mesh file, FrameError for one that
 /// is damaged.
-Mesh read_mesh(const std::string& path, const MeshLimits& limits = {}, bool with_uvs = false);
+Mesh read_mesh(const std::string& path, const MeshParts& parts = {}, const MeshLimits& limits = {});
 
 } // namespace vdbeam

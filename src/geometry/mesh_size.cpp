@@ -1,5 +1,6 @@
 #include "geometry/mesh_size.h"
 
+#include "geometry/gltf_json.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "text/text.h"
@@ -27,9 +28,11 @@ MeshSize foretell_ply(std::istream& file) {
   std::string line;
   for (int i = 0; i < 1000 && std::getline(file, line) && line.rfind("end_header", 0) != 0; ++i) {
     std::istringstream words(line);
-    std::string element, name;
+    std::string kind, name, rest;
+    words >> kind >> name >> rest;
+    size.normals = size.normals || (kind == "property" && rest == "nx");
     std::uint64_t count = 0;
-    if (!(words >> element >> name >> count) || element != "element")
+    if (kind != "element" || !(std::istringstream(rest) >> count))
       continue;
     if (name == "vertex")
       size.vertices = count;
@@ -39,13 +42,15 @@ MeshSize foretell_ply(std::istream& file) {
   return size;
 }
 
-/// A face of n corners is n - 2 triangles.
+/// A face of n corners is n - 2 triangles. A vertex with several normals becomes as many.
 MeshSize foretell_obj(std::istream& file) {
   MeshSize size;
+  std::uint64_t normals = 0;
   std::string line;
   while (std::getline(file, line)) {
     if (line.rfind("v ", 0) == 0)
       ++size.vertices;
+    normals += line.rfind("vn ", 0) == 0;
     if (line.rfind("f ", 0) != 0)
       continue;
     std::uint64_t corners = 0;
@@ -53,11 +58,9 @@ MeshSize foretell_obj(std::istream& file) {
       corners += line[i - 1] == ' ' && !std::isspace(static_cast<unsigned char>(line[i]));
     size.triangles += corners > 2 ? corners - 2 : 0;
   }
+  size.normals = normals > 0;
+  size.vertices = std::max(size.vertices, normals);
   return size;
-}
-
-std::uint64_t accessor_count(const nlohmann::json& gltf, const nlohmann::json& index) {
-  return gltf.at("accessors").at(index.get<std::size_t>()).at("count").get<std::uint64_t>();
 }
 
 MeshSize foretell_gltf(const nlohmann::json& gltf) {
@@ -70,6 +73,7 @@ MeshSize foretell_gltf(const nlohmann::json& gltf) {
       const std::uint64_t vertices =
           accessor_count(gltf, primitive.at("attributes").at("POSITION"));
       size.vertices += vertices;
+      size.normals = size.normals || primitive.at("attributes").contains("NORMAL");
       size.triangles +=
           (primitive.contains("indices") ? accessor_count(gltf, primitive.at("indices"))
                                          : vertices) /
@@ -79,20 +83,6 @@ MeshSize foretell_gltf(const nlohmann::json& gltf) {
   return size;
 }
 
-/// The JSON of a binary glTF is its first chunk: 12 bytes of header, then its length and type.
-std::string json_of_glb(std::istream& file) {
-  unsigned char start[20];
-  if (!file.read(reinterpret_cast<char*>(start), sizeof start))
-    return {};
-  std::uint32_t length = 0;
-  for (int i = 3; i >= 0; --i)
-    length = length << 8 | start[12 + i];
-  constexpr std::uint32_t longest = 64u << 20;
-  std::string text(std::min(length, longest), '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  return text;
-}
-
 MeshSize foretell(const std::string& path) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   std::ifstream file(path, std::ios::binary);
@@ -100,11 +90,8 @@ MeshSize foretell(const std::string& path) {
     return foretell_ply(file);
   if (extension == ".obj")
     return foretell_obj(file);
-  const nlohmann::json gltf = extension == ".glb"
-                                  ? nlohmann::json::parse(json_of_glb(file), nullptr, false)
-                                  : nlohmann::json::parse(file, nullptr, false);
   try {
-    return foretell_gltf(gltf);
+    return foretell_gltf(read_gltf_json(path));
   } catch (const nlohmann::json::exception&) {
     return {};
   }
@@ -124,7 +111,7 @@ MeshSize foretell_mesh(const std::string& path) {
       std::memcpy(&size, answer.data(), sizeof size);
   } catch (const Error&) {
   }
-  return {std::min(size.vertices, most), std::min(size.triangles, most)};
+  return {std::min(size.vertices, most), std::min(size.triangles, most), size.normals};
 }
 
 } // namespace vdbeam

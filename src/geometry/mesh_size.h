@@ -9,6 +9,7 @@ namespace vdbeam {
 /// they cannot be read, which reading the mesh will complain about.
 struct MeshSize {
   std::uint64_t vertices = 0, triangles = 0;
+  bool normals = false; ///< some of its parts have them
 };
 
 MeshSize foretell_mesh(const std::string& path);

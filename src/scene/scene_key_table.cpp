@@ -125,9 +125,13 @@ void add_mesh(KeyTable& table) {
       .kind(KeyKind::file)
       .types({"file"});
   table
-      .add(
-          "smooth_angle", &S::smooth_angle,
-          "triangles that meet at this angle at most look like one curved surface; 0: all are flat")
+      .add("file_normals", &S::file_normals,
+           "its normals, where it has them, tell what curved surface its triangles stand for")
+      .types({"file"});
+  table
+      .add("smooth_angle", &S::smooth_angle,
+           "where normals of the file are not used, triangles that meet at this angle at most look "
+           "like one curved surface; 0: all are flat")
       .unit("degrees")
       .within(0, 180)
       .types({"file"});

@@ -1,8 +1,8 @@
 #include "transport/surface_store.h"
 
+#include "geometry/corner_normals.h"
 #include "geometry/gltf_files.h"
 #include "geometry/mesh_reader.h"
-#include "geometry/smooth_normals.h"
 #include "machine/input_file.h"
 
 #include <fmt/format.h>
@@ -29,21 +29,21 @@ SurfaceStore::SurfaceStore(const std::vector<SurfaceSettings>& settings,
 const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surface,
                                                     std::vector<std::string>& notes) {
   const bool from_file = surface.shape == SurfaceShape::file, uvs = textured_[surface.file];
-  const std::string name = from_file ? fmt::format("{}|{}|{}", mesh_identity(surface.file),
-                                                   uvs ? "uv" : "", surface.smooth_angle)
-                                     : fmt::format("{}", static_cast<int>(surface.shape));
+  const std::string name =
+      from_file ? fmt::format("{}|{}|{}|{}", mesh_identity(surface.file), uvs ? "uv" : "",
+                              surface.file_normals ? "normals" : "", surface.smooth_angle)
+                : fmt::format("{}", static_cast<int>(surface.shape));
   if (const KnownShape* known = find(shapes_, name))
     return *known;
   KnownShape made;
   if (const KnownShape* known = previous_ ? find(previous_->shapes_, name) : nullptr) {
     made = *known;
   } else if (from_file) {
-    Mesh mesh = read_mesh(surface.file, {}, uvs);
+    Mesh mesh = read_mesh(surface.file, {.uvs = uvs, .normals = surface.file_normals});
     ++meshes_read_;
     made.center = mesh.center;
     made.notes = std::move(mesh.notes);
-    if (surface.smooth_angle > 0)
-      mesh.normals = smooth_normals(mesh, surface.smooth_angle);
+    complete_normals(mesh, surface.smooth_angle);
     made.shape = make_mesh_shape(std::move(mesh));
   } else {
     made.shape = make_simple_shape(surface.shape);

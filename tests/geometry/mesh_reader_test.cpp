@@ -1,8 +1,10 @@
 #include "geometry/mesh_reader.h"
 
+#include "geometry/gltf_files.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,9 +15,9 @@ namespace {
 using test::TempFolder;
 using test::write_bytes;
 
-std::string failure(const std::string& path) {
+std::string failure(const std::string& path, const MeshParts& parts = {}) {
   try {
-    read_mesh(path);
+    read_mesh(path, parts);
   } catch (const Error& error) {
     return error.what();
   }
@@ -73,7 +75,7 @@ TEST(MeshReader, texture_coordinates) {
   write_bytes(path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                     "vt 0.5 0.25\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n");
   EXPECT_TRUE(read_mesh(path).uvs.empty());
-  const Mesh mesh = read_mesh(path, {}, true);
+  const Mesh mesh = read_mesh(path, {.uvs = true});
   ASSERT_EQ(mesh.uvs.size(), mesh.positions.size());
   ASSERT_EQ(mesh.triangles.size(), 2u);
   const Uv third = mesh.uvs[mesh.triangles[0][2]], other = mesh.uvs[mesh.triangles[1][1]];
@@ -91,7 +93,7 @@ TEST(MeshReader, texture_coordinates_of_ply_and_gltf) {
                                     "property float t\nelement face 1\nproperty list uchar int "
                                     "vertex_indices\nend_header\n0 0 0 0.25 0.75\n1 0 0 1 0\n"
                                     "0 1 0 0 1\n3 0 1 2\n");
-  const Mesh ply_mesh = read_mesh(folder.file("t.ply"), {}, true);
+  const Mesh ply_mesh = read_mesh(folder.file("t.ply"), {.uvs = true});
   ASSERT_EQ(ply_mesh.uvs.size(), 3u);
   EXPECT_EQ(ply_mesh.uvs[ply_mesh.triangles[0][0]].u, 0.25f);
   EXPECT_EQ(ply_mesh.uvs[ply_mesh.triangles[0][0]].v, 0.75f);
@@ -104,7 +106,7 @@ TEST(MeshReader, texture_coordinates_of_ply_and_gltf) {
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
                    "min": [0, 0, 0], "max": [1, 1, 0]},
                   {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}]})");
-  const Mesh gltf = read_mesh(folder.file("t.gltf"), {}, true);
+  const Mesh gltf = read_mesh(folder.file("t.gltf"), {.uvs = true});
   ASSERT_EQ(gltf.uvs.size(), 3u);
   EXPECT_EQ(gltf.uvs[gltf.triangles[0][0]].u, 0.25f);
   EXPECT_EQ(gltf.uvs[gltf.triangles[0][0]].v, 0.25f);
@@ -128,6 +130,90 @@ TEST(MeshReader, ply_and_gltf) {
   EXPECT_EQ(mesh.triangles.size(), 1u);
   EXPECT_NEAR(area(mesh), 2, 1e-6);
   EXPECT_NEAR(mesh.center.x, 11, 1e-6);
+}
+
+/// The corner of a triangle with the given normals: as text of an OBJ and a PLY.
+TEST(MeshReader, normals_of_obj_and_ply) {
+  const TempFolder folder;
+  write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0.6 0.8\n"
+                                    "f 1//1 2//2 3//1\n");
+  write_bytes(folder.file("a.ply"), "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                    "property float y\nproperty float z\nproperty float nx\n"
+                                    "property float ny\nproperty float nz\nelement face 1\n"
+                                    "property list uchar int vertex_indices\nend_header\n"
+                                    "0 0 0 0 0 1\n1 0 0 0 0.6 0.8\n0 1 0 0 0 1\n3 0 1 2\n");
+  for (const char* name : {"a.obj", "a.ply"}) {
+    EXPECT_TRUE(read_mesh(folder.file(name)).normals.empty()) << name;
+    const Mesh mesh = read_mesh(folder.file(name), {.normals = true});
+    ASSERT_EQ(mesh.normals.size(), 1u) << name;
+    EXPECT_NEAR(mesh.normals[0][0].z, 1, 1e-6f) << name;
+    EXPECT_NEAR(mesh.normals[0][1].y, 0.6f, 1e-6f) << name;
+    EXPECT_TRUE(mesh.notes.empty()) << name;
+  }
+}
+
+/// One triangle (0 0 0), (1 0 0), (0 1 0) under a node, with `normals` normals (1 0 1) / sqrt(2).
+std::string gltf_with_normals(const std::string& node, int normals) {
+  return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+    "nodes": [{{"mesh": 0{}}}],
+    "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "NORMAL": 1}}}}]}}],
+    "buffers": [{{"byteLength": 72, "uri": "the%20numbers.bin"}}],
+    "bufferViews": [{{"buffer": 0, "byteOffset": 0, "byteLength": 36}},
+                    {{"buffer": 0, "byteOffset": 36, "byteLength": 36}}],
+    "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                    "min": [0, 0, 0], "max": [1, 1, 0]}},
+                  {{"bufferView": 1, "componentType": 5126, "count": {}, "type": "VEC3"}}]}})",
+                     node, normals);
+}
+
+void write_numbers(const std::string& path) {
+  const float slant = std::sqrt(0.5f);
+  const float numbers[18] = {0,     0, 0,     1,     0, 0,     0,     1, 0,
+                             slant, 0, slant, slant, 0, slant, slant, 0, slant};
+  write_bytes(path, std::string(reinterpret_cast<const char*>(numbers), sizeof numbers));
+}
+
+/// Normals stay at right angles to what they belong to where a node stretches or mirrors it. The
+/// buffer's name has a space, which is %20 in a URI.
+TEST(MeshReader, normals_of_gltf_nodes) {
+  const TempFolder folder;
+  write_numbers(folder.file("the numbers.bin"));
+  const std::string path = folder.file("a.gltf");
+  const auto normal = [&](const char* node) {
+    write_bytes(path, gltf_with_normals(node, 3));
+    const Mesh mesh = read_mesh(path, {.normals = true});
+    EXPECT_TRUE(mesh.notes.empty()) << node;
+    return mesh.normals.at(0)[0];
+  };
+  const float slant = std::sqrt(0.5f), steep = std::sqrt(0.2f);
+  EXPECT_LT(length(normal("") - Vec3f(slant, 0, slant)), 1e-6f);
+  EXPECT_LT(length(normal(R"(, "scale": [2, 1, 1])") - Vec3f(steep, 0, 2 * steep)), 1e-6f);
+  EXPECT_LT(length(normal(R"(, "scale": [-2, 1, 1])") - Vec3f(-steep, 0, 2 * steep)), 1e-6f);
+  EXPECT_LT(length(normal(R"(, "scale": [1, 1, -1])") - Vec3f(slant, 0, -slant)), 1e-6f);
+}
+
+TEST(MeshReader, one_clear_line_for_wrong_normals) {
+  const TempFolder folder;
+  write_numbers(folder.file("the numbers.bin"));
+  const std::string path = folder.file("a.gltf");
+  write_bytes(path, gltf_with_normals("", 2));
+  EXPECT_EQ(failure(path, {.normals = true}),
+            path + ": has 2 normals for the 3 vertices of a mesh: export it again, or set "
+                   "mesh.N.file_normals = false");
+  EXPECT_EQ(read_mesh(path).triangles.size(), 1u);
+  // An OBJ without the normals that its faces name is one without normals.
+  write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.6 0.8\nf 1//1 2//2 3//1\n");
+  EXPECT_TRUE(read_mesh(folder.file("a.obj"), {.normals = true}).normals.empty());
+}
+
+/// A name of which %20 is a part comes first.
+TEST(GltfFiles, are_named_by_uris) {
+  const TempFolder folder;
+  write_bytes(folder.file("a.gltf"), R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "100%.bin"}]})");
+  const auto files = [&] { return gltf_files(folder.file("a.gltf")); };
+  EXPECT_EQ(files(), (std::vector{folder.file("a b.bin"), folder.file("100%.bin")}));
+  write_bytes(folder.file("a%20b.bin"), "0");
+  EXPECT_EQ(files(), (std::vector{folder.file("a%20b.bin"), folder.file("100%.bin")}));
 }
 
 TEST(MeshReader, far_from_the_origin_keeps_its_shape) {
@@ -175,7 +261,7 @@ TEST(MeshReader, broken_files_end_in_one_line) {
          {whole.substr(0, cut + 1), whole.substr(0, cut) + "999999999 " + whole.substr(cut)}) {
       write_bytes(path, text);
       try {
-        read_mesh(path, {.seconds = 0.5});
+        read_mesh(path, {}, {.seconds = 0.5});
       } catch (const Error& error) {
         ++failures;
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);

@@ -27,6 +27,7 @@ TEST(MeshSize, IsWhatTheReaderFinds) {
   for (const auto& [name, vertices] : {std::pair{"a.ply", 4u}, {"b.obj", 5u}}) {
     const MeshSize size = foretell_mesh(folder.file(name));
     EXPECT_EQ(size.vertices, vertices) << name;
+    EXPECT_EQ(size.normals, name == std::string("b.obj")) << name;
     EXPECT_EQ(size.triangles, read_mesh(folder.file(name)).triangles.size()) << name;
   }
 }
@@ -46,6 +47,16 @@ TEST(MeshSize, CountsWhatNodesOfAGltfShow) {
   glb += std::string({length, high, '\0', '\0'}) + "JSON" + json;
   write_bytes(folder.file("d.glb"), glb);
   EXPECT_EQ(foretell_mesh(folder.file("d.glb")).triangles, 10u);
+}
+
+TEST(MeshSize, TellsOfNormals) {
+  const TempFolder folder;
+  write_bytes(folder.file("a.ply"), "ply\nelement vertex 3\nproperty double nx\nend_header\n");
+  write_bytes(folder.file("a.gltf"),
+              R"({"nodes": [{"mesh": 0}], "accessors": [{"count": 6}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}}]}]})");
+  EXPECT_TRUE(foretell_mesh(folder.file("a.ply")).normals);
+  EXPECT_TRUE(foretell_mesh(folder.file("a.gltf")).normals);
 }
 
 TEST(MeshSize, OfDamagedFilesIsZero) {

@@ -231,7 +231,19 @@ TEST(MakePlan, ForetellsTheMemoryOfSurfaces) {
                     "ply\nformat ascii 1.0\nelement vertex 5000000\nelement face 10000000\n"
                     "end_header\n");
   scene.surfaces = {surface, surface};
-  EXPECT_NEAR(static_cast<double>(make_plan(scene).surface_bytes), 3.7e9, 0.2e9) << "as measured";
+  const auto bytes = [&] { return static_cast<double>(make_plan(scene).surface_bytes); };
+  EXPECT_NEAR(bytes(), 3.7e9, 0.2e9) << "as measured";
+  const double flat = bytes();
+  scene.surfaces[1].smooth_angle = 40;
+  EXPECT_EQ(bytes(), flat + 36 * 1e7);
+  scene.surfaces[1].smooth_angle = 0;
+  test::write_bytes(surface.file,
+                    "ply\nformat ascii 1.0\nelement vertex 5000000\nproperty float nx\n"
+                    "element face 10000000\nend_header\n");
+  EXPECT_EQ(bytes(), flat + 36 * 1e7);
+  for (SurfaceSettings& each : scene.surfaces)
+    each.file_normals = false;
+  EXPECT_EQ(bytes(), flat);
 }
 
 /// make_plan needs the files' headers only, and says of the view what the renderer says.

@@ -72,16 +72,13 @@ inline void add_regions(std::vector<Samples>& regions, const PassImage& image) {
     regions[i].add(sums[i] / pixels);
 }
 
-/// Renders passes 0 to `passes` - 1 of a scene.
-inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes) {
-  scene.scene.render.estimator = type;
-  const TestFrame frame(scene);
-  const std::unique_ptr<Estimator> estimator = frame.estimator();
+/// Renders the passes `first` to `first` + `count` - 1.
+inline PassMeans means_of(Estimator& estimator, int first, int count) {
   PassMeans means;
   PassImage image;
   std::vector<Vec3d> sums;
-  for (int pass = 0; pass < passes; ++pass) {
-    estimator->render_pass(pass, image, means.statistics);
+  for (int pass = first; pass < first + count; ++pass) {
+    estimator.render_pass(pass, image, means.statistics);
     std::vector<Rgb> total;
     for (std::size_t i = 0; i < image.direct.size(); ++i)
       total.push_back(pixel_total(image, i));
@@ -103,8 +100,15 @@ inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes
     means.depth.add(depth / static_cast<double>(total.size()));
   }
   for (const Vec3d& sum : sums)
-    means.pixels.push_back(Rgb(sum / static_cast<double>(passes)));
+    means.pixels.push_back(Rgb(sum / static_cast<double>(count)));
   return means;
+}
+
+/// Renders passes 0 to `passes` - 1 of a scene.
+inline PassMeans render_passes(MemoryScene scene, EstimatorType type, int passes) {
+  scene.scene.render.estimator = type;
+  const TestFrame frame(scene);
+  return means_of(*frame.estimator(), 0, passes);
 }
 
 } // namespace vdbeam::test

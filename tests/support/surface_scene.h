@@ -31,6 +31,28 @@ inline MaterialSettings shining(double radiance) {
   return material;
 }
 
+inline MaterialSettings diffuse(double albedo) {
+  MaterialSettings material;
+  material.albedo = Rgb(static_cast<float>(albedo));
+  return material;
+}
+inline MaterialSettings white() {
+  return diffuse(1);
+}
+inline MaterialSettings glass(bool solid = false) {
+  MaterialSettings material = of_type(MaterialType::dielectric);
+  material.solid = solid;
+  return material;
+}
+
+/// Lets the camera see a square of the plane z = 0 from straight above and far away: what lies
+/// within `half` of `center` in x and y.
+inline void look_down(MemoryScene& scene, double half, int pixels, const Vec3d& center = {}) {
+  constexpr double height = 1000;
+  scene.look(center + Vec3d{0, 0, height}, center,
+             2 * std::atan(half / height) * 180 / std::numbers::pi, pixels, pixels);
+}
+
 inline SurfaceSettings& add_surface(MemoryScene& scene, SurfaceShape shape, const Transform& at,
                                     const MaterialSettings& material) {
   SurfaceSettings surface;

@@ -1,33 +1,21 @@
 // Light that mirrors and glass send on to other surfaces, which shadow rays do not find.
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::expect_power;
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using namespace test::surfaces;
 
 constexpr double albedo = 0.6, intensity = 4;
 
-MaterialSettings grey() {
-  MaterialSettings material;
-  material.albedo = Rgb(static_cast<float>(albedo));
-  return material;
-}
-
 /// A floor at z = 0, of which the camera sees the middle, from -0.15 to 0.15.
 MemoryScene floor_from_above() {
   MemoryScene scene;
-  add_surface(scene, SurfaceShape::quad, scaled(1), grey());
+  add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(albedo));
   scene.scene.render.photons = 20000;
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.15 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 0.15, 16);
   return scene;
 }
 
@@ -154,7 +142,7 @@ TEST_P(Caustics, under_a_ball_of_glass) {
 /// all of that comes by photons.
 MemoryScene square_by_photons(const Vec3d& direction) {
   MemoryScene scene;
-  add_surface(scene, SurfaceShape::quad, scaled(1), grey());
+  add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(albedo));
   MaterialSettings glass = of_type(MaterialType::dielectric);
   glass.ior = 1;
   add_surface(scene, SurfaceShape::sphere, scaled(3), glass).visible = false;
@@ -162,7 +150,7 @@ MemoryScene square_by_photons(const Vec3d& direction) {
   sun.direction = direction;
   sun.irradiance = Rgb(1);
   scene.scene.render.photons = 20000;
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(1.0 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 1.0, 16);
   return scene;
 }
 

@@ -1,14 +1,10 @@
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using namespace test::surfaces;
 
 void expect_every_pixel(const PassMeans& means, double value, double tolerance) {
@@ -31,11 +27,6 @@ MemoryScene furnace(const MaterialSettings& material, bool fog) {
 MaterialSettings white_glass(double ior = 1.5) {
   MaterialSettings material = of_type(MaterialType::dielectric);
   material.ior = ior;
-  return material;
-}
-MaterialSettings white() {
-  MaterialSettings material;
-  material.albedo = Rgb(1);
   return material;
 }
 
@@ -91,7 +82,7 @@ TEST(SurfaceFormFactor, parallel_squares) {
   add_surface(scene, SurfaceShape::quad, scaled(0.5), white());
   // Straight from above, through the lamp, which the camera does not see.
   scene.scene.surfaces[0].visible = false;
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.5 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 0.5, 16);
   const PassMeans means = render_passes(scene, EstimatorType::path, 64);
   const double x = 1, y = 1; // side over distance
   const double factor = 2 / (M_PI * x * y) *
@@ -113,7 +104,7 @@ TEST(SurfaceFormFactor, perpendicular_squares) {
   lamp.material = shining(1);
   lamp.transform = {0, 0, 1, -0.5, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5};
   scene.scene.surfaces.push_back(lamp);
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.5 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 0.5, 16);
   test::expect_mean(render_passes(scene, EstimatorType::path, 64).total[0], 0.20004, 1e-5);
 }
 

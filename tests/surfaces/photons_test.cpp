@@ -1,29 +1,12 @@
 // Photons among surfaces: what path tracing finds without bias, beam and march find too.
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::MemoryScene;
-using test::PassMeans;
-using test::regions_apart;
-using test::render_passes;
 using namespace test::surfaces;
-
-MaterialSettings diffuse(float albedo) {
-  MaterialSettings material;
-  material.albedo = Rgb(albedo);
-  return material;
-}
-MaterialSettings glass(bool solid = false) {
-  MaterialSettings material = of_type(MaterialType::dielectric);
-  material.solid = solid;
-  return material;
-}
 
 /// A box of fog in view, with a little albedo to lose.
 MemoryScene fog(double extinction) {

@@ -1,17 +1,12 @@
 // What mirrors, glass and metal show of their surroundings.
 #include "materials/fresnel.h"
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using namespace test::surfaces;
 
 MaterialSettings rough(MaterialType type, double roughness) {

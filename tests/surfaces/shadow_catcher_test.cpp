@@ -1,29 +1,18 @@
 // The ground of a plate, of which the camera sees nothing but the shadows on it.
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using namespace test::surfaces;
-
-MaterialSettings black() {
-  MaterialSettings material;
-  material.albedo = Rgb(0);
-  return material;
-}
 
 /// A catcher at z = 0, of which the camera sees -0.15 to 0.15 from straight above.
 MemoryScene caught() {
   MemoryScene scene;
   add_surface(scene, SurfaceShape::quad, scaled(2), of_type(MaterialType::shadow_catcher));
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.15 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 0.15, 16);
   return scene;
 }
 
@@ -33,7 +22,8 @@ class ShadowCatcher : public ::testing::TestWithParam<EstimatorType> {};
 TEST_P(ShadowCatcher, a_wall_in_the_sun) {
   MemoryScene scene = caught();
   scene.add_light(LightType::distant).direction = {0, 0, -1};
-  add_surface(scene, SurfaceShape::quad, moved(scaled(1), {-1, 0, 0.5}), black()).visible = false;
+  add_surface(scene, SurfaceShape::quad, moved(scaled(1), {-1, 0, 0.5}), diffuse(0)).visible =
+      false;
   const PassMeans means = render_passes(scene, GetParam(), 16);
   expect_mean(means.opacity, 0.5, 0.01);
   for (const Rgb& pixel : means.pixels)
@@ -57,9 +47,9 @@ TEST_P(ShadowCatcher, a_medium_in_the_sun) {
 /// A wall upright on the line y = 0 hides half of a sky from what is near to it, symmetrically.
 TEST_P(ShadowCatcher, half_a_sky) {
   MemoryScene scene = caught();
-  scene.look({0, 0.05, 1000}, {0, 0.05, 0}, 2 * std::atan(0.005 / 1000) * 180 / M_PI, 8, 8);
+  look_down(scene, 0.005, 8, {0, 0.05, 0});
   scene.add_light(LightType::environment).radiance = Rgb(1);
-  SurfaceSettings& wall = add_surface(scene, SurfaceShape::quad, scaled(1), black());
+  SurfaceSettings& wall = add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(0));
   wall.transform = {1e3, 0, 0, 0, 0, 0, 1, 0, 0, 1e3, 0, 1e3};
   expect_mean(render_passes(scene, GetParam(), 64).opacity, 0.5, 0.01);
 }

@@ -1,34 +1,43 @@
 // Meshes that are shaded as the curved surfaces that they stand for.
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "math/rng.h"
+#include "math/sampling.h"
+#include "support/surface_test.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <sstream>
 
 namespace vdbeam {
 namespace {
 
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using test::TempFolder;
 using namespace test::surfaces;
 
+/// What normal a file gives for a point of a ball, as its number and place.
+using NormalOf = std::function<Vec3d(int, const Vec3d&)>;
+
 /// A ball of radius 1 by `rings` rings of twice as many quadrilaterals, which are triangles at the
-/// poles.
-std::string write_ball(const TempFolder& folder, int rings) {
+/// poles. `normal_of` empty: without normals.
+std::string write_ball(const TempFolder& folder, int rings, const NormalOf& normal_of = {}) {
   std::ostringstream text;
   text.precision(17);
   for (int i = 0; i <= rings; ++i)
     for (int j = 0; j < 2 * rings; ++j) {
       const double theta = M_PI * i / rings, phi = M_PI * j / rings;
       const double r = i == 0 || i == rings ? 0 : std::sin(theta);
-      text << "v " << r * std::cos(phi) << " " << r * std::sin(phi) << " " << std::cos(theta)
-           << "\n";
+      const Vec3d p{r * std::cos(phi), r * std::sin(phi), std::cos(theta)};
+      text << "v " << p.x << " " << p.y << " " << p.z << "\n";
+      if (!normal_of)
+        continue;
+      const Vec3d n = normal_of(i * 2 * rings + j, p);
+      text << "vn " << n.x << " " << n.y << " " << n.z << "\n";
     }
-  const auto vertex = [&](int i, int j) { return i * 2 * rings + j % (2 * rings) + 1; };
+  const auto vertex = [&](int i, int j) {
+    const std::string number = std::to_string(i * 2 * rings + j % (2 * rings) + 1);
+    return normal_of ? number + "//" + number : number;
+  };
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < 2 * rings; ++j)
       text << "f " << vertex(i, j) << " " << vertex(i + 1, j) << " " << vertex(i + 1, j + 1) << " "
@@ -46,17 +55,8 @@ SurfaceSettings& add_mesh(MemoryScene& scene, const std::string& file, double sm
   return mesh;
 }
 
-MaterialSettings white() {
-  MaterialSettings material;
-  material.albedo = Rgb(1);
-  return material;
-}
-
-/// A coarse ball in an even sky, whatever it is made of, is not seen: nothing is lost or won where
-/// the two normals differ, not even at the horizon.
-TEST(SmoothMeshes, furnace) {
-  const TempFolder folder;
-  const std::string ball = write_ball(folder, 5);
+/// A ball in an even sky, whatever it is made of, is not seen.
+void expect_furnace(const std::string& ball) {
   for (const MaterialSettings& material :
        {white(), of_type(MaterialType::mirror), of_type(MaterialType::dielectric)}) {
     MemoryScene scene;
@@ -69,6 +69,25 @@ TEST(SmoothMeshes, furnace) {
         EXPECT_NEAR(pixel.x, 1, 2e-3) << static_cast<int>(material.type);
     }
   }
+}
+
+/// Nothing is lost or won where the two normals of a coarse ball differ, not even at the horizon.
+TEST(SmoothMeshes, furnace) {
+  const TempFolder folder;
+  expect_furnace(write_ball(folder, 5));
+}
+
+/// Any unit vector, the same for a number at all times.
+Vec3d random_normal(int number, const Vec3d&) {
+  Rng rng({}, RngStage::test, static_cast<std::uint64_t>(number));
+  const float u = rng.uniform(), v = rng.uniform();
+  return Vec3d(sample_sphere(u, v));
+}
+
+/// Normals of the file that have nothing to do with its triangles: the same law.
+TEST(SmoothMeshes, furnace_with_senseless_normals) {
+  const TempFolder folder;
+  expect_furnace(write_ball(folder, 5, random_normal));
 }
 
 /// Photons that a curved ball of white or glass sends through fog: the same law.
@@ -121,15 +140,35 @@ TEST(SmoothMeshes, show_the_sky_like_a_ball) {
   }
 }
 
-/// A box whose corners are shaded as round: no light comes in, however the normals point.
-TEST(SmoothMeshes, no_light_leaks_into_a_box) {
+/// The file's own normals come before those of an angle, and are left aside where that is asked
+/// for.
+TEST(SmoothMeshes, by_the_normals_of_their_file) {
   const TempFolder folder;
-  const std::string path = folder.file("box.obj");
-  test::write_bytes(path, "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
-                          "v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\n"
-                          "f 3 4 8 7\nf 4 1 5 8\n");
+  const auto picture = [&](const std::string& file, bool file_normals, double smooth_angle) {
+    MemoryScene scene;
+    add_mesh(scene, file, smooth_angle, scaled(1), of_type(MaterialType::mirror)).file_normals =
+        file_normals;
+    LightSettings& sky = scene.add_light(LightType::sky);
+    sky.zenith = Rgb(0.2f);
+    sky.ground = Rgb(3);
+    scene.look({0, 0, 10}, {0, 0, 0}, 8, 32, 32);
+    return render_passes(scene, EstimatorType::beam, 8).pixels;
+  };
+  const std::string plain = write_ball(folder, 12);
+  const auto flat = picture(plain, true, 0), smooth = picture(plain, true, 60);
+  const auto outwards = [](int, const Vec3d& p) { return p; };
+  const std::string own = write_ball(folder, 12, outwards);
+  const auto by_file = picture(own, true, 0);
+  EXPECT_NE(by_file, flat);
+  EXPECT_EQ(picture(own, true, 1), by_file);
+  EXPECT_EQ(picture(own, false, 0), flat);
+  EXPECT_EQ(picture(own, false, 60), smooth);
+}
+
+/// No light comes into a box.
+void expect_darkness_in(const std::string& box, double smooth_angle) {
   MemoryScene scene;
-  add_mesh(scene, path, 180, scaled(1), {});
+  add_mesh(scene, box, smooth_angle, scaled(1), {});
   scene.add_box(Vec3d(-0.9), Vec3d(0.9)).extinction = 0.5;
   scene.add_light(LightType::environment).radiance = Rgb(1);
   LightSettings& sun = scene.add_light(LightType::distant);
@@ -138,6 +177,34 @@ TEST(SmoothMeshes, no_light_leaks_into_a_box) {
   scene.look({-0.8, -0.8, -0.7}, {0, 0, 0}, 90, 8, 8);
   for (const EstimatorType estimator : {EstimatorType::path, EstimatorType::beam})
     EXPECT_EQ(render_passes(scene, estimator, 8).total[0].mean(), 0) << estimator.name;
+}
+
+const char* const corners_of_a_box = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+                                     "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+
+/// Corners that are shaded as round: no light comes in, however the normals point.
+TEST(SmoothMeshes, no_light_leaks_into_a_box) {
+  const TempFolder folder;
+  const std::string path = folder.file("box.obj");
+  test::write_bytes(path, std::string(corners_of_a_box) +
+                              "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  expect_darkness_in(path, 180);
+}
+
+/// The same with normals of the file that point anywhere.
+TEST(SmoothMeshes, no_light_leaks_by_senseless_normals) {
+  const TempFolder folder;
+  const std::string path = folder.file("box.obj");
+  std::ostringstream text;
+  text << corners_of_a_box;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d n = random_normal(i, {});
+    text << "vn " << n.x << " " << n.y << " " << n.z << "\n";
+  }
+  test::write_bytes(path, text.str() + "f 4//4 3//3 2//2 1//1\nf 5//5 6//6 7//7 8//8\n"
+                                       "f 1//1 2//2 6//6 5//5\nf 2//2 3//3 7//7 6//6\n"
+                                       "f 3//3 4//4 8//8 7//7\nf 4//4 1//1 5//5 8//8\n");
+  expect_darkness_in(path, 0);
 }
 
 /// Sunlight through a lens of triangles onto a floor: photons as path tracing has it.
@@ -152,7 +219,7 @@ TEST(SmoothMeshes, focus_light_with_every_estimator) {
   sun.direction = {0, 0, -1};
   sun.angular_radius = 10;
   scene.scene.render.photons = 20000;
-  scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(0.4 / 1000) * 180 / M_PI, 16, 16);
+  look_down(scene, 0.4, 16);
   const PassMeans path = render_passes(scene, EstimatorType::path, 256);
   for (const EstimatorType estimator : {EstimatorType::beam, EstimatorType::march})
     EXPECT_EQ(test::regions_apart(render_passes(scene, estimator, 32), path, 0.03), 0)

@@ -1,5 +1,4 @@
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 
 #include <gtest/gtest.h>
 
@@ -8,20 +7,7 @@
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::MemoryScene;
-using test::PassMeans;
-using test::render_passes;
 using namespace test::surfaces;
-
-MaterialSettings glass() {
-  return of_type(MaterialType::dielectric);
-}
-MaterialSettings white() {
-  MaterialSettings material;
-  material.albedo = Rgb(1);
-  return material;
-}
 
 /// Radiance over the square of the index is the same inside.
 TEST(SurfaceStability, camera_inside_glass) {

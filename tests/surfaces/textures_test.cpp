@@ -1,8 +1,7 @@
 // Pictures on surfaces: what they reflect and what they send out is what the picture shows.
 #include "lights/surface_light.h"
 #include "math/sampling.h"
-#include "support/render_passes.h"
-#include "support/surface_scene.h"
+#include "support/surface_test.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -12,12 +11,6 @@
 namespace vdbeam {
 namespace {
 
-using test::expect_mean;
-using test::MemoryScene;
-using test::PassMeans;
-using test::regions_apart;
-using test::render_passes;
-using test::Samples;
 using test::TempFolder;
 using namespace test::surfaces;
 
@@ -186,7 +179,7 @@ TEST(TexturedDiffuse, shows_the_picture_upright) {
     MemoryScene scene = panel(picture, 1, mesh);
     scene.scene.surfaces[0].material = shows(picture, MaterialType::diffuse);
     scene.add_light(LightType::environment).radiance = Rgb(1);
-    scene.look({0, 0, 1000}, {0, 0, 0}, 2 * std::atan(1.0 / 1000) * 180 / M_PI, side, side);
+    look_down(scene, 1.0, side);
     for (const EstimatorType estimator : {EstimatorType::path, EstimatorType::beam}) {
       const PassMeans means = render_passes(scene, estimator, 200);
       for (int y = 1; y + 1 < side; ++y)

@@ -1,0 +1,41 @@
+#include "geometry/gltf_json.h"
+
+#include "text/text.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace vdbeam {
+namespace {
+
+/// The JSON of a binary glTF is its first chunk: 12 bytes of header, then its length and type.
+std::string json_of_glb(std::istream& file) {
+  unsigned char start[20];
+  if (!file.read(reinterpret_cast<char*>(start), sizeof start))
+    return {};
+  std::uint32_t length = 0;
+  for (int i = 3; i >= 0; --i)
+    length = length << 8 | start[12 + i];
+  constexpr std::uint32_t longest = 64u << 20;
+  std::string text(std::min(length, longest), '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return text;
+}
+
+} // namespace
+
+nlohmann::json read_gltf_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (lower_case(std::filesystem::path(path).extension().string()) == ".glb")
+    return nlohmann::json::parse(json_of_glb(file), nullptr, false);
+  return nlohmann::json::parse(file, nullptr, false);
+}
+
+std::uint64_t accessor_count(const nlohmann::json& gltf, const nlohmann::json& index) {
+  return gltf.at("accessors").at(index.get<std::size_t>()).at("count").get<std::uint64_t>();
+}
+
+} // namespace vdbeam

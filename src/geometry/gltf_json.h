@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace vdbeam {
+
+/// The JSON of a .gltf or .glb file; what cannot be read gives a value that is_discarded(). For
+/// guarded processes: a file may ask for endless memory.
+nlohmann::json read_gltf_json(const std::string& path);
+
+/// How many values an accessor has. Throws nlohmann::json::exception where there is none.
+std::uint64_t accessor_count(const nlohmann::json& gltf, const nlohmann::json& index);
+
+} // namespace vdbeam
