@@ -177,7 +177,7 @@ private:
   void write_simple(const WeightTable& table, int interval, int ray) {
     const float piece = after_[0] - before_[0];
     if (piece > 0 && counts(0))
-      deposit(table, 0, 0, interval, ray, std::exp(-before_[0]) * -std::expm1(-piece) / length_);
+      deposit(table, 0, 0, interval, ray, std::exp(-before_[0]) * opacity_of(piece) / length_);
   }
 
   void write_scattering(const WeightTable& table, int interval, int ray) {
@@ -191,7 +191,7 @@ private:
       const float piece = tau_after - tau_before;
       if (!(piece > 0))
         continue;
-      const float scattered = std::exp(-tau_before) * -std::expm1(-piece) / length_;
+      const float scattered = std::exp(-tau_before) * opacity_of(piece) / length_;
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         if (!counts(v))
           continue;

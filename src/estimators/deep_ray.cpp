@@ -18,7 +18,7 @@ void DeepRay::add_opacity(const Medium& medium, const DepthProfile& profile) con
       after += medium.volumes[v].channel_scale * cursor.tau(v);
     float opacity = 0;
     for (int c = 0; c < 3; ++c) // no difference of transmittances, which would lose digits
-      opacity += std::exp(-before[c]) * -std::expm1(before[c] - after[c]);
+      opacity += std::exp(-before[c]) * opacity_of(after[c] - before[c]);
     (*deep_)[(first_ + i) * DeepLayout::values_per_piece + 3] += opacity / 3;
     before = after;
   }

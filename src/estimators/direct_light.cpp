@@ -66,8 +66,8 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
     if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
       ++shadow_rays;
       Rgb taken_out;
-      const Rgb through =
-          exact_transmittance(world.medium, {{point, sample.wi}, 0, sample.distance}, &taken_out);
+      const Rgb through = estimate_transmittance(
+          world.medium, {{point, sample.wi}, 0, sample.distance}, rng.uniform(), &taken_out);
       sum += sample.value * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
     }
   }
@@ -80,8 +80,8 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
     const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
     ++shadow_rays;
     Rgb taken_out;
-    const Rgb through =
-        exact_transmittance(world.medium, {{point, wi}, 0, hit.distance}, &taken_out);
+    const Rgb through = estimate_transmittance(world.medium, {{point, wi}, 0, hit.distance},
+                                               rng.uniform(), &taken_out);
     sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
            (p + light.incident_pdf(point, wi));
   }
@@ -192,7 +192,7 @@ private:
     const std::size_t last = profile_.knots() - 1;
     float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
     for (std::size_t k = 1; k <= last; ++k) {
-      const float now = -std::expm1(-profile_.total(k));
+      const float now = opacity_of(profile_.total(k));
       const bool small = now - seen < opacity / fewest && profile_.t(k) - t < shadow.step();
       if (k < last && (now == seen || small))
         continue;

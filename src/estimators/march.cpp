@@ -82,7 +82,7 @@ private:
     for (int c = 0; c < 3; ++c) {
       const float tr = std::exp(-tau[c]);
       const float whole =
-          scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * -std::expm1(-piece[c]);
+          scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * opacity_of(piece[c]);
       for (std::size_t v = 0; v < volumes.size(); ++v) {
         const float share = piece[c] > 0
                                 ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]

@@ -16,7 +16,7 @@ void add_opacity(const Medium& medium, const DepthProfile& profile, std::size_t 
     const float depth = after[c] - before[c];
     if (!(depth > 0))
       continue;
-    const float added = std::exp(-before[c]) * -std::expm1(-depth) / (3 * depth);
+    const float added = std::exp(-before[c]) * opacity_of(depth) / (3 * depth);
     for (std::size_t v = 0; v < medium.volumes.size(); ++v)
       add(v, added * medium.volumes[v].channel_scale[c] *
                  (profile.tau(knot, v) - profile.tau(knot - 1, v)));

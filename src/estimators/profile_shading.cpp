@@ -90,7 +90,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
     tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
     // Not 1 - tr, which has no digits left where the medium is thin.
     const float opacity =
-        -mean_component(Rgb(std::expm1(-tau.x), std::expm1(-tau.y), std::expm1(-tau.z)));
+        mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
     image.opacity[pixel] = opacity;
     image.depth[pixel] = static_cast<float>(
         (profile.opacity_depth(world.medium) + camera.shift * opacity) / world.space.scale);

@@ -44,7 +44,7 @@ void for_each_piece(const Medium& medium, const DepthProfile& profile, const Vis
 
 float opacity_at(const Medium& medium, const DepthProfile& profile, std::size_t knot) {
   const Rgb tau = profile.channels(medium, knot);
-  return -mean_component(Rgb(std::expm1(-tau.x), std::expm1(-tau.y), std::expm1(-tau.z)));
+  return mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
 }
 
 /// Where on the ray so much of its opacity is reached; `end` where the medium has less.

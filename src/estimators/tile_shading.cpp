@@ -24,7 +24,7 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
     for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
       after += world.medium.peak->excess[v] * cursor.tau(v);
     for (int c = 0; c < 3; ++c)
-      light[c] = radiance[c] * std::exp(-before[c]) * -std::expm1(before[c] - after[c]);
+      light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(after[c] - before[c]);
     deep.add_light(i, light);
     before = after;
   }
@@ -44,7 +44,7 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
       Rgb light;
       for (int c = 0; c < 3; ++c)
         if (const float all = after[c] - before[c]; all > 0)
-          light[c] = radiance[c] * std::exp(-before[c]) * -std::expm1(-all) * own[c] / all;
+          light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(all) * own[c] / all;
       volumes.add(world.medium.volumes[v].setting, light);
     }
     before = after;
@@ -71,7 +71,7 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   Rgb through;
   for (int c = 0; c < 3; ++c) {
     through[c] = radiance[c] * std::exp(-tau[c]);
-    radiance[c] *= std::exp(-tau[c]) * -std::expm1(-excess[c]);
+    radiance[c] *= std::exp(-tau[c]) * opacity_of(excess[c]);
   }
   if (deep)
     add_light_of_the_peak(world, ray.profile, through, deep);

@@ -101,7 +101,7 @@ float DepthProfile::opacity_depth(const Medium& medium) const {
       const float tau_after = this->channels(medium, knot)[c];
       const float piece = tau_after - tau;
       const float t = t_[knot - 1] + mean_collision(piece) * (t_[knot] - t_[knot - 1]);
-      sum += before * -std::expm1(-piece) * t; // a difference of exponentials would lose digits
+      sum += before * opacity_of(piece) * t; // a difference of exponentials would lose digits
       tau = tau_after;
       before = std::exp(-tau_after);
     }

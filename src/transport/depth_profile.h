@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/opacity.h"
 #include "transport/optical_depth.h"
 
 namespace vdbeam {
@@ -63,7 +64,7 @@ private:
 /// Where in a piece of optical depth `tau`, from 0 to 1, its collisions lie on average: the mean of
 /// an exponential distribution cut at 1.
 inline float mean_collision(float tau) {
-  return tau < 0.01f ? 0.5f - tau / 12 : 1 / tau - 1 / std::expm1(tau);
+  return tau < 0.25f ? 0.5f - tau / 12 + tau * tau * tau / 720 : 1 / tau + 1 - 1 / opacity_of(tau);
 }
 
 /// Reads a profile at increasing distances.

@@ -25,7 +25,7 @@ public:
         end_(profile.channels(medium, profile.knots() - 1)), weights_(medium.volumes.size()) {}
 
   /// 1 - Tr of the whole ray in channel c.
-  float opacity(int c) const { return -std::expm1(-end_[c]); }
+  float opacity(int c) const { return opacity_of(end_[c]); }
 
   /// A point drawn from channel c's distribution, where c was chosen with equal chance if the
   /// medium is chromatic and is 0 otherwise. It lies where that channel's extinction is not 0, also

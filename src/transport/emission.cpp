@@ -130,7 +130,7 @@ private:
       Rgb mean;
       for (int c = 0; c < 3; ++c) {
         const float piece = after[c] - before[c];
-        mean[c] = std::exp(-before[c]) * (piece > 0 ? -std::expm1(-piece) / piece : 1);
+        mean[c] = std::exp(-before[c]) * (piece > 0 ? opacity_of(piece) / piece : 1);
       }
       sum_ += value(middle) * mean * (b - a);
       return;

@@ -131,6 +131,12 @@ void for_each_piece(const Volume& volume, const Segment& segment, const Visit& v
 /// forward peak that was taken out of the medium (PeakTakenOut).
 Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken_out = nullptr);
 
+/// Unbiased estimate of the same for shadow rays, `u` uniform in [0, 1): exact where the optical
+/// depth is small; beyond, the ray goes on with a chance of exp(-optical depth) and is weighted by
+/// its inverse (Russian roulette), so that it seldom crosses the dark side of a cloud.
+Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u,
+                           Rgb* taken_out = nullptr);
+
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
 /// little is left, a collision at a time. Requires a medium that is not empty.
 class RatioTracking {

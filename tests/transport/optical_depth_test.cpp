@@ -230,6 +230,33 @@ TEST(OpticalDepth, OverlappingChromaticVolumesAdd) {
   }
 }
 
+/// With u in the middle of n equal steps the mean over u is a quadrature of a function that falls
+/// from exp(-2) or less to 0 once.
+TEST(TransmittanceEstimate, MeanIsTheTransmittance) {
+  const Subject random(random_medium(), 12);
+  const Overlap overlap;
+  Rng rng({1, 0, 0}, RngStage::test, 9);
+  constexpr int steps = 4096;
+  int ended = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Ray ray = random_ray(rng);
+    const Medium& medium = i % 2 == 0 ? random.medium : overlap.medium;
+    const Rgb exact = exact_transmittance(medium, {ray, 0, 3});
+    Vec3d mean;
+    for (int n = 0; n < steps; ++n) {
+      const float u = (static_cast<float>(n) + 0.5f) / steps;
+      const Rgb tr = estimate_transmittance(medium, {ray, 0, 3}, u);
+      ended += max_component(tr) == 0;
+      for (int c = 0; c < 3; ++c)
+        mean[c] += static_cast<double>(tr[c]) / steps;
+    }
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(mean[c], static_cast<double>(exact[c]),
+                  std::exp(-2.0) / steps + 1e-5 * static_cast<double>(exact[c]));
+  }
+  EXPECT_GT(ended, 0);
+}
+
 Rgb ratio_transmittance(const Medium& medium, const Ray& ray, float t_end, Rng& rng) {
   RatioTracking tracking(medium, {ray, 0, t_end});
   while (tracking.advance(rng) && tracking.attenuate(rng)) {
