@@ -1,6 +1,7 @@
 #include "geometry/gltf_files.h"
 
 #include "machine/input_file.h"
+#include "text/text.h"
 
 #include <charconv>
 #include <cstddef>
@@ -54,7 +55,7 @@ std::string named_by_uri(const std::string& path) {
 std::vector<std::string> gltf_files(const std::string& path) {
   std::error_code failed;
   std::vector<std::string> files;
-  if (std::filesystem::path(path).extension() != ".gltf" ||
+  if (lower_case(std::filesystem::path(path).extension().string()) != ".gltf" ||
       !std::filesystem::is_regular_file(path, failed) ||
       std::filesystem::file_size(path, failed) > most_bytes)
     return files;
@@ -69,7 +70,7 @@ std::vector<std::string> gltf_files(const std::string& path) {
   return files;
 }
 
-std::string mesh_identity(const std::string& path) {
+std::string model_identity(const std::string& path) {
   std::string identity = file_identity(path);
   for (const std::string& file : gltf_files(path))
     identity.append("|").append(file_identity(file));

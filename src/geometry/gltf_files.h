@@ -11,11 +11,11 @@ std::string named_by_uri(const std::string& path);
 
 /// The files that a .gltf file names (`uri`: buffers with its numbers, pictures), as paths, in
 /// their order; not what it holds itself (`data:`). None of other files, and where it cannot be
-/// read, which reading the mesh will complain about.
+/// read, which reading the mesh or camera will complain about.
 std::vector<std::string> gltf_files(const std::string& path);
 
-/// Tells one state of a file from another as file_identity does; a .gltf file with those that it
-/// names.
-std::string mesh_identity(const std::string& path);
+/// Tells one state of a file of meshes or cameras from another as file_identity does; a .gltf file
+/// with those that it names.
+std::string model_identity(const std::string& path);
 
 } // namespace vdbeam

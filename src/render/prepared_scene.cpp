@@ -23,7 +23,7 @@ std::string settings_text(const Scene& scene, const Wanted& wanted) {
       const std::string value = key.format(key.get(scene, i));
       text += key_path(key, i) + "=" + value + ";";
       if (key.kind == KeyKind::file)
-        text += mesh_identity(std::get<std::string>(key.get(scene, i))) + ";";
+        text += model_identity(std::get<std::string>(key.get(scene, i))) + ";";
     }
   }
   return text;

@@ -1,7 +1,7 @@
 #include "scene/camera_file.h"
 
 #include "geometry/gltf_camera.h"
-#include "machine/input_file.h"
+#include "geometry/gltf_files.h"
 #include "scene/scene_enums.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -201,7 +201,7 @@ CameraPose CameraFile::pose_at(const CameraSettings& settings, double time) {
   std::shared_ptr<const Track> track;
   {
     const std::string identity =
-        fmt::format("{}|{}|{}", file_identity(settings.file), settings.name, settings.file_fps);
+        fmt::format("{}|{}|{}", model_identity(settings.file), settings.name, settings.file_fps);
     const std::scoped_lock lock(mutex_);
     if (!track_ || identity != identity_)
       track_ = std::make_shared<const Track>(read_track(settings));

@@ -30,7 +30,7 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
                                                     std::vector<std::string>& notes) {
   const bool from_file = surface.shape == SurfaceShape::file, uvs = textured_[surface.file];
   const std::string name =
-      from_file ? fmt::format("{}|{}|{}|{}", mesh_identity(surface.file), uvs ? "uv" : "",
+      from_file ? fmt::format("{}|{}|{}|{}", model_identity(surface.file), uvs ? "uv" : "",
                               surface.file_normals ? "normals" : "", surface.smooth_angle)
                 : fmt::format("{}", static_cast<int>(surface.shape));
   if (const KnownShape* known = find(shapes_, name))

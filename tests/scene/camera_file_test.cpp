@@ -2,6 +2,8 @@
 
 #include "scene/scene_fixture.h"
 
+#include <cstring>
+
 namespace vdbeam {
 namespace {
 
@@ -122,6 +124,38 @@ TEST_F(GltfCamera, ChosenByName) {
   EXPECT_LT(length(still.position - Vec3d(11, 2, 3)), 1e-5);
   EXPECT_NEAR(still.fov, 0.9 * 180 / M_PI, 1e-4);
   EXPECT_EQ(camera({7}, {"camera.name=Still", "camera.fov=20"}).fov, 20);
+}
+
+/// The numbers of an animation may lie in a file of their own:
+/// where it alone changes, the camera is read anew, and checkpoints of the scene are of another
+/// scene.
+TEST_F(GltfCamera, BuffersInOtherFilesArePartOfIt) {
+  namespace fs = std::filesystem;
+  const auto write_rise = [&](float height) {
+    std::vector<float> numbers{0, 1, 0, 0, 0, 0, height, 0, 0, 0, 0, 1, 0, 0, 0, 1};
+    std::string bytes(numbers.size() * sizeof(float), 0);
+    std::memcpy(bytes.data(), numbers.data(), bytes.size());
+    write("crane.bin", bytes);
+  };
+  std::string text = gltf_cameras;
+  const std::size_t begin = text.find("data:");
+  text.replace(begin, text.find('"', begin) - begin, "crane.bin");
+  CameraSettings settings;
+  settings.name = "Crane";
+  settings.file_fps = 24;
+  for (const char* name : {"shot.gltf", "shot.GLTF"}) {
+    write_rise(24);
+    const std::string path = write(name, text),
+                      scene = std::string("[camera]\nfile = '") + name + "'\n";
+    settings.file = path;
+    CameraFile camera;
+    EXPECT_NEAR(camera.pose_at(settings, 24).position.y, 24, 1e-5) << name;
+    const std::string hash = pass_hash(load(scene));
+    write_rise(36);
+    fs::last_write_time(file("crane.bin"), fs::last_write_time(path) + std::chrono::seconds(2));
+    EXPECT_NEAR(camera.pose_at(settings, 24).position.y, 36, 1e-5) << name;
+    EXPECT_NE(pass_hash(load(scene)), hash) << name;
+  }
 }
 
 TEST_F(GltfCamera, TellsWhatIsWrong) {
