@@ -275,7 +275,44 @@ Grids staggered(const VolumeOptions& options) {
   return {ball, velocity};
 }
 
-/// The same as three grids of numbers, as some of Houdini's files have it.
+/// The noise cloud in the inner half of the size, and a velocity in all of it that turns, shears
+/// and lifts it: (-y, x + z / 2, x / 2) at the point (x, y, z) of the world.
+Grids whirl(const VolumeOptions& options) {
+  VolumeOptions inner = options;
+  inner.size /= 2;
+  inner.extent /= 2;
+  const FloatGrid::Ptr cloud = noise_cloud(inner);
+  const auto velocity = openvdb::Vec3SGrid::create();
+  velocity->setTransform(cloud->transformPtr());
+  velocity->setName("velocity");
+  auto accessor = velocity->getAccessor();
+  const CoordBBox box = bounds(options);
+  for (auto at = box.begin(); at; ++at) {
+    const Vec3d p = cloud->indexToWorld(*at);
+    accessor.setValue(*at, openvdb::Vec3s(Vec3d(-p.y(), p.x() + p.z() / 2, p.x() / 2)));
+  }
+  return {cloud, velocity};
+}
+
+/// The ball, and a velocity of (1, 2, 3) among voxels of all that goes wrong in simulations: not
+/// numbers, infinities, and 1e6.
+Grids wild(const VolumeOptions& options) {
+  Grids grids = staggered(options);
+  auto& velocity = static_cast<openvdb::Vec3SGrid&>(*grids[1]);
+  using Limits = std::numeric_limits<float>;
+  const float bad[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), 1e6f, -1e6f,
+                       Limits::max()};
+  std::size_t count = 0;
+  for (auto value = velocity.beginValueOn(); value; ++value, ++count)
+    if (count % 3 == 0) {
+      openvdb::Vec3s v(1, 2, 3);
+      v[static_cast<int>(count / 3 % 3)] = bad[count / 9 % std::size(bad)];
+      value.setValue(v);
+    }
+  return grids;
+}
+
+/// The ball and its velocity as three grids of numbers, as some of Houdini's files have it.
 Grids components(const VolumeOptions& options) {
   Grids grids{sphere(options)};
   for (int axis = 0; axis < 3; ++axis) {
@@ -357,6 +394,8 @@ const std::vector<Recipe>& recipes() {
       {"duplicates", "two grids of one name: the noise cloud, and a sphere twice as dense",
        duplicates},
       {"staggered", "a ball and its staggered velocity (1, 2, 3)", staggered},
+      {"whirl", "a noise cloud of half the size that a velocity turns, shears and lifts", whirl},
+      {"wild", "a ball and its velocity (1, 2, 3), a third of it NaN, infinite or 1e6", wild},
       {"components", "a ball and its velocity (1, 2, 3) in three grids", components},
       {"colored", "a box and its colours, as a grid of vectors and as three of numbers", colored},
       {"simulation", "grids density, temperature and velocity", simulation},

@@ -1,38 +1,18 @@
 #include "render/shutter.h"
 
-#include "support/temp_folder.h"
-#include "vdbeam/scene_file.h"
-#include "volume_factory.h"
-
-#include <gtest/gtest.h>
+#include "support/ball_scene.h"
 
 #include <cstring>
-#include <fstream>
 #include <set>
 
 namespace vdbeam {
 namespace {
 
-/// A ball with a velocity of (1, 2, 3), lit by a sky that is hidden.
-class ShutterTest : public ::testing::Test {
+/// The ball, seen by parallel rays while the shutter is open.
+class ShutterTest : public test::BallTest {
 protected:
-  ShutterTest() {
-    VolumeOptions options;
-    options.size = 24;
-    write_volume("staggered", folder_.file("ball.vdb"), options);
-  }
   Scene load(const std::vector<std::string>& more = {}, const std::string& camera = "") {
-    std::ofstream(folder_.file("s.toml"))
-        << "[image]\nwidth = 24\nheight = 24\n"
-           "[camera]\nposition = [0, 0, 6]\nprojection = \"orthographic\"\nview_height = 6\n"
-        << camera
-        << "\n[[volume]]\nfile = \"ball.vdb\"\nextinction = 0.5\nvelocity_fps = 1\n"
-           "[[light]]\ntype = \"environment\"\nvisible = false\n"
-           "[render]\npasses = 16\nestimator = \"path\"\n";
-    return load_scene(folder_.file("s.toml"), 1, more);
-  }
-  static const std::vector<float>& plane(const Image& image, const char* name) {
-    return image.find(name)->data;
+    return load_ball(parallel_rays + camera, more);
   }
   static void expect_same(const Image& a, const Image& b) {
     for (const char* name : {"R", "A", "depth.Z"})
@@ -40,8 +20,6 @@ protected:
                             plane(a, name).size() * sizeof(float)),
                 0);
   }
-
-  test::TempFolder folder_;
 };
 
 TEST_F(ShutterTest, PassesVisitEveryMomentOnce) {

@@ -1,34 +1,22 @@
 // Extremes of a shot's camera and motion: velocities of 1e6, lenses of no width and wider than all
 // that they see.
-#include "vdbeam/render.h"
-#include "vdbeam/scene_file.h"
+#include "support/ball_scene.h"
 
-#include "support/temp_folder.h"
-#include "volume_factory.h"
-
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 
 namespace vdbeam {
 namespace {
 
-/// A ball with a velocity of (1, 2, 3) that loses no light, in a sky of radiance 1.
-class Shots : public ::testing::Test {
+/// The ball, which loses no light, in a sky of radiance 1.
+class Shots : public test::BallTest {
 protected:
-  Shots() {
-    VolumeOptions options;
-    options.size = 24;
-    write_volume("staggered", folder_.file("ball.vdb"), options);
-    std::ofstream(folder_.file("s.toml"))
-        << "[image]\nwidth = 24\nheight = 24\n[camera]\nposition = [0, 0, 6]\n"
-           "[[volume]]\nfile = \"ball.vdb\"\nextinction = 2\n"
-           "[[light]]\ntype = \"environment\"\n[render]\npasses = 16\nestimator = \"path\"\n";
-  }
   RenderResult render_with(const std::vector<std::string>& more) {
-    return render(load_scene(folder_.file("s.toml"), 1, more));
+    std::vector<std::string> overrides{"volume.0.extinction=2", "volume.0.velocity_fps=24",
+                                       "light.0.visible=true"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return render(load_ball("position = [0, 0, 6]\n", overrides));
   }
   static bool same(const Image& a, const Image& b) {
     const std::vector<float>&x = a.find("R")->data, &y = b.find("R")->data;
@@ -48,8 +36,11 @@ protected:
     EXPECT_NEAR(mean, 1, 4.5 * error + 1e-5);
     EXPECT_LT(error, 0.01);
   }
-
-  test::TempFolder folder_;
+  static void expect_finite(const Image& image) {
+    for (const ImageChannel& channel : image.channels)
+      for (const float value : channel.data)
+        ASSERT_TRUE(std::isfinite(value)) << channel.name;
+  }
 };
 
 TEST_F(Shots, VelocitiesOf1e6) {
@@ -64,6 +55,45 @@ TEST_F(Shots, VelocitiesOf1e6) {
               wild = render_with({"camera.shutter_close=0.5", "volume.0.velocity_scale=1e6"}).image;
   for (std::size_t i = 0; i < still.find("A")->data.size(); ++i)
     EXPECT_NEAR(wild.find("A")->data[i], still.find("A")->data[i], 1e-5f) << i;
+}
+
+/// A third of the voxels have a velocity that is not a number, infinite or 1e6: a note counts them,
+/// and the layer shows how those around them move.
+TEST_F(Shots, WildVelocitiesInTheMotionLayer) {
+  write("wild", "wild.vdb");
+  const std::string file = "volume.0.file=" + folder_.file("wild.vdb");
+  for (const char* shutter : {"camera.shutter_close=0", "camera.shutter_close=0.5"}) {
+    SCOPED_TRACE(shutter);
+    const RenderResult result = render_with({"layer.0.name=motion", file, shutter});
+    expect_finite(result.image);
+    expect_one(result.image);
+    EXPECT_EQ(std::count_if(result.notes.begin(), result.notes.end(),
+                            [](const std::string& note) {
+                              return note.find("voxels have a velocity that is not a number") !=
+                                     std::string::npos;
+                            }),
+              1);
+    const Image tame = render_with({"layer.0.name=motion", shutter}).image;
+    const std::size_t middle = 12 * 24 + 12;
+    for (const char* channel : {"motion.X", "motion.Y"})
+      EXPECT_NEAR(plane(result.image, channel)[middle], plane(tame, channel)[middle],
+                  1e-4f * plane(tame, channel)[middle]);
+  }
+}
+
+/// Velocities and frame rates beyond all measure are not to be trusted either.
+TEST_F(Shots, ExtremeFactorsInTheMotionLayer) {
+  for (const char* extreme :
+       {"volume.0.velocity_scale=1e6", "volume.0.velocity_scale=-1e30",
+        "volume.0.velocity_scale=1e308", "volume.0.velocity_scale=1e-308",
+        "volume.0.velocity_fps=1e-300", "volume.0.velocity_fps=1e-6", "volume.0.velocity_fps=1e300",
+        "volume.0.velocity_scale=20", "camera.fov=179.9"})
+    for (const char* shutter : {"camera.shutter_close=0", "camera.shutter_close=0.5"}) {
+      SCOPED_TRACE(std::string(extreme) + " " + shutter);
+      const Image image =
+          render_with({"layer.0.name=motion", "render.passes=2", extreme, shutter}).image;
+      expect_finite(image);
+    }
 }
 
 TEST_F(Shots, ShutterOfNoLength) {
