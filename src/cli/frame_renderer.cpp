@@ -5,6 +5,7 @@
 #include "cli/signals.h"
 #include "film/film_file.h"
 #include "image/color_conversion.h"
+#include "image/deep_check.h"
 #include "image/output_formats.h"
 #include "machine/stopwatch.h"
 #include "report/image_metadata.h"
@@ -149,8 +150,11 @@ std::string FrameRenderer::why_no_image(const std::string& path, const LoadedFra
   if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
     return "is of another scene";
   const auto frame = image.numbers.find("vdbeam:frame");
-  return frame != image.numbers.end() && frame->second == loaded.frame() ? ""
-                                                                         : "is of another frame";
+  if (frame == image.numbers.end() || frame->second != loaded.frame())
+    return "is of another frame";
+  if (loaded.scene.image.deep)
+    check_deep_exr(side_file(path, "deep"));
+  return "";
 }
 
 std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
@@ -194,8 +198,8 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
     image.metadata["vdbeam:region"] = region_text();
   if (!options_.files.preview.empty())
     write_image(image, substitute_frame(options_.files.preview, loaded.frame()),
-                {options_.exposure});
-  write_image(image, output(loaded.frame()), {options_.exposure});
+                {options_.exposure, options_.view});
+  write_image(image, output(loaded.frame()), {options_.exposure, options_.view});
   remove_side_files(loaded.frame());
 }
 

@@ -113,8 +113,9 @@ void Film::add_layer(const std::string& name, Image& image) const {
     if (name == "variance")
       add(channel, false, [&](std::size_t i) {
         const double mean = sum(3 * i + c, true) / n;
-        return passes_ < 2 ? 0.0
-                           : std::max(0.0, squares_[3 * i + c] - n * mean * mean) / (n * (n - 1));
+        return passes_ < 2
+                   ? 0.0
+                   : std::max(0.0, squares_.high(3 * i + c) - n * mean * mean) / (n * (n - 1));
       });
   }
 }

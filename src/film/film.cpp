@@ -76,7 +76,7 @@ std::uint64_t Film::add_pixels(const PassImage& pass, std::size_t begin, std::si
     const double total = double{finite_or_zero(direct[i])} + finite_or_zero(indirect[i]) +
                          finite_or_zero(background[i]) +
                          (emission ? finite_or_zero(emission[i]) : 0);
-    squares_[i] += total * total;
+    squares_.add(i, total * total);
   }
   return invalid;
 }
@@ -115,8 +115,7 @@ void Film::merge(const Film& other) {
       merge_values(planes_[i], other.planes_[i], begin, end);
     merge_values(opacity_, other.opacity_, begin, end);
     merge_values(depth_, other.depth_, begin, end);
-    for (std::size_t i = 3 * begin; i < 3 * end; ++i)
-      squares_[i] += other.squares_[i];
+    merge_values(squares_, other.squares_, 3 * begin, 3 * end);
   });
   if (deep_)
     deep_->merge(*other.deep_);
@@ -142,7 +141,7 @@ std::vector<ImagePlane> Film::planes() {
       add("emission." + channel, emission_, 3, c);
     for (std::size_t g = 0; g < groups_.size(); ++g)
       add("group." + group_names_[g] + "." + channel, groups_[g], 3, c);
-    planes.push_back({"squares." + channel, squares_.data() + c, 3});
+    add("squares." + channel, squares_, 3, c);
   }
   for (std::size_t i = 0; i < coverage_.size(); ++i)
     add("object." + object_names_[i], coverage_[i], 1, 0);
@@ -186,7 +185,7 @@ double Film::mrse_estimate() const {
     for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
       const double mean = sum(i, true) / n;
       // Rounding may leave a constant with a tiny negative variance.
-      const double variance = std::max(0.0, (squares_[i] - n * mean * mean) / (n - 1));
+      const double variance = std::max(0.0, (squares_.high(i) - n * mean * mean) / (n - 1));
       sums[block] += variance / (n * (mean + 0.01) * (mean + 0.01));
     }
   });

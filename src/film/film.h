@@ -18,7 +18,7 @@ namespace vdbeam {
 /// The depth of a pixel without any medium: far behind everything, the value that Blender writes.
 constexpr float empty_depth = 1e10f;
 
-/// The mean of passes. It holds 156 bytes per pixel (1.3 GB at 3840 x 2160; 192 with emission)
+/// The mean of passes. It holds 168 bytes per pixel (1.4 GB at 3840 x 2160; 204 with emission)
 /// whatever the number of passes, at most 3 MB of their history, and developing it needs 60 (72)
 /// more per pixel.
 ///
@@ -49,7 +49,7 @@ public:
   std::uint64_t invalid_values() const { return invalid_values_; }
   /// What a film takes for each pixel, beside its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
-    return (glows ? 14 : 11) * CompensatedSums::bytes_per_value + 3 * sizeof(double);
+    return (glows ? 17 : 14) * CompensatedSums::bytes_per_value;
   }
   /// And for each object whose coverage it holds, with that of a pass and the largest layers.
   static constexpr std::size_t bytes_per_pixel_of_object() {
@@ -123,7 +123,7 @@ private:
   std::vector<CompensatedSums> coverage_; ///< 1 per pixel and object
   std::vector<std::string> plane_names_;
   std::vector<CompensatedSums> planes_; ///< 1 per pixel and plane that layers ask for
-  std::vector<double> squares_;         ///< 3 per pixel: sums of what passes show, squared
+  CompensatedSums squares_;             ///< 3 per pixel: sums of what passes show, squared
   std::optional<DeepFilm> deep_;
   PassHistory history_;
   struct HistoryStatistics {

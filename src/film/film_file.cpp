@@ -12,7 +12,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr const char* film_format = "5";
+constexpr const char* film_format = "6";
 
 [[noreturn]] void fail_damaged(const std::string& path) {
   throw InputError(path + ": is a damaged partial image; delete it and render its passes again");

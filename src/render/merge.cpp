@@ -139,8 +139,12 @@ Image merge_partials(const std::vector<std::string>& paths, const MergeSettings&
   if (!settings.partial.empty())
     write_film(info, film, settings.partial);
   Image image = finish_image(film, info);
-  if (const std::optional<DeepImage> deep = film.develop_deep(); deep && !settings.deep.empty())
-    write_deep_exr(*deep, image, settings.deep);
+  if (const std::optional<DeepImage> deep = film.develop_deep()) {
+    image.numbers["vdbeam:deepSamples"] = static_cast<double>(deep->z.size());
+    image.integers.insert("vdbeam:deepSamples");
+    if (!settings.deep.empty())
+      write_deep_exr(*deep, image, settings.deep);
+  }
   return image;
 }
 

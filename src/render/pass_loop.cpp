@@ -250,6 +250,8 @@ void PassLoop::resume() {
       const auto found = info.header.numbers.find(name);
       return found == info.header.numbers.end() || std::isnan(found->second) ? 0.0 : found->second;
     };
+    photons_before_ = result_.statistics.photons_stored =
+        static_cast<std::uint64_t>(std::clamp(number("vdbeam:photonsStored"), 0.0, 1e18));
     result_.statistics.clamp_removed = number("vdbeam:clampRemoved");
     result_.statistics.clamp_total = number("vdbeam:clampTotal");
     result_.statistics.clamped_pixels =
