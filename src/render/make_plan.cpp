@@ -1,7 +1,11 @@
 #include "render/plan.h"
+#include "render/read_volumes.h"
 #include "render/surface_files.h"
 #include "transport/camera.h"
+#include "volume/density_kind.h"
 #include "volume/vdb_reader.h"
+
+#include <algorithm>
 
 namespace vdbeam {
 namespace {
@@ -12,16 +16,35 @@ Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
   return map.bounds({Vec3d(grid.index_lower) - Vec3d(1), Vec3d(grid.index_upper) + Vec3d(1)});
 }
 
+/// The header of a grid, cropped as reading the grid will crop it: voxels inside the box that may
+/// be active count as active. What moves may come from anywhere.
+GridSummary read_header(const Scene& scene, const VolumeSettings& volume, const std::string& name) {
+  GridSummary grid = read_grid_header(volume.file, name);
+  const std::optional<WantedBox> wanted = wanted_box(volume, nullptr);
+  if (!wanted || !scene.moments.empty() || grid.active_voxels == 0 || is_level_set(grid))
+    return grid;
+  const WantedBox::Voxels voxels = wanted->voxels(grid.index_to_world);
+  double inside = 1;
+  for (int a = 0; a < 3; ++a) {
+    grid.index_lower[a] = std::max(grid.index_lower[a], voxels.lower[a]);
+    grid.index_upper[a] = std::min(grid.index_upper[a], voxels.upper[a]);
+    inside *= std::max(0.0, static_cast<double>(grid.index_upper[a] - grid.index_lower[a] + 1));
+  }
+  if (inside < static_cast<double>(grid.active_voxels))
+    grid.active_voxels = static_cast<std::uint64_t>(inside);
+  return grid;
+}
+
 /// Voxels of the grids that a volume's emission is made from, as their headers say; 0 where one of
 /// them is empty.
-std::uint64_t count_glowing_voxels(const VolumeSettings& volume, Boxd& bounds) {
+std::uint64_t count_glowing_voxels(const Scene& scene, const VolumeSettings& volume, Boxd& bounds) {
   std::uint64_t voxels = 0;
   if (!volume.glows())
     return voxels;
   for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
     if (name.empty())
       continue;
-    const GridSummary grid = read_grid_header(volume.file, name);
+    const GridSummary grid = read_header(scene, volume, name);
     if (grid.active_voxels == 0)
       return 0;
     voxels += grid.active_voxels;
@@ -38,12 +61,12 @@ RenderPlan make_plan(const Scene& scene) {
   for (const VolumeSettings& volume : scene.volumes) {
     VolumeFacts fact{true, 0};
     if (volume.needs_density()) {
-      const GridSummary grid = read_grid_header(volume.file, volume.density);
+      const GridSummary grid = read_header(scene, volume, volume.density);
       fact = {grid.active_voxels == 0, grid.active_voxels};
       if (!fact.empty)
         bounds.extend(visible_bounds(grid, volume.transform));
     }
-    fact.glowing_voxels = count_glowing_voxels(volume, bounds);
+    fact.glowing_voxels = count_glowing_voxels(scene, volume, bounds);
     facts.push_back(fact);
   }
   const Camera camera(scene.camera, scene.image, {});

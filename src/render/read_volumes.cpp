@@ -7,12 +7,12 @@
 #include "vdbeam/error.h"
 #include "volume/combined_grid.h"
 #include "volume/edited_field.h"
-#include "volume/moved_field.h"
 #include "volume/noise.h"
 #include "volume/refined_grid.h"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace vdbeam {
@@ -90,9 +90,10 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-DensityGrid masked_density(const VolumeSettings& volume, DensityGrid grid) {
+DensityGrid masked_density(const VolumeSettings& volume, const std::optional<WantedBox>& wanted,
+                           DensityGrid grid) {
   for (const std::string& name : names_in(volume.mask)) {
-    const DensityGrid mask = read_density_grid(volume.file, name, {}, Background::ignored);
+    const DensityGrid mask = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
     GridEdits edits;
     edits.to_world = grid.index_to_world;
     edits.mask = &mask;
@@ -103,19 +104,19 @@ DensityGrid masked_density(const VolumeSettings& volume, DensityGrid grid) {
 }
 
 /// The density as its file has it, with all that is added, times its masks, displaced by noise.
-DensityGrid read_density(const VolumeSettings& volume) {
+DensityGrid read_density(const VolumeSettings& volume, const std::optional<WantedBox>& wanted) {
   std::vector<DensityGrid> grids;
   std::vector<std::string> names = names_in(volume.add);
   names.insert(names.begin(), volume.density);
   for (const std::string& name : names) {
-    grids.push_back(read_density_grid(volume.file, name));
+    grids.push_back(read_density_grid(volume.file, name, {}, Background::refused, wanted));
     if (volume.interpolation == Interpolation::cubic)
       grids.back() = refined_grid(grids.back(), volume.file, granted_memory());
   }
   DensityGrid grid = grids.size() == 1
                          ? std::move(grids.front())
                          : sum_of_grids(std::move(grids), volume.file, granted_memory());
-  grid = masked_density(volume, std::move(grid));
+  grid = masked_density(volume, wanted, std::move(grid));
   return displaced_grid(grid, volume.noise, volume.file, granted_memory());
 }
 
@@ -144,6 +145,16 @@ Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previou
 
 } // namespace
 
+std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion) {
+  const Affine placed = Affine::from_matrix(volume.transform);
+  if (!volume.box_lower || !volume.box_upper || !(std::abs(placed.determinant()) > 0))
+    return std::nullopt;
+  Boxd box = placed.inverse().bounds({*volume.box_lower, *volume.box_upper});
+  const Vec3d noise(volume.noise.amplitude);
+  const Boxd ways = motion ? ways_of(*motion) : Boxd{Vec3d(0), Vec3d(0)};
+  return WantedBox{{box.lower - noise - ways.upper, box.upper + noise - ways.lower}};
+}
+
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read) {
   if (!volume.needs_density())
@@ -162,7 +173,7 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
     read.identity.clear(); // other frames have no use for it
     return moved_grid(grid, *motion, volume.file, granted_memory());
   }
-  DensityGrid grid = read_density(volume);
+  DensityGrid grid = read_density(volume, wanted_box(volume, motion ? &*motion : nullptr));
   if (motion) {
     read.identity.clear();
     grid = moved_grid(grid, *motion, volume.file, granted_memory());
@@ -186,10 +197,11 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
         volume.noise.amplitude == 0)
       return read_emission_grid(volume.file, volume.emission);
   }
+  const std::optional<WantedBox> wanted = wanted_box(volume, motion ? &*motion : nullptr);
   const auto take = [&](const std::string& name) -> DensityGrid {
     if (name.empty())
       return {};
-    DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored);
+    DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
     if (volume.interpolation == Interpolation::cubic)
       grid = refined_grid(grid, volume.file, granted_memory());
     grid = displaced_grid(grid, volume.noise, volume.file, granted_memory());

@@ -278,6 +278,20 @@ DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std:
   return moved;
 }
 
+Boxd ways_of(const Motion& motion) {
+  if (stands_still(motion))
+    return {Vec3d(0), Vec3d(0)};
+  constexpr double far = 1e15;
+  const Boxf velocities = motion.velocity.bounds({Vec3d(-far), Vec3d(far)});
+  const VelocityScale meaning = scale_of(motion.settings, motion.velocity.from_mantaflow());
+  Affine turn;
+  if (meaning.index)
+    turn.rows = motion.velocity.index_to_world().rows;
+  const Boxd box = turn.bounds({Vec3d(velocities.lower), Vec3d(velocities.upper)});
+  const double time = motion.settings.time * meaning.factor;
+  return {min(box.lower * time, box.upper * time), max(box.lower * time, box.upper * time)};
+}
+
 std::function<Vec3d(const Vec3d& index)> sources_of(const DensityGrid& grid, const Motion& motion) {
   if (stands_still(motion))
     return [](const Vec3d& index) { return index; };

@@ -19,6 +19,9 @@ struct Motion {
 DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
                        std::uint64_t maximum_bytes);
 
+/// Bounds of the ways that a velocity carries points in settings.time [world of the file].
+Boxd ways_of(const Motion& motion);
+
 /// A function that gives, for a point of the moved grid, where it was before; both in index
 /// coordinates. The arguments must outlive it.
 std::function<Vec3d(const Vec3d& index)> sources_of(const DensityGrid& grid, const Motion& motion);

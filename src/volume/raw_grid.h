@@ -49,6 +49,7 @@ struct RawGridHeader {
   std::uint32_t level_set = 0;
   std::uint32_t staggered = 0; ///< of velocities: each component lies on its faces of the voxel
   std::uint32_t from_mantaflow = 0;
+  std::uint32_t cropped = 0; ///< leaves and tiles were left out that nothing needs
 };
 
 /// The grid in a file of that layout; it refers to the file's memory. Trusts nothing, since a

@@ -147,15 +147,39 @@ void write_leaves(const std::vector<const Leaf*>& leaves, float background, int 
   write_all(descriptor, origins.data(), origins.size() * sizeof(std::int32_t));
 }
 
+/// What is wanted of a grid, all else being background. OpenVDB reads the masks of its nodes, and
+/// the values of leaves that lie in the box.
+const openvdb::GridBase& read_part(openvdb::io::File& file, const std::string& path,
+                                   const std::string& name, const openvdb::GridBase& metadata,
+                                   const WantedBox& wanted) {
+  const openvdb::math::Transform& transform = metadata.transform();
+  const WantedBox::Voxels voxels =
+      wanted.voxels(Affine::from_matrix(affine_rows(path, name, transform)));
+  const auto corner = [](const Vec3<std::int64_t>& v) {
+    return openvdb::Vec3d(static_cast<double>(v.x), static_cast<double>(v.y),
+                          static_cast<double>(v.z));
+  };
+  const openvdb::BBoxd box =
+      transform.indexToWorld(openvdb::BBoxd(corner(voxels.lower), corner(voxels.upper)));
+  auto& grid = make_immortal<openvdb::GridBase::Ptr>(file.readGrid(name, box));
+  const auto voxel = [](const Vec3<std::int64_t>& v) {
+    return openvdb::Coord(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z));
+  };
+  // The box of the world that holds those of a turned or sheared grid is larger.
+  grid->clip({voxel(voxels.lower), voxel(voxels.upper)});
+  return *grid;
+}
+
 template <class Grid>
 void write_grid(const std::string& path, const std::string& name, const Grid& grid,
-                Background background, int descriptor) {
+                Background background, bool cropped, int descriptor) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
   static_assert(Leaf::SIZE == leaf_size);
   RawGridHeader header;
   header.index_to_world = affine_rows(path, name, grid.transform());
   const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
   header.level_set = level_set;
+  header.cropped = cropped;
   if (const auto declared = grid.template getMetadata<openvdb::Int64Metadata>(
           openvdb::GridBase::META_FILE_VOXEL_COUNT))
     header.declared_voxels = declared->value();
@@ -203,19 +227,29 @@ std::string require_density_grid(const std::string& path, const std::string& gri
   return name;
 }
 
-void write_raw_grid(const std::string& path, const std::string& wanted, Background background,
-                    int descriptor) {
+void write_raw_grid(const std::string& path, const std::string& name, Background background,
+                    const std::optional<WantedBox>& wanted, int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false); // delayed loading hangs or crashes on malformed files
-  const std::string grid_name = find_grid(file, path, wanted);
-  check_kind(path, grid_name, *file.readGridMetadata(grid_name));
-  const openvdb::GridBase& grid = *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
+  const std::string grid_name = find_grid(file, path, name);
+  const openvdb::GridBase& metadata =
+      *make_immortal<openvdb::GridBase::Ptr>(file.readGridMetadata(grid_name));
+  check_kind(path, grid_name, metadata);
+  const auto read_all = [&]() -> const openvdb::GridBase& {
+    return *make_immortal<openvdb::GridBase::Ptr>(file.readGrid(grid_name));
+  };
+  const bool crops = wanted && metadata.getGridClass() != openvdb::GRID_LEVEL_SET;
+  const openvdb::GridBase& grid =
+      crops ? read_part(file, path, grid_name, metadata, *wanted) : read_all();
   check_kind(path, grid_name, grid);
+  // A file that ends just before a tree looks like an empty one: not so where it has more
+  // elsewhere.
+  const bool cropped = crops && !(grid.empty() && read_all().empty());
   if (grid.isType<openvdb::FloatGrid>())
-    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(grid), background,
+    write_grid(path, grid_name, static_cast<const openvdb::FloatGrid&>(grid), background, cropped,
                descriptor);
   else
-    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(grid), background,
+    write_grid(path, grid_name, static_cast<const openvdb::DoubleGrid&>(grid), background, cropped,
                descriptor);
 }
 

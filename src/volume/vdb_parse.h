@@ -26,10 +26,11 @@ void prepare_openvdb();
 /// type or map than can be rendered.
 std::string require_density_grid(const std::string& path, const std::string& grid_name);
 
-/// Reads one grid and writes it to `descriptor`, laid out as RawGridHeader says. Throws InputError
-/// (no such grid, unsupported type, class, map or background), and whatever OpenVDB throws.
+/// Reads one grid, or what is wanted of it, and writes it to `descriptor`, laid out as
+/// RawGridHeader says. Throws InputError (no such grid, unsupported type, class, map or
+/// background), and whatever OpenVDB throws.
 void write_raw_grid(const std::string& path, const std::string& grid_name, Background background,
-                    int descriptor);
+                    const std::optional<WantedBox>& wanted, int descriptor);
 
 /// Writes the names of a file's grids, each ended by a line feed.
 void write_grid_names(const std::string& path, int descriptor);

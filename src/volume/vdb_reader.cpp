@@ -61,7 +61,8 @@ std::vector<std::string> notes(const std::string& label, const RawGridHeader& he
                                const DensityGrid& grid) {
   std::vector<std::string> notes;
   const std::int64_t declared = header.declared_voxels;
-  if (declared >= 0 && static_cast<std::uint64_t>(declared) != header.active_voxels)
+  if (!header.cropped && declared >= 0 &&
+      static_cast<std::uint64_t>(declared) != header.active_voxels)
     notes.push_back(fmt::format("{}: has {} active voxels, but its file says {}; it may be damaged",
                                 label, header.active_voxels, declared));
   if (header.level_set)
@@ -69,7 +70,8 @@ std::vector<std::string> notes(const std::string& label, const RawGridHeader& he
   if (grid.repairs.nan + grid.repairs.infinite + grid.repairs.negative > 0)
     notes.push_back(repairs_note(label, grid.repairs));
   if (grid.field.empty())
-    notes.push_back(label + ": is empty, nothing to render");
+    notes.push_back(label + (header.cropped ? ": is empty inside the box, nothing to render"
+                                            : ": is empty, nothing to render"));
   return notes;
 }
 
@@ -83,14 +85,17 @@ MappedFile read_guarded(const std::string& path, const ReadLimits& limits,
 }
 
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
-                              const ReadLimits& limits, Background background) {
+                              const ReadLimits& limits, Background background,
+                              const std::optional<WantedBox>& wanted) {
   const std::string label = fmt::format("{}: grid \"{}\"", path, grid_name);
-  MappedFile file = read_guarded(
-      path, limits, [&](int output) { write_raw_grid(path, grid_name, background, output); });
+  MappedFile file = read_guarded(path, limits, [&](int output) {
+    write_raw_grid(path, grid_name, background, wanted, output);
+  });
   RawGridHeader header;
   RawGrid raw = view_raw_grid(label, file, header);
   // OpenVDB takes a file that ends just before a tree for an empty tree.
-  if (header.declared_voxels > 0 && raw.leaf_count == 0 && header.active_voxels == 0)
+  if (header.declared_voxels > 0 && raw.leaf_count == 0 && header.active_voxels == 0 &&
+      !header.cropped)
     throw FrameError(fmt::format("{}: the file is cut short, of {} active voxels it has none",
                                  label, header.declared_voxels));
   raw.release = [&file](std::size_t leaves) {

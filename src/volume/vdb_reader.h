@@ -3,9 +3,11 @@
 #include "math/affine.h"
 #include "volume/color_field.h"
 #include "volume/density_field.h"
+#include "volume/wanted_box.h"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,12 +67,15 @@ struct ReadLimits {
 /// other grids values equal to it count as 0.
 enum class Background { refused, ignored };
 
-/// Reads one float or half grid and bricks it, in parallel.
+/// Reads one float or half grid and bricks it, in parallel; only the leaves and tiles that `wanted`
+/// needs where it is given, of which alone repairs and counts then tell. (Of a level set all, since
+/// its depth is found in all of it.)
 /// Throws InputError (missing file or grid, naming the grids there are; unsupported type, class or
 /// map) and FrameError (corrupt file, limits exceeded), each within `limits`.
 DensityGrid read_density_grid(const std::string& path, const std::string& grid_name,
                               const ReadLimits& limits = {},
-                              Background background = Background::refused);
+                              Background background = Background::refused,
+                              const std::optional<WantedBox>& wanted = {});
 
 /// What a file's header says of a grid that read_density_grid would read: name, type, class, map,
 /// active voxels and bounds. Takes milliseconds: voxels are read only where the file was written

@@ -1,32 +1,18 @@
-#include "support/temp_folder.h"
+#include "render/read_volumes.h"
+#include "support/ball_scene.h"
 #include "vdbeam/error.h"
-#include "vdbeam/render.h"
-#include "vdbeam/scene_file.h"
-#include "volume_factory.h"
-
-#include <gtest/gtest.h>
-
-#include <fstream>
+#include "volume/edited_field.h"
 
 namespace vdbeam {
 namespace {
 
-/// A ball of radius 0.9 with a velocity of (1, 2, 3), seen by parallel rays; 4 pixels to the unit.
-class Look : public ::testing::Test {
+/// The ball, seen by parallel rays.
+class Look : public test::BallTest {
 protected:
-  Look() {
-    VolumeOptions options;
-    options.size = 24;
-    write_volume("staggered", folder_.file("ball.vdb"), options);
-  }
   Scene load(const std::vector<std::string>& more = {}) {
-    std::ofstream(folder_.file("s.toml"))
-        << "[image]\nwidth = 24\nheight = 24\n"
-           "[camera]\nposition = [0, 0, 6]\nprojection = \"orthographic\"\nview_height = 6\n"
-           "[[volume]]\nfile = \"ball.vdb\"\nextinction = 0.5\nvelocity_fps = 1\n"
-           "[[light]]\ntype = \"environment\"\nvisible = false\n"
-           "[render]\npasses = 4\nestimator = \"path\"\n";
-    return load_scene(folder_.file("s.toml"), 1, more);
+    std::vector<std::string> overrides{"render.passes=4"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return load_ball(parallel_rays, overrides);
   }
   static std::vector<float> opacity(const Image& image) { return image.find("A")->data; }
   static float at(const std::vector<float>& values, double x, double y) {
@@ -37,8 +23,6 @@ protected:
     for (std::size_t i = 0; i < a.size(); ++i)
       ASSERT_NEAR(a[i], b[i], 1e-5) << i;
   }
-
-  test::TempFolder folder_;
 };
 
 TEST_F(Look, DensityScaleIsAFactorOfTheExtinction) {
@@ -67,6 +51,68 @@ TEST_F(Look, TheBoxCutsAndStaysWhereItIs) {
   EXPECT_EQ(at(later, 0.6, 1.1), 0);
 }
 
+/// Of the file only what can come into the box is read, whatever brings it there, and the plan
+/// knows.
+TEST_F(Look, TheBoxIsAllThatIsRead) {
+  VolumeOptions options;
+  options.size = 96;
+  options.extent = 2;
+  write_volume("staggered", folder_.file("ball.vdb"), options);
+  const std::vector<std::string> box{"volume.0.box_lower=[0.21, -0.29, -0.29]",
+                                     "volume.0.box_upper=[0.49, 0.09, 0.19]",
+                                     "volume.0.translate=[0.1, 0, 0]"};
+  const auto with = [](std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  const PreparedScenePtr whole = prepare_scene(load()), part = prepare_scene(load(box));
+  EXPECT_LT(part->facts.volumes[0].density, whole->facts.volumes[0].density / 4);
+  const RenderPlan all = make_plan(load()), cut = make_plan(load(box));
+  EXPECT_LT(cut.volume_bytes, all.volume_bytes / 4);
+  EXPECT_LE(render(load(box)).plan.volume_bytes, cut.volume_bytes); // as found, and as foretold
+  EXPECT_FALSE(make_plan(load({"volume.0.box_lower=[5, 5, 5]", "volume.0.box_upper=[6, 6, 6]"}))
+                   .needs(Stage::majorants));
+  // The values in the box are those of the whole volume, cut afterwards.
+  options.size = 40;
+  write_volume("staggered", folder_.file("ball.vdb"), options);
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{},
+        {"volume.0.noise_amplitude=0.25", "volume.0.noise_size=0.2"},
+        {"volume.0.interpolation=cubic", "volume.0.noise_amplitude=0.1"}})
+    for (const double time : {0.0, 0.2}) {
+      Scene boxed = load(with(box, more));
+      VolumeSettings volume = boxed.volumes[0];
+      volume.velocity.time = time;
+      const auto take = [&](const VolumeSettings& wanted) {
+        ReadVolume read;
+        if (time != 0)
+          read.velocity = read_velocity(wanted.file, wanted.velocity);
+        return take_grid(wanted, nullptr, read);
+      };
+      const DensityGrid found = take(volume);
+      volume.box_lower = volume.box_upper = {};
+      DensityGrid expected = take(volume);
+      GridEdits edits;
+      edits.to_world = Affine::from_matrix(volume.transform).after(expected.index_to_world);
+      edits.box = Boxd{*boxed.volumes[0].box_lower, *boxed.volumes[0].box_upper};
+      expected.field = edited_field(expected.field, edits);
+      const auto value = [](const DensityGrid& grid, const Vec3d& index) {
+        return grid.field.sample(Vec3f(index - Vec3d(grid.field.origin())));
+      };
+      double sum = 0;
+      const Boxd lattice = edits.to_world.inverse().bounds(*edits.box);
+      for (double i = std::floor(lattice.lower.x) - 2; i <= lattice.upper.x + 2; ++i)
+        for (double j = std::floor(lattice.lower.y) - 2; j <= lattice.upper.y + 2; ++j)
+          for (double k = std::floor(lattice.lower.z) - 2; k <= lattice.upper.z + 2; ++k) {
+            ASSERT_NEAR(value(found, {i, j, k}), value(expected, {i, j, k}), 2e-5)
+                << i << " " << j << " " << k << " time " << time;
+            sum += static_cast<double>(value(found, {i, j, k}));
+          }
+      EXPECT_GT(sum, 100);
+      EXPECT_LT(found.active_voxels, expected.active_voxels);
+    }
+}
+
 TEST_F(Look, FramesDoNotTakeOverOtherEdits) {
   const Scene plain = load(), scaled = load({"volume.0.density_scale=3"});
   const PreparedScenePtr first = prepare_scene(plain), second = prepare_scene(scaled, first);
@@ -83,9 +129,7 @@ TEST_F(Look, AMaskMultiplies) {
 }
 
 TEST_F(Look, SeveralMasksMultiply) {
-  VolumeOptions options;
-  options.size = 24;
-  write_volume("colored", folder_.file("box.vdb"), options); // tints of 1/4 and 3/4 in all of it
+  write("colored", "box.vdb"); // tints of 1/4 and 3/4 in all of it
   const std::string file = "volume.0.file=" + folder_.file("box.vdb");
   expect_near(opacity(render(load({file, "volume.0.mask=tint_g, tint_b"})).image),
               opacity(render(load({file, "volume.0.density_scale=0.1875"})).image));
@@ -111,9 +155,7 @@ TEST_F(Look, TellsWhatIsWrong) {
 /// Colours of the file multiply the albedo where they are, move with the volume, and are forgotten
 /// by frames that do not ask for them.
 TEST_F(Look, ColorsMultiplyTheAlbedo) {
-  VolumeOptions options;
-  options.size = 24;
-  write_volume("colored", folder_.file("box.vdb"), options);
+  write("colored", "box.vdb");
   const std::vector<std::string> white{"volume.0.file=" + folder_.file("box.vdb"),
                                        "volume.0.extinction=0.01", "render.max_bounces=1",
                                        "render.passes=64"};

@@ -249,7 +249,9 @@ TEST_F(ReadVolume, parsing_never_enters_tbb) {
     const MappedFile answer = run_guarded(path, ample, [&](int output) {
       const Descriptor null(::open("/dev/null", O_WRONLY));
       entered[0] = has_entered_tbb();
-      write_raw_grid(path, "density", Background::refused, null.get());
+      write_raw_grid(path, "density", Background::refused, {}, null.get());
+      write_raw_grid(path, "density", Background::refused, WantedBox{{Vec3d(0), Vec3d(0.5)}},
+                     null.get());
       entered[1] = has_entered_tbb();
       write_summary(path, "density", null.get());
       entered[2] = has_entered_tbb();
