@@ -1,5 +1,7 @@
 #include "volume_factory.h"
 
+#include "moving_volumes.h"
+
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -100,6 +102,12 @@ FloatGrid::Ptr noise_cloud(const VolumeOptions& options) {
     const double radius = std::sqrt(x * x + y * y + z * z) * (1.05 + 0.15 * x - 0.1 * y);
     return options.density * std::clamp(2.5 * (noise - 0.25 - 0.7 * radius * radius), 0.0, 1.0);
   });
+}
+
+FloatGrid::Ptr half_as_large(VolumeOptions options) {
+  options.size /= 2;
+  options.extent /= 2;
+  return noise_cloud(options);
 }
 
 FloatGrid::Ptr constant_box(const VolumeOptions& options, const CoordBBox& box) {
@@ -246,8 +254,6 @@ openvdb::GridBase::Ptr converted(const VolumeOptions& options) {
   return grid;
 }
 
-using Grids = std::vector<openvdb::GridBase::Ptr>;
-
 Grids duplicates(const VolumeOptions& options) {
   VolumeOptions denser = options;
   denser.density *= 2;
@@ -259,69 +265,6 @@ Grids simulation(const VolumeOptions& options) {
   const char* const names[] = {"", "temperature", "velocity"};
   for (int i = 1; i < 3; ++i)
     grids[i]->setName(names[i]);
-  return grids;
-}
-
-/// The velocity (1, 2, 3) of a ball: one staggered grid, as Mantaflow writes it.
-Grids staggered(const VolumeOptions& options) {
-  const FloatGrid::Ptr ball = sphere(options);
-  const auto velocity = openvdb::Vec3SGrid::create();
-  velocity->setTransform(ball->transformPtr());
-  velocity->setName("velocity");
-  velocity->setGridClass(openvdb::GRID_STAGGERED);
-  auto accessor = velocity->getAccessor();
-  for (auto value = ball->cbeginValueOn(); value; ++value)
-    accessor.setValue(value.getCoord(), openvdb::Vec3s(1, 2, 3));
-  return {ball, velocity};
-}
-
-/// The noise cloud in the inner half of the size, and a velocity in all of it that turns, shears
-/// and lifts it: (-y, x + z / 2, x / 2) at the point (x, y, z) of the world.
-Grids whirl(const VolumeOptions& options) {
-  VolumeOptions inner = options;
-  inner.size /= 2;
-  inner.extent /= 2;
-  const FloatGrid::Ptr cloud = noise_cloud(inner);
-  const auto velocity = openvdb::Vec3SGrid::create();
-  velocity->setTransform(cloud->transformPtr());
-  velocity->setName("velocity");
-  auto accessor = velocity->getAccessor();
-  const CoordBBox box = bounds(options);
-  for (auto at = box.begin(); at; ++at) {
-    const Vec3d p = cloud->indexToWorld(*at);
-    accessor.setValue(*at, openvdb::Vec3s(Vec3d(-p.y(), p.x() + p.z() / 2, p.x() / 2)));
-  }
-  return {cloud, velocity};
-}
-
-/// The ball, and a velocity of (1, 2, 3) among voxels of all that goes wrong in simulations: not
-/// numbers, infinities, and 1e6.
-Grids wild(const VolumeOptions& options) {
-  Grids grids = staggered(options);
-  auto& velocity = static_cast<openvdb::Vec3SGrid&>(*grids[1]);
-  using Limits = std::numeric_limits<float>;
-  const float bad[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), 1e6f, -1e6f,
-                       Limits::max()};
-  std::size_t count = 0;
-  for (auto value = velocity.beginValueOn(); value; ++value, ++count)
-    if (count % 3 == 0) {
-      openvdb::Vec3s v(1, 2, 3);
-      v[static_cast<int>(count / 3 % 3)] = bad[count / 9 % std::size(bad)];
-      value.setValue(v);
-    }
-  return grids;
-}
-
-/// The ball and its velocity as three grids of numbers, as some of Houdini's files have it.
-Grids components(const VolumeOptions& options) {
-  Grids grids{sphere(options)};
-  for (int axis = 0; axis < 3; ++axis) {
-    const FloatGrid::Ptr component = sphere(options);
-    for (auto value = component->beginValueOn(); value; ++value)
-      value.setValue(static_cast<float>(axis + 1));
-    component->setName(std::string("vel.") + "xyz"[axis]);
-    grids.push_back(component);
-  }
   return grids;
 }
 
@@ -393,10 +336,14 @@ const std::vector<Recipe>& recipes() {
       single("integer", "an int32 grid where a density is expected", converted<openvdb::Int32Grid>),
       {"duplicates", "two grids of one name: the noise cloud, and a sphere twice as dense",
        duplicates},
-      {"staggered", "a ball and its staggered velocity (1, 2, 3)", staggered},
-      {"whirl", "a noise cloud of half the size that a velocity turns, shears and lifts", whirl},
-      {"wild", "a ball and its velocity (1, 2, 3), a third of it NaN, infinite or 1e6", wild},
-      {"components", "a ball and its velocity (1, 2, 3) in three grids", components},
+      {"staggered", "a ball and its staggered velocity (1, 2, 3)",
+       [](const VolumeOptions& o) { return staggered(sphere(o)); }},
+      {"whirl", "a noise cloud of half the size that a velocity turns, shears and lifts",
+       [](const VolumeOptions& o) { return whirl(half_as_large(o), bounds(o)); }},
+      {"wild", "a ball and its velocity (1, 2, 3), a third of it NaN, infinite or 1e6",
+       [](const VolumeOptions& o) { return wild(sphere(o)); }},
+      {"components", "a ball and its velocity (1, 2, 3) in three grids",
+       [](const VolumeOptions& o) { return components(sphere(o)); }},
       {"colored", "a box and its colours, as a grid of vectors and as three of numbers", colored},
       {"simulation", "grids density, temperature and velocity", simulation},
   };

@@ -65,7 +65,7 @@ TEST(Memory, AThousandLayersAreRefusedOrFit) {
   scene.scene.volumes.resize(250, scene.scene.volumes[0]); // of four channels each
   scene.scene.layers.push_back({"volumes"});
   EXPECT_EQ(complaint(scene.scene, 64 * gigabyte),
-            "scene: image: 3840 x 2160 pixels with 1000 channels of layers would take 168.0 GB of "
+            "scene: image: 3840 x 2160 pixels with 1000 channels of layers would take 168.1 GB of "
             "the 64.0 GB that this machine grants: ask for a smaller picture or fewer layers");
   EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
 }
@@ -82,7 +82,7 @@ TEST(Memory, HugeImagesAreRefusedOrFit) {
   add_sky(scene);
   scene.scene.image = {16384, 16384};
   EXPECT_EQ(complaint(scene.scene, 16 * gigabyte),
-            "scene: image: 16384 x 16384 pixels would take 69.8 GB of the 16.0 GB that this "
+            "scene: image: 16384 x 16384 pixels would take 73.0 GB of the 16.0 GB that this "
             "machine grants: ask for a smaller picture");
   EXPECT_EQ(complaint(scene.scene, 128 * gigabyte), "");
   scene.scene.image = {65536, 65536}; // 2^32 pixels: no 32-bit product
