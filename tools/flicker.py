@@ -5,7 +5,9 @@ A reference of every frame is rendered by the path estimator with numbers of its
 files are there. Then the frames are rendered with each combination of render.seeds (per_frame,
 correlated) and of the settings in --variant, for several seeds, and compared by `vdbeam compare -f`.
 The result is a table in Markdown: MRSE, temporal error (`vdbeam compare --help` defines it), their
-ratio (temporal / (2 MRSE): 1 where the frames' errors are independent), bias, and processor seconds.
+ratio (temporal / (2 MRSE): 1 where the frames' errors are independent), bias, what tells of jumps, and
+processor seconds. A jump shows as a temporal error of one pair of frames far above the median of all
+(`worst pair`), or as a mean brightness that changes otherwise than the reference's (`brightness jump`).
 
     tools/flicker.py smoke.toml -f 1-24 --resolution 48x64 --passes 8 \\
         --variant adaptive:render.kernel=adaptive \\
@@ -16,6 +18,7 @@ import argparse
 import json
 import os
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -49,8 +52,16 @@ def processor_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
+def jumps(frames):
+    """Of one seed's frames: the worst pair's temporal error over the median, and the largest change of
+    the bias from one frame to the next."""
+    temporal = [frame["temporal"] for frame in frames[1:]]
+    changes = [abs(b["bias"] - a["bias"]) for a, b in zip(frames, frames[1:])]
+    return max(temporal) / statistics.median(temporal), max(changes)
+
+
 def measure(options, folder, reference, policy, words):
-    """Means over the seeds."""
+    """Means over the seeds; of jumps the largest."""
     sums, begin = {}, processor_seconds()
     for seed in range(1, options.seeds + 1):
         image = f"{folder}/{seed}.####.exr"
@@ -62,6 +73,9 @@ def measure(options, folder, reference, policy, words):
                                    f"--frames={options.frames}", "--json"))
         for key in ("mrse", "temporal", "bias"):
             sums[key] = sums.get(key, 0) + result[key] / options.seeds
+        worst, jump = jumps(result["frames"])
+        sums["worst"] = max(sums.get("worst", 0), worst)
+        sums["jump"] = max(sums.get("jump", 0), jump)
     return {**sums, "seconds": seconds}
 
 
@@ -85,8 +99,8 @@ def main():
         reference = f"{folder}/ref.####.exr"
         render(options, reference, "--estimator", "path", "--passes", str(options.reference_passes),
                "--seed", "77", "--set", "render.seeds=per_frame", "--skip-existing")
-        print("| setting | seeds | MRSE | temporal error | ratio | bias | processor seconds |\n"
-              "|---|---|---|---|---|---|---|")
+        print("| setting | seeds | MRSE | temporal error | ratio | bias | worst pair / median | "
+              "brightness jump | processor seconds |\n|---|---|---|---|---|---|---|---|---|")
         for number, variant in enumerate(options.variant or ["default:"]):
             label, words = settings(variant)
             for policy in POLICIES:
@@ -95,6 +109,7 @@ def main():
                 r = measure(options, place, reference, policy, words)
                 print(f"| {label} | {policy} | {r['mrse']:.2e} | {r['temporal']:.2e} | "
                       f"{r['temporal'] / (2 * r['mrse']):.2f} | {100 * r['bias']:+.2f} % | "
+                      f"{r['worst']:.1f} | {100 * r['jump']:.2f} % | "
                       f"{r['seconds']:.1f} |", flush=True)
 
 

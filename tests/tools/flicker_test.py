@@ -9,6 +9,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import flicker  # noqa: E402
 
 
 class Flicker(unittest.TestCase):
@@ -31,6 +33,14 @@ class Flicker(unittest.TestCase):
         self.assertEqual([row[2].strip() for row in rows], ["per_frame", "correlated"])
         temporal = [float(row[4]) for row in rows]
         self.assertLess(temporal[1], 0.75 * temporal[0])
+
+    def test_jumps(self):
+        """One pair of five that differs tenfold, and a frame whose mean is 1 % too bright."""
+        frames = [{"temporal": temporal, "bias": bias} for temporal, bias in
+                  zip((None, 1, 1, 10, 1, 1), (0, 0, 0.01, 0, 0, 0))]
+        worst, jump = flicker.jumps(frames)
+        self.assertEqual(worst, 10)
+        self.assertAlmostEqual(jump, 0.01)
 
     def test_mistakes_end_it_with_one_line(self):
         result = self.run_tool("absent.toml", "-f", "1-3")
