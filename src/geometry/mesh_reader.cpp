@@ -43,8 +43,8 @@ std::uint64_t check_file(const std::string& path) {
   return bytes;
 }
 
-/// assimp reads as many normals as a glTF file says that there are, and takes them for one per
-/// vertex.
+/// Throws FrameError where a mesh has not one normal per vertex: assimp leaves such normals out
+/// without a word, and the mesh would be flat.
 void check_gltf_normals(const std::string& path) {
   const nlohmann::json gltf = read_gltf_json(path);
   for (const auto& mesh : gltf.at("meshes"))
