@@ -20,10 +20,10 @@ constexpr double most_photons = 2e6;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
-/// Shadow rays per camera ray: in thin media, where single scattering is most of the light, its
-/// noise is most of the error; in thick ones the photons' noise hides it (docs/decisions.md).
-constexpr double direct_per_path = 12;
-constexpr int most_direct_samples = 6;
+/// Shadow rays per camera ray: where the medium is thin, single scattering is most of the light and
+/// its noise most of the error; where it is thick, the photons' noise hides it (docs/decisions.md).
+constexpr double direct_per_collision = 12;
+constexpr int most_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
 /// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
 constexpr float surface_neighbours = 64;
@@ -61,7 +61,24 @@ bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sam
   return possible;
 }
 
+bool samples_extended_light(const World& world, const PhotonPlan& plan) {
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    if (plan.sampled_lights[i] && !world.lights[i].is_delta())
+      return true;
+  return false;
+}
+
+/// Shadow rays of a camera ray where light is scattered so many times.
+int samples_for(double collisions) {
+  const double samples = std::round(direct_per_collision / (1 + collisions));
+  return static_cast<int>(std::clamp(samples, 1.0, static_cast<double>(most_samples)));
+}
+
 } // namespace
+
+int PhotonPlan::direct_samples_of(float depth) const {
+  return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
+}
 
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
@@ -87,7 +104,8 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
   plan.sampled_lights = input.shadow_ray_lights();
   plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(input, plan.sampled_lights);
   plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
-  plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_direct_samples;
+  plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
+  plan.most_direct_samples = plan.direct_samples;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
   return plan;
 }
@@ -99,9 +117,12 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   TracedPhotons pilot = trace_photons(input.world, pass);
   plan.pilot_paths += pass.paths;
   const double collisions = std::max(1e-3, pilot.mean_collisions);
-  if (settings.direct_samples == 0)
-    plan.direct_samples = std::clamp(
-        static_cast<int>(std::lround(direct_per_path / (1 + collisions))), 1, most_direct_samples);
+  if (settings.direct_samples == 0) {
+    plan.direct_samples = samples_for(collisions);
+    // Light of one direction has little noise where the ray is thin.
+    plan.most_direct_samples =
+        samples_extended_light(input.world, plan) ? most_samples : plan.direct_samples;
+  }
   plan.store_probability =
       settings.keep > 0 ? settings.keep : std::min(1.0, stored_per_path_aim / collisions);
   plan.stored_per_path = collisions * plan.store_probability;

@@ -19,8 +19,8 @@ struct PhotonPlan {
   std::vector<bool> sampled_lights;
   /// Photons live in the medium without its forward peak (similar_medium).
   bool similar = false;
-  /// Shadow-ray samples per camera ray.
-  int direct_samples = 1;
+  /// Shadow-ray samples per camera ray, at least and at most.
+  int direct_samples = 1, most_direct_samples = 1;
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
   /// always in scatter storage, in fluence storage where all volumes have the same albedo.
   bool albedo_in_power = false;
@@ -38,6 +38,10 @@ struct PhotonPlan {
   float view_reach = 0, view_factor = 0;
   /// What tried kernels told; null: none were tried.
   std::shared_ptr<const KernelTrialResult> trial;
+
+  /// Shadow-ray samples of a camera ray that meets the optical depth `depth`: more where it is
+  /// small and lights have an extent, since what is seen there is mostly scattered once.
+  int direct_samples_of(float depth) const;
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen

@@ -93,13 +93,14 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   else
     shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
   Rng rng(key, RngStage::direct, ray.pixel);
+  const int samples = photons.plan().direct_samples_of(
+      ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
   const DeepRay deep(world, ray.camera, target, image);
   const VolumeLights volumes(input.layers, target, image);
   image.direct[target] =
       light_of_the_peak(world, ray, photons.plan().sampled_lights, deep, volumes) +
-      direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights,
-                   photons.plan().direct_samples, rng, counts.shadow_rays, photons.shadows(), deep,
-                   volumes);
+      direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights, samples,
+                   rng, counts.shadow_rays, photons.shadows(), deep, volumes);
 }
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
