@@ -55,8 +55,13 @@ public:
   void choose(const WeightSettings& settings) {
     constexpr float finest_piece = 0.5f; // visible optical depth per interval
     constexpr int most_intervals = 1024;
-    // A lattice line is crossed about 1.5 times per voxel.
-    double count = std::max({16.0, 0.67 * static_cast<double>(pieces_), 4.0 * deepest_});
+    // A lattice plane is crossed about 1.5 times per voxel, so that pieces / 1.5 intervals are as
+    // long as voxels. Weights are smoothed over two intervals, which loses what light and density
+    // have in common there: much where a grid has few voxels, so that short rays get more.
+    constexpr double cheap_intervals = 128;
+    const auto pieces = static_cast<double>(pieces_);
+    double count = std::max({16.0, pieces / 1.5, std::min(4 * pieces, cheap_intervals),
+                             4.0 * static_cast<double>(deepest_)});
     count *= std::max(1.0f, std::min(sharpest_ / finest_piece, 8.0f));
     intervals = static_cast<int>(std::min<double>(count, most_intervals));
     if (settings.store == PhotonStore::fluence)

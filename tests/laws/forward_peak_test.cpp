@@ -118,7 +118,7 @@ TEST(ForwardPeakBeam, AgreesWithPathLitFromBehind) {
     scene.scene.render.estimator = EstimatorType::beam;
     const Picture beam = render(scene, 32);
     scene.scene.render.estimator = EstimatorType::path;
-    const Picture path = render(scene, 400);
+    const Picture path = render(scene, 700);
     double sum_beam = 0, sum_path = 0, variance = 0;
     for (std::size_t i = 0; i < beam.mean.size(); ++i) {
       const double error = std::sqrt(beam.variance[i] + path.variance[i]);

@@ -231,7 +231,7 @@ TEST(OpticalDepth, OverlappingChromaticVolumesAdd) {
 }
 
 /// With u in the middle of n equal steps the mean over u is a quadrature of a function that falls
-/// from exp(-2) or less to 0 once.
+/// from exp(-3) or less to 0 once.
 TEST(TransmittanceEstimate, MeanIsTheTransmittance) {
   const Subject random(random_medium(), 12);
   const Overlap overlap;
@@ -252,7 +252,7 @@ TEST(TransmittanceEstimate, MeanIsTheTransmittance) {
     }
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(mean[c], static_cast<double>(exact[c]),
-                  std::exp(-2.0) / steps + 1e-5 * static_cast<double>(exact[c]));
+                  std::exp(-3.0) / steps + 1e-5 * static_cast<double>(exact[c]));
   }
   EXPECT_GT(ended, 0);
 }
