@@ -190,12 +190,12 @@ TEST(ViewThinning, IsUnbiased) {
 /// Adaptive radii shrink where photons are seen; the picture stays the same within 3 %.
 TEST(ViewThinning, AgreesWithPathInADenseMedium) {
   MemoryScene scene = noisy_cube(60);
-  const PassMeans path = render_passes(scene, EstimatorType::path, 96);
+  const PassMeans path = render_passes(scene, EstimatorType::path, 128);
   expect_power(path.total[0], 0.005 * path.total[0].mean());
   for (const PhotonThinning thinning : {PhotonThinning::even, PhotonThinning::view}) {
     scene.scene.render.thinning = thinning;
     scene.scene.render.photons = 60000;
-    const PassMeans beam = render_passes(scene, EstimatorType::beam, 24);
+    const PassMeans beam = render_passes(scene, EstimatorType::beam, 32);
     expect_power(beam.total[0], 0.005 * path.total[0].mean());
     expect_same_mean(beam.total[0], path.total[0], 0.03 * path.total[0].mean());
   }
