@@ -2,6 +2,7 @@
 
 #include "geometry/gltf_camera.h"
 #include "geometry/gltf_json.h"
+#include "geometry/obj_normals.h"
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
@@ -133,7 +134,17 @@ void append_node(const aiScene& scene, const aiNode& node, const Affine& parent,
 
 struct Counts {
   std::uint64_t positions = 0, uvs = 0, normals = 0, triangles = 0;
+  std::uint64_t missing_normals = 0; ///< corners that name one that is not there
 };
+
+/// Corners of an OBJ file that name normals in vain, which left some of its parts without.
+std::uint64_t normals_named_in_vain(const std::string& path, const aiScene& scene) {
+  bool some_flat = false;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+    some_flat = some_flat || !scene.mMeshes[i]->mNormals;
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  return some_flat && extension == ".obj" ? count_missing_normals(path) : 0;
+}
 
 /// In the child: parses the file and writes counts, positions, texture coordinates, normals and
 /// triangles.
@@ -163,7 +174,8 @@ void parse(const std::string& path, const MeshParts& parts, int output) {
   if (!raw.normals.empty())
     raw.normals.resize(raw.positions.size());
   const Counts counts{raw.positions.size(), raw.uvs.size(), raw.normals.size(),
-                      raw.triangles.size()};
+                      raw.triangles.size(),
+                      parts.normals ? normals_named_in_vain(path, *scene) : 0};
   write_all(output, &counts, sizeof counts);
   write_all(output, raw.positions.data(), raw.positions.size() * sizeof raw.positions[0]);
   write_all(output, raw.uvs.data(), raw.uvs.size() * sizeof raw.uvs[0]);
@@ -199,8 +211,15 @@ Mesh read_mesh(const std::string& path, const MeshParts& parts, const MeshLimits
     rest -= sizeof counts;
     if (take(data, rest, counts.positions, raw.positions) &&
         take(data, rest, counts.uvs, raw.uvs) && take(data, rest, counts.normals, raw.normals) &&
-        take(data, rest, counts.triangles, raw.triangles) && rest == 0)
-      return repair_mesh(raw, path);
+        take(data, rest, counts.triangles, raw.triangles) && rest == 0) {
+      Mesh mesh = repair_mesh(raw, path);
+      if (counts.missing_normals > 0)
+        mesh.notes.push_back(fmt::format(
+            "{}: {} of its faces' corners name normals that it does not hold: parts with such "
+            "corners are shaded by mesh.N.smooth_angle",
+            path, counts.missing_normals));
+      return mesh;
+    }
   }
   throw FrameError(path + ": the reader returned too little");
 }

@@ -201,9 +201,32 @@ TEST(MeshReader, one_clear_line_for_wrong_normals) {
             path + ": has 2 normals for the 3 vertices of a mesh: export it again, or set "
                    "mesh.N.file_normals = false");
   EXPECT_EQ(read_mesh(path).triangles.size(), 1u);
-  // An OBJ without the normals that its faces name is one without normals.
-  write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.6 0.8\nf 1//1 2//2 3//1\n");
-  EXPECT_TRUE(read_mesh(folder.file("a.obj"), {.normals = true}).normals.empty());
+}
+
+/// An OBJ without the normals that its faces name is one without normals, and says so.
+TEST(MeshReader, normals_that_an_obj_names_in_vain) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.obj"), points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto notes_of = [&](const std::string& rest) {
+    write_bytes(path, points + rest);
+    const Mesh mesh = read_mesh(path, {.normals = true});
+    EXPECT_EQ(mesh.triangles.size(), 1u) << rest;
+    EXPECT_EQ(mesh.normals.empty(), !mesh.notes.empty()) << rest;
+    return mesh.notes;
+  };
+  const auto note = [&](int corners) {
+    return std::vector{fmt::format("{}: {} of its faces' corners name normals that it does not "
+                                   "hold: parts with such corners are shaded by "
+                                   "mesh.N.smooth_angle",
+                                   path, corners)};
+  };
+  EXPECT_EQ(notes_of("vn 0 0.6 0.8\nf 1//1 2//2 3//1\n"), note(1));
+  EXPECT_EQ(notes_of("f 1//1 2//2 3//3\n"), note(3));
+  EXPECT_EQ(notes_of("vt 0 0\nvn 0 0.6 0.8\nf 1/1/1 2/1/-2 \\\n3/1/9\n"), note(2));
+  EXPECT_EQ(notes_of("vn 0 0.6 0.8\nf 1//1 2//-1 3//1\n").size(), 0u);
+  EXPECT_EQ(read_mesh(path).notes.size(), 0u);
+  write_bytes(path, points + "f 1 2 3\nf 1/1 2/1 3/1\n");
+  EXPECT_EQ(read_mesh(path, {.normals = true}).notes.size(), 0u);
 }
 
 /// A name of which %20 is a part comes first.
