@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 """Images as compositing programs read them: hidden lights, premultiplied RGBA, layers, attributes."""
-import os
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
-BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
-SCENE = Path(__file__).resolve().parents[2] / "data/cloud.toml"
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from program import BINARY, DATA, InTempFolder, run
+
+SCENE = DATA / "cloud.toml"
 SKY = "0.25,0.25,0.25"  # of the scene
 SIZE = "48x27"
 LAYERS = ["volume", "volume_direct", "volume_indirect", "depth"]
@@ -49,19 +48,7 @@ visible = {sky_visible}
 """
 
 
-def run(*command):
-    result = subprocess.run(command, check=False, capture_output=True, text=True)
-    return result.returncode, result.stdout + result.stderr
-
-
-class Compositing(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
-    def file(self, name):
-        return str(Path(self.folder.name) / name)
-
+class Compositing(InTempFolder):
     def render(self, name, *options, scene=SCENE):
         code, text = run(BINARY, "render", str(scene), "-o", self.file(name), "--resolution", SIZE,
                          "--passes", "2", *options)

@@ -1,29 +1,17 @@
 #!/usr/bin/env python3
 """Deep pictures as other programs read them: OpenImageIO flattens them to the flat picture."""
-import os
-import subprocess
-import tempfile
+import sys
 import unittest
 from pathlib import Path
 
-BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
-SCENE = Path(__file__).resolve().parents[2] / "data/sunlit_cloud.toml"
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from program import BINARY, DATA, InTempFolder, run
+
+SCENE = DATA / "sunlit_cloud.toml"
 LIMITS = ("oiiotool", "--fail", "0.002", "--failpercent", "0", "--hardfail", "0.006")
 
 
-def run(*command):
-    result = subprocess.run(command, check=False, capture_output=True, text=True)
-    return result.returncode, result.stdout + result.stderr
-
-
-class Deep(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
-    def file(self, name):
-        return str(Path(self.folder.name) / name)
-
+class Deep(InTempFolder):
     def render(self, name, *options):
         code, text = run(BINARY, "render", str(SCENE), "-o", self.file(name), "--resolution", "48x24",
                          "--set", "image.deep=true", *options)

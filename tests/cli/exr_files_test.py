@@ -1,29 +1,17 @@
 #!/usr/bin/env python3
 """Parts, tiles, names, compression and attributes of EXRs, as other programs read them."""
-import os
-import subprocess
-import tempfile
+import sys
 import unittest
 from pathlib import Path
 
-BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
-SCENE = Path(__file__).resolve().parents[2] / "data/sunlit_cloud.toml"
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from program import BINARY, DATA, InTempFolder, run
+
+SCENE = DATA / "sunlit_cloud.toml"
 LAYERS = ("layer.0.name=alpha", "layer.1.name=volume_direct", "layer.2.name=depth", "layer.3.name=position")
 
 
-def run(*command):
-    result = subprocess.run(command, check=False, capture_output=True, text=True)
-    return result.returncode, result.stdout + result.stderr
-
-
-class ExrFiles(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
-    def file(self, name):
-        return str(Path(self.folder.name) / name)
-
+class ExrFiles(InTempFolder):
     def render(self, name, *settings, expect=0):
         options = [option for setting in (*LAYERS, *settings) for option in ("--set", setting)]
         code, text = run(BINARY, "render", str(SCENE), "-o", self.file(name), "--resolution", "40x24", "--passes",

@@ -114,13 +114,7 @@ protected:
     const DeepImage d = test::read_deep(file(name + ".deep.exr")),
                     e = test::read_deep(file(other + ".deep.exr"));
     EXPECT_GT(d.z.size(), 100u);
-    EXPECT_EQ(d.counts, e.counts);
-    EXPECT_EQ(d.z, e.z);
-    EXPECT_EQ(d.z_back, e.z_back);
-    EXPECT_EQ(d.r, e.r);
-    EXPECT_EQ(d.g, e.g);
-    EXPECT_EQ(d.b, e.b);
-    EXPECT_EQ(d.a, e.a);
+    test::expect_same_deep(d, e);
   }
   static void expect_same_structure(const std::string& a, const std::string& b) {
     Imf::MultiPartInputFile x(a.c_str()), y(b.c_str());

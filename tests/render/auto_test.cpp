@@ -1,5 +1,6 @@
 // render.estimator = "auto": a render is that of the estimator that was chosen, and says which.
 #include "report/report.h"
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
@@ -55,15 +56,8 @@ TEST(Auto, RendersHazeUnderAnEvenSkyByPath) {
 }
 
 TEST(Auto, PartsOfAFrameChooseAlike) {
-  test::TempFolder folder;
-  std::vector<std::string> parts;
-  for (const int pass : {0, 1}) {
-    FrameSettings frame;
-    frame.pass_range = PassRange{pass, pass};
-    frame.partial = folder.file(std::to_string(pass) + ".exr");
-    render(haze(EstimatorType::automatic), frame);
-    parts.push_back(frame.partial);
-  }
+  const test::TempFolder folder;
+  const auto parts = test::render_parts(haze(EstimatorType::automatic), folder, {{0, 0}, {1, 1}});
   expect_same_picture(merge_partials(parts), render(haze(EstimatorType::automatic)).image);
 }
 

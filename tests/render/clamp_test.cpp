@@ -1,3 +1,4 @@
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/render.h"
@@ -66,14 +67,7 @@ TEST(Clamp, TalliesOfPartsAddUp) {
   const test::TempFolder folder;
   const Scene scene = small_cloud({"render.clamp=0.5"});
   const RenderStatistics whole = render(scene).statistics;
-  std::vector<std::string> parts;
-  for (const int first : {0, 2}) {
-    FrameSettings frame;
-    frame.pass_range = PassRange{first, first + 1};
-    frame.partial = folder.file(std::to_string(first) + ".exr");
-    parts.push_back(frame.partial);
-    render(scene, frame);
-  }
+  const auto parts = test::render_parts(scene, folder, {{0, 1}, {2, 3}});
   const Image merged = merge_partials(parts);
   EXPECT_NEAR(merged.numbers.at("vdbeam:clampRemoved"), whole.clamp_removed,
               1e-6 * whole.clamp_removed);

@@ -1,4 +1,5 @@
 #include "film/cryptomatte.h"
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
@@ -76,15 +77,7 @@ TEST_F(CryptomatteOfAScene, TheNearestCoversAsIfAlone) {
 TEST_F(CryptomatteOfAScene, PartsMerge) {
   const Scene scene = load("path");
   const Image whole = render(scene).image;
-  FrameSettings frame;
-  std::vector<std::string> parts;
-  for (const auto& [first, last] : {std::pair{0, 1}, {2, 2}}) {
-    frame.pass_range = PassRange{first, last};
-    frame.partial = folder_.file(std::to_string(first) + ".exr");
-    render(scene, frame);
-    parts.push_back(frame.partial);
-  }
-  const Image merged = merge_partials(parts);
+  const Image merged = merge_partials(test::render_parts(scene, folder_, {{0, 1}, {2, 2}}));
   for (const char* channel : {"CryptoObject00.R", "CryptoObject00.G", "CryptoObject01.A"})
     EXPECT_EQ(merged.find(channel)->data, whole.find(channel)->data) << channel;
   for (const auto& [name, text] : whole.metadata)

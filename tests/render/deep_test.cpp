@@ -1,4 +1,5 @@
 #include "support/read_deep.h"
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -209,14 +210,6 @@ TEST(Deep, OpaqueCloud) {
 
 class DeepFiles : public testing::Test {
 protected:
-  static void expect_same(const DeepImage& a, const DeepImage& b) {
-    EXPECT_EQ(a.counts, b.counts);
-    EXPECT_EQ(a.z, b.z);
-    EXPECT_EQ(a.z_back, b.z_back);
-    EXPECT_EQ(a.r, b.r);
-    EXPECT_EQ(a.b, b.b);
-    EXPECT_EQ(a.a, b.a);
-  }
   test::TempFolder folder_;
 };
 
@@ -229,7 +222,7 @@ TEST_F(DeepFiles, HoldWhatWasWrittenAndPassOpenEXRsCheck) {
   for (std::vector<float>* colour : {&expected.r, &expected.g, &expected.b})
     for (float& value : *colour)
       value = static_cast<float>(half(value));
-  expect_same(test::read_deep(path), expected);
+  test::expect_same_deep(test::read_deep(path), expected);
 }
 
 TEST_F(DeepFiles, PartialRendersMergeToTheUndividedOne) {
@@ -241,17 +234,10 @@ TEST_F(DeepFiles, PartialRendersMergeToTheUndividedOne) {
     const RenderResult whole = render(scene, frame);
     const std::string direct = folder_.file("direct.exr");
     write_deep_exr(*whole.deep, whole.image, direct);
-    std::vector<std::string> parts;
-    for (const auto& [first, last] : {std::pair{0, 0}, {1, 3}}) {
-      frame.pass_range = PassRange{first, last};
-      frame.partial = folder_.file(std::to_string(first) + ".exr");
-      render(scene, frame);
-      parts.push_back(frame.partial);
-    }
     MergeSettings settings;
     settings.deep = folder_.file("merged.exr");
-    merge_partials(parts, settings);
-    expect_same(test::read_deep(settings.deep), test::read_deep(direct));
+    merge_partials(test::render_parts(scene, folder_, {{0, 0}, {1, 3}}, frame), settings);
+    test::expect_same_deep(test::read_deep(settings.deep), test::read_deep(direct));
   }
 }
 
@@ -272,7 +258,7 @@ TEST_F(DeepFiles, CheckpointsGoOn) {
   hooks.on_pass = {};
   const RenderResult resumed = render(scene, frame, hooks);
   EXPECT_EQ(resumed.resumed_passes, 3);
-  expect_same(*resumed.deep, whole);
+  test::expect_same_deep(*resumed.deep, whole);
 }
 
 TEST(Deep, TellsWhatIsWrong) {

@@ -1,4 +1,5 @@
 #include "render/prepared_scene.h"
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
@@ -68,14 +69,7 @@ TEST(SampleFire, FrameInWhichTheFireIsOut) {
 TEST(SampleFire, PartsMergeToTheWhole) {
   const test::TempFolder folder;
   const Image whole = render(small_fire(14)).image;
-  std::vector<std::string> parts;
-  for (const auto& [first, last] : {std::pair(0, 0), std::pair(1, 3)}) {
-    FrameSettings frame;
-    frame.pass_range = PassRange{first, last};
-    frame.partial = folder.file(std::to_string(first) + ".exr");
-    render(small_fire(14), frame);
-    parts.push_back(frame.partial);
-  }
+  const auto parts = test::render_parts(small_fire(14), folder, {{0, 0}, {1, 3}});
   expect_same_pixels(merge_partials(parts), whole);
 }
 

@@ -1,3 +1,4 @@
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -86,14 +87,7 @@ TEST(Layers, MergedPartsHaveTheGroups) {
   const test::TempFolder folder;
   const Scene scene = cloud({"light.0.group=sun", "layer.0.name=lights", "layer.1.name=depth"});
   const Image whole = render(scene).image;
-  FrameSettings first, rest;
-  first.pass_range = PassRange{0, 2};
-  first.partial = folder.file("a.exr");
-  rest.pass_range = PassRange{3, 7};
-  rest.partial = folder.file("b.exr");
-  render(scene, first);
-  render(scene, rest);
-  const Image merged = merge_partials({first.partial, rest.partial});
+  const Image merged = merge_partials(test::render_parts(scene, folder, {{0, 2}, {3, 7}}));
   ASSERT_EQ(merged.channels.size(), whole.channels.size());
   for (std::size_t c = 0; c < whole.channels.size(); ++c) {
     EXPECT_EQ(merged.channels[c].name, whole.channels[c].name);

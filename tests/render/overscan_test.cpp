@@ -1,3 +1,4 @@
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/render.h"
@@ -75,14 +76,7 @@ TEST(Overscan, PartsMerge) {
   const test::TempFolder folder;
   const Scene scene = cloud();
   const Image whole = render(scene).image;
-  FrameSettings first, rest;
-  first.pass_range = PassRange{0, 1};
-  first.partial = folder.file("a.exr");
-  rest.pass_range = PassRange{2, 3};
-  rest.partial = folder.file("b.exr");
-  render(scene, first);
-  render(scene, rest);
-  const Image merged = merge_partials({first.partial, rest.partial});
+  const Image merged = merge_partials(test::render_parts(scene, folder, {{0, 1}, {2, 3}}));
   EXPECT_EQ(merged.x, -beyond);
   EXPECT_EQ(merged.full_width, width);
   EXPECT_EQ(merged.find("R")->data, whole.find("R")->data);

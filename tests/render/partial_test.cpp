@@ -1,5 +1,6 @@
 #include "film/film_file.h"
 #include "photonmap/map_queries.h"
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -37,11 +38,7 @@ void expect_same_pixels(const Image& a, const Image& b) {
 class Partial : public ::testing::Test {
 protected:
   std::string render_range(int first, int last, const Scene& scene = small_cloud()) {
-    FrameSettings frame;
-    frame.pass_range = PassRange{first, last};
-    frame.partial = folder_.file(std::to_string(first) + ".exr");
-    render(scene, frame);
-    return frame.partial;
+    return test::render_parts(scene, folder_, {{first, last}}).front();
   }
   std::string error_of(const std::vector<std::string>& paths, const MergeSettings& settings = {}) {
     try {

@@ -1,3 +1,4 @@
+#include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
@@ -200,22 +201,14 @@ const std::vector<std::string> everything{"depth_near",       "depth_far", "posi
 TEST_F(RayLayersTest, PartsMergeExactly) {
   const Scene scene = load(two_volumes, layers(everything));
   const Image whole = render(scene).image;
-  FrameSettings frame;
-  std::vector<std::string> parts;
-  for (const auto& [first, last] : {std::pair{0, 0}, {1, 3}}) {
-    frame.pass_range = PassRange{first, last};
-    frame.partial = folder_.file(std::to_string(first) + ".exr");
-    render(scene, frame);
-    parts.push_back(frame.partial);
-  }
+  const auto parts = test::render_parts(scene, folder_, {{0, 0}, {1, 3}});
   const Image merged = merge_partials(parts);
   ASSERT_EQ(merged.channels.size(), whole.channels.size());
   for (std::size_t c = 0; c < whole.channels.size(); ++c) {
     EXPECT_EQ(merged.channels[c].name, whole.channels[c].name);
     EXPECT_EQ(merged.channels[c].data, whole.channels[c].data) << whole.channels[c].name;
   }
-  frame.partial = parts[1];
-  render(load(two_volumes, layers({"volumes"})), frame);
+  test::render_parts(load(two_volumes, layers({"volumes"})), folder_, {{1, 3}});
   EXPECT_THROW(merge_partials(parts), InputError); // which holds fewer planes
 }
 

@@ -1,6 +1,7 @@
 #include "render/shutter.h"
 
 #include "support/ball_scene.h"
+#include "support/render_parts.h"
 
 #include <cstring>
 #include <set>
@@ -159,14 +160,7 @@ TEST_F(ShutterTest, PartsMergeToTheWhole) {
   const Scene scene = load({"camera.shutter_close=0.5", "render.estimator=beam", "render.passes=6",
                             "render.photons=2000"});
   const Image whole = render(scene).image;
-  FrameSettings first, rest;
-  first.pass_range = PassRange{0, 1};
-  first.partial = folder_.file("a.exr");
-  rest.pass_range = PassRange{2, 5};
-  rest.partial = folder_.file("b.exr");
-  render(scene, rest);
-  render(scene, first);
-  expect_same(merge_partials({first.partial, rest.partial}), whole);
+  expect_same(merge_partials(test::render_parts(scene, folder_, {{2, 5}, {0, 1}})), whole);
 }
 
 /// The same where the camera moves fast: what is planned about photons depends on no pass.
@@ -178,14 +172,7 @@ TEST_F(ShutterTest, PartsOfAMovingCameraMergeToTheWhole) {
                              "look_at = { keys = [[1, [0, 0, 0]], [2, [6, 0, 0]]] }\n");
     ASSERT_FALSE(scene.moments.empty());
     const Image whole = render(scene).image;
-    FrameSettings first, rest;
-    first.pass_range = PassRange{0, 2};
-    first.partial = folder_.file("a.exr");
-    rest.pass_range = PassRange{3, 5};
-    rest.partial = folder_.file("b.exr");
-    render(scene, rest);
-    render(scene, first);
-    expect_same(merge_partials({first.partial, rest.partial}), whole);
+    expect_same(merge_partials(test::render_parts(scene, folder_, {{3, 5}, {0, 2}})), whole);
   }
 }
 

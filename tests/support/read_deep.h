@@ -5,6 +5,7 @@
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineInputFile.h>
 #include <ImfHeader.h>
+#include <gtest/gtest.h>
 
 #include <string>
 
@@ -50,6 +51,16 @@ inline DeepImage read_deep(const std::string& path) {
   file.readPixelSampleCounts(window.min.y, window.max.y);
   file.readPixels(window.min.y, window.max.y);
   return image;
+}
+
+inline void expect_same_deep(const DeepImage& a, const DeepImage& b) {
+  EXPECT_EQ(a.counts, b.counts);
+  EXPECT_EQ(a.z, b.z);
+  EXPECT_EQ(a.z_back, b.z_back);
+  EXPECT_EQ(a.r, b.r);
+  EXPECT_EQ(a.g, b.g);
+  EXPECT_EQ(a.b, b.b);
+  EXPECT_EQ(a.a, b.a);
 }
 
 } // namespace vdbeam::test
