@@ -14,6 +14,8 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
       world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
       boundary_share_(boundary_share(input, domain)) {
   const World& world = *world_;
+  if (input.plan.needs(Stage::photons) && !plan_.trial) // kernels were tried for the paths it has
+    plan_.paths = paths_with_hidden_lights(input.in(world), plan_);
   constexpr double pixels_per_lattice_ray = 16; // a lattice then costs a fraction of a pass
   if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
       !input.stopped())

@@ -1,6 +1,7 @@
 #include "estimators/photon_plan.h"
 
 #include "estimators/camera_ray.h"
+#include "estimators/hidden_lights.h"
 #include "transport/depth_profile.h"
 
 #include <cmath>
@@ -17,6 +18,10 @@ constexpr double default_neighbours = 500;
 constexpr double paths_per_hit = 2;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 2e6;
+/// By which factor there may be more of them for lights that shadow rays do not reach, and photons
+/// per camera ray that meets the medium up to which there are.
+constexpr double most_for_hidden_lights = 8;
+constexpr double photons_per_hit = 1;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
@@ -112,6 +117,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
 
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   const RenderSettings& settings = input.settings;
+  plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = pilot_paths;
   TracedPhotons pilot = trace_photons(input.world, pass);
@@ -137,6 +143,15 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) 
     paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input))),
                      most_photons / stored_per_path);
   return static_cast<std::uint64_t>(std::ceil(paths));
+}
+
+std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {
+  if (plan.sampled_lights == input.shadow_ray_lights() || input.settings.photons ||
+      !(plan.stored_per_path > 0))
+    return plan.paths;
+  const double paths = static_cast<double>(plan.paths);
+  const double wanted = std::ceil(photons_per_hit * count_hits(input) / plan.stored_per_path);
+  return static_cast<std::uint64_t>(std::clamp(wanted, paths, most_for_hidden_lights * paths));
 }
 
 PhotonPlan plan_photons(const EstimatorInput& input) {

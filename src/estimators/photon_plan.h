@@ -61,9 +61,10 @@ PhotonPlan plan_photons(const EstimatorInput& input);
 ///
 /// What needs no photons to be known: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
-/// Traces a few light paths and chooses from the mean number of their collisions how many shadow
-/// rays to send and how many photons to store, everywhere with the same probability. Only for a
-/// render that needs photons. The photons hold all storable collisions.
+/// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
+/// and chooses from the mean number of their collisions how many shadow rays to send and how many
+/// photons to store, everywhere with the same probability. Only for a render that needs photons.
+/// The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 /// Camera rays of a pass that meet the medium, or a surface where photons lie on these, from a
 /// coarse sample.
@@ -71,11 +72,16 @@ double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
 
+/// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
+/// all that the medium shows of them comes from photons, few of which leave a lamp's housing.
+std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
+
 /// Collisions of one path that are stored on average: more of them tell little that is new.
 inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
-inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1;
+inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,
+                               sight_pass = guide_pass - 2;
 
 /// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
 /// bring, since a path from a surface may not meet it.
