@@ -1,12 +1,13 @@
 #include "volume/moved_field.h"
 
 #include "vdbeam/error.h"
+#include "volume/displacement.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 
 namespace vdbeam {
 namespace {
@@ -14,53 +15,6 @@ namespace {
 constexpr int cell_width = DensityField::cell_width;
 constexpr int brick_width = DensityField::brick_width;
 constexpr double most_cells = 1 << 28;
-/// Steps of the fixed point x = p + time v(p) at most: its error falls with (time |grad v|)^n.
-/// Ended where a step changes less than a hundredth of a voxel.
-constexpr int fixed_point_steps = 5;
-constexpr double near_enough = 0.01;
-
-/// By how much points move, in local coordinates of the density.
-class Displacement {
-public:
-  Displacement(const DensityGrid& grid, const Motion& motion) : velocity_(motion.velocity) {
-    Affine shift;
-    shift.translation = Vec3d(grid.field.origin());
-    const Affine to_world = grid.index_to_world.after(shift);
-    to_velocity_ = velocity_.index_to_world().inverse().after(to_world);
-    const Affine to_local = to_world.inverse();
-    const VelocityScale meaning = scale_of(motion.settings, velocity_.from_mantaflow());
-    turn_ = meaning.index ? to_local.after(velocity_.index_to_world()) : to_local;
-    time_ = motion.settings.time * meaning.factor;
-  }
-
-  Vec3d at(const Vec3d& local) const {
-    return turn_.vector(velocity_.sample(to_velocity_.point(local))) * time_;
-  }
-  /// Bounds of the displacements in a box.
-  Boxd bounds(const Boxd& local) const {
-    const Boxf velocities = velocity_.bounds(to_velocity_.bounds(local));
-    Affine turn = turn_;
-    turn.translation = {};
-    const Boxd box = turn.bounds({Vec3d(velocities.lower), Vec3d(velocities.upper)});
-    return {min(box.lower * time_, box.upper * time_), max(box.lower * time_, box.upper * time_)};
-  }
-  /// The point that comes to `local`. `way`: a guess of the displacement from there, which is
-  /// improved.
-  Vec3d source_of(const Vec3d& local, Vec3d& way) const {
-    for (int step = 0; step < fixed_point_steps; ++step) {
-      const Vec3d next = at(local - way), change = next - way;
-      way = next;
-      if (dot(change, change) < near_enough * near_enough)
-        break;
-    }
-    return local - way;
-  }
-
-private:
-  const VectorField& velocity_;
-  Affine to_velocity_, turn_;
-  double time_;
-};
 
 /// Where the values of a cell go; a box that is empty where it has none.
 Boxd destination(const DensityField& field, const Displacement& motion, int i, int j, int k) {
@@ -131,7 +85,7 @@ bool is_zero_in(const DensityField& field, const Boxd& box) {
 class FieldMover {
 public:
   FieldMover(const DensityField& field, const Displacement& motion)
-      : field_(field), motion_(motion) {}
+      : field_(field), motion_(motion), stride_(motion.stride()) {}
 
   DensityField move(const std::string& label, std::uint64_t maximum_bytes) {
     find_targets(label);
@@ -153,6 +107,8 @@ public:
   }
 
 private:
+  using Ways = std::array<Vec3d, DensityField::brick_size>;
+
   std::size_t offset(int i, int j, int k) const {
     const Vec3<int> n = range_.counts();
     return (static_cast<std::size_t>(i) * n.y + j) * n.z + k;
@@ -194,7 +150,7 @@ private:
   }
   /// Cells were marked generously: most of the others are told apart before they are filled.
   void drop_targets_of_nothing() {
-    constexpr double far = 1e15, slack = 2 * near_enough;
+    constexpr double far = 1e15, slack = 2 * Displacement::near_enough;
     const Boxd anywhere = motion_.bounds({Vec3d(-far), Vec3d(far)});
     for_each_cell(range_.counts(), [&](int i, int j, int k) {
       std::int32_t& cell = table_[offset(i, j, k)];
@@ -221,12 +177,44 @@ private:
   /// The lattice points of a brick, those that it shares with its neighbours too.
   void fill_brick(int i, int j, int k, float* values) const {
     const Vec3d corner = corner_of(i, j, k);
-    Vec3d way; // neighbours come from near each other
-    for (int x = 0; x < brick_width; ++x)
+    const Ways ways = ways_to(corner);
+    for (int x = 0, at = 0; x < brick_width; ++x)
       for (int y = 0; y < brick_width; ++y)
-        for (int z = 0; z < brick_width; ++z)
-          *values++ =
-              field_.sample(Vec3f(motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}), way)));
+        for (int z = 0; z < brick_width; ++z, ++at)
+          values[at] = field_.sample(Vec3f(corner + Vec3d(Vec3<int>{x, y, z}) - ways[at]));
+  }
+
+  /// By how much what comes to the lattice points of a brick moves: found where the velocity's
+  /// lattice has points, linear in between.
+  Ways ways_to(const Vec3d& corner) const {
+    Ways ways;
+    Vec3d way; // neighbours come from near each other
+    for (int x = 0; x < brick_width; x += stride_)
+      for (int y = 0; y < brick_width; y += stride_)
+        for (int z = 0; z < brick_width; z += stride_) {
+          motion_.source_of(corner + Vec3d(Vec3<int>{x, y, z}), way);
+          ways[(x * brick_width + y) * brick_width + z] = way;
+        }
+    for (int axis = 2; axis >= 0 && stride_ > 1; --axis)
+      interpolate_along(axis, ways);
+    return ways;
+  }
+
+  /// Fills what lies between points along an axis; along those before it only every stride-th is
+  /// known, along those after it all are.
+  void interpolate_along(int axis, Ways& ways) const {
+    constexpr int steps[3] = {brick_width * brick_width, brick_width, 1};
+    const int first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
+    const int first_stride = axis > first ? stride_ : 1,
+              second_stride = axis > second ? stride_ : 1;
+    for (int u = 0; u < brick_width; u += first_stride)
+      for (int v = 0; v < brick_width; v += second_stride)
+        for (int w = 0; w < cell_width; w += stride_) {
+          Vec3d* known = &ways[u * steps[first] + v * steps[second] + w * steps[axis]];
+          const Vec3d difference = known[stride_ * steps[axis]] - *known;
+          for (int i = 1; i < stride_; ++i)
+            known[i * steps[axis]] = *known + difference * (static_cast<double>(i) / stride_);
+        }
   }
 
   /// Rays need not look into cells that nothing came to.
@@ -251,6 +239,7 @@ private:
 
   const DensityField& field_;
   const Displacement& motion_;
+  int stride_; ///< of the points at which ways are found
   CellRange range_;
   std::vector<std::int32_t> table_;
   std::size_t bricks_ = 0;
