@@ -19,7 +19,10 @@ namespace {
 constexpr int compared_passes = 32;
 /// Names random numbers that neither passes nor other pilots draw.
 constexpr int first_trial_pass = -200;
-constexpr int trial_passes = 2;
+/// Each pixel is rendered this often, and in small pictures, of which there are few pixels, so
+/// often that as many rays tell of the noise as in large ones, within a limit.
+constexpr int fewest_trial_passes = 2, most_trial_passes = 16;
+constexpr std::size_t wanted_trial_rays = 1000;
 /// `path` must be ahead by this factor: forecasts are right to a factor of about two, and a few
 /// pixels miss its rarest and brightest paths.
 constexpr double safe_lead = 3;
@@ -32,15 +35,26 @@ constexpr double time_of_ray = 10000, time_of_shadow_ray = 5000, time_of_query =
 /// By which the sum of these overestimates a pass of `beam` against one of `path`.
 constexpr double beam_share = 0.56;
 
-/// The weighted mean square of differences of two pictures, halved: the variance of one of them.
-double spread(const std::vector<TrialPixel>& pixels, const PassImage& a, const PassImage& b) {
+int trial_passes_of(std::size_t pixels) {
+  return static_cast<int>(std::clamp(wanted_trial_rays / pixels, std::size_t{fewest_trial_passes},
+                                     std::size_t{most_trial_passes}));
+}
+
+/// The variance of a picture of which these are independent ones, weighted: mean over the pixels.
+double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
+  const auto count = static_cast<float>(images.size());
   double sum = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const Rgb d = a.total(i) - b.total(i);
-    for (int c = 0; c < 3; ++c)
-      sum += static_cast<double>(pixels[i].weight[c] * d[c] * d[c]) / 6;
+    Rgb mean;
+    for (const PassImage& image : images)
+      mean += image.total(i) / count;
+    for (const PassImage& image : images) {
+      const Rgb d = image.total(i) - mean;
+      for (int c = 0; c < 3; ++c)
+        sum += static_cast<double>(pixels[i].weight[c] * d[c] * d[c]) / 3;
+    }
   }
-  return sum / static_cast<double>(pixels.size());
+  return sum / (static_cast<double>(pixels.size()) * static_cast<double>(count - 1));
 }
 
 /// The spread of all that does not come from photons, in a pass of `beam`; counts its rays.
@@ -48,24 +62,26 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
                              const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
   const EstimatorInput in = input.in(photons.world());
   const auto width = static_cast<std::size_t>(input.camera.width());
-  PassImage images[trial_passes];
+  const int passes = trial_passes_of(pixels.size());
+  std::vector<PassImage> images(static_cast<std::size_t>(passes));
   std::vector<RenderStatistics> counts_by_pixel(pixels.size());
-  for (int t = 0; t < trial_passes; ++t) {
+  for (int t = 0; t < passes; ++t) {
+    PassImage& image = images[static_cast<std::size_t>(t)];
     const RngKey key{input.settings.seed, input.frame,
                      static_cast<std::uint64_t>(first_trial_pass + t)};
-    images[t].resize(static_cast<int>(pixels.size()), 1, !input.world.medium.emitters.empty());
+    image.resize(static_cast<int>(pixels.size()), 1, !input.world.medium.emitters.empty());
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
       TileRays::PixelRay ray =
           TileRays::pixel_ray(in, key, static_cast<int>(pixels[i].pixel % width),
                               static_cast<int>(pixels[i].pixel / width));
       ray.profile.build(in.world.medium, ray.camera.segment,
                         static_cast<float>(input.settings.cutoff));
-      shade_ray(in, photons, ray, {}, key, i, images[t], counts_by_pixel[i]);
+      shade_ray(in, photons, ray, {}, key, i, image, counts_by_pixel[i]);
     });
   }
   for (const RenderStatistics& pixel : counts_by_pixel)
     counts += pixel;
-  return spread(pixels, images[0], images[1]);
+  return spread(pixels, images);
 }
 
 /// The spread of a pass of `path`; counts its rays and collisions.
@@ -75,11 +91,11 @@ double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>
   for (const TrialPixel& pixel : pixels)
     places.push_back(pixel.pixel);
   const PathEstimator path(input);
-  PassImage images[trial_passes];
+  std::vector<PassImage> images(static_cast<std::size_t>(trial_passes_of(pixels.size())));
   std::vector<std::uint8_t> finished;
-  for (int t = 0; t < trial_passes; ++t)
-    path.render_pixels(first_trial_pass + t, places, images[t], finished, counts);
-  return spread(pixels, images[0], images[1]);
+  for (std::size_t t = 0; t < images.size(); ++t)
+    path.render_pixels(first_trial_pass + static_cast<int>(t), places, images[t], finished, counts);
+  return spread(pixels, images);
 }
 
 /// By which factor the error of `path` is greater than that of `beam` after the same time.
@@ -87,7 +103,7 @@ double lead_of_beam(const EstimatorInput& beam_input, const PhotonPass& photons,
                     const EstimatorInput& path_input) {
   const PhotonPlan& plan = photons.plan();
   const std::vector<TrialPixel>& pixels = plan.trial->pixels;
-  const double rays = static_cast<double>(trial_passes * pixels.size());
+  const double rays = static_cast<double>(pixels.size()) * trial_passes_of(pixels.size());
   RenderStatistics path_counts, beam_counts;
   const double path_spread = spread_of_path(path_input, pixels, path_counts);
   // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
@@ -117,15 +133,15 @@ EstimatorChoice choose_estimator(const EstimatorInput& beam_input,
   auto beam = std::make_unique<BeamEstimator>(beam_input);
   const PhotonPass& photons = beam->photons();
   if (!photons.plan().trial || photons.plan().trial->pixels.empty())
-    return {EstimatorType::beam, "without a kernel pilot there is nothing to compare",
+    return {EstimatorType::beam, "without a kernel pilot there is nothing to compare", 0,
             std::move(beam)};
   const double lead = lead_of_beam(beam_input, photons, path_input);
   if (lead < 1 / safe_lead && !beam_input.stopped())
     return {EstimatorType::path,
-            fmt::format("in as much time beam would have {:.2g} times its error", 1 / lead),
+            fmt::format("in as much time beam would have {:.2g} times its error", 1 / lead), lead,
             nullptr};
   return {EstimatorType::beam,
-          fmt::format("in as much time path would have {:.2g} times its error", lead),
+          fmt::format("in as much time path would have {:.2g} times its error", lead), lead,
           std::move(beam)};
 }
 

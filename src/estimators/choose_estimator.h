@@ -9,7 +9,8 @@ namespace vdbeam {
 /// What `estimator = "auto"` stands for in a scene.
 struct EstimatorChoice {
   EstimatorType type = EstimatorType::beam;
-  std::string reason;                  ///< one clause
+  std::string reason; ///< one clause
+  double lead = 0; ///< forecast of how many times the error of `beam` `path` has; 0: none was made
   std::unique_ptr<BeamEstimator> beam; ///< ready to render, where it was chosen
 };
 
