@@ -85,6 +85,18 @@ int PhotonPlan::direct_samples_of(float depth) const {
   return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
 }
 
+ScenePhotons ScenePhotons::in_units(double scale) const {
+  ScenePhotons result = *this;
+  const auto factor = static_cast<float>(scale / space.scale);
+  if (factor == 1)
+    return result;
+  result.space.scale = scale;
+  result.plan.view_reach *= factor;
+  if (plan.guide)
+    result.plan.guide = std::make_shared<const PathGuide>(plan.guide->in_units(factor));
+  return result;
+}
+
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;

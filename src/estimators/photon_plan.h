@@ -49,8 +49,12 @@ struct PhotonPlan {
 
 /// The photons of a scene whose moments are other worlds, and where these are.
 struct ScenePhotons {
-  const PhotonPlan& plan;
-  const RenderSpace& space; ///< in which the plan is given
+  PhotonPlan plan;
+  RenderSpace space; ///< in which the plan is given
+
+  /// The same where `scale` render units are one of the world. The unit of a moment is another than
+  /// the scene's where its bounds have grown over a power of two.
+  ScenePhotons in_units(double scale) const;
 };
 
 /// A plan that does not depend on what is seen of single photons: stored with one probability

@@ -84,21 +84,17 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   return {*renderer.estimator, renderer.probe.get()};
 }
 
-/// The plan depends on the scene alone, never on which moment came first.
-const EstimatorInput& Shutter::moment_input() {
-  if (moment_input_)
-    return *moment_input_;
-  moment_input_.emplace(input_);
+/// What moments' photons follow, if they do. It depends on the scene alone, never on which moment
+/// came first.
+const ScenePhotons* Shutter::scene_photons() {
   // Only `beam` looks where photons are seen.
-  if (input_.plan.needs(Stage::photon_importance) && light_group_names(scene_).empty()) {
-    if (!scene_plan_) {
-      PassWorlds worlds(input_.world, default_photon_plan(input_).similar);
-      scene_plan_ = plan_beam_photons(input_.in(worlds.of(0)));
-    }
-    scene_photons_.emplace(ScenePhotons{*scene_plan_, input_.world.space});
-    moment_input_->of_scene = &*scene_photons_;
+  if (!input_.plan.needs(Stage::photon_importance) || !light_group_names(scene_).empty())
+    return nullptr;
+  if (!scene_photons_) {
+    PassWorlds worlds(input_.world, default_photon_plan(input_).similar);
+    follow(plan_beam_photons(input_.in(worlds.of(0))));
   }
-  return *moment_input_;
+  return &*scene_photons_;
 }
 
 Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
@@ -108,8 +104,11 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
     const PreparedScenePtr prepared =
         &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
     renderer = std::make_unique<MomentRenderer>(
-        prepared, Camera(scene_.camera, scene_.image, prepared->world->space),
-        &moment == &scene_ ? input_ : moment_input(), path_plan_);
+        prepared, Camera(scene_.camera, scene_.image, prepared->world->space), input_, path_plan_);
+    if (const ScenePhotons* photons = &moment == &scene_ ? nullptr : scene_photons()) {
+      renderer->scene_photons.emplace(photons->in_units(prepared->world->space.scale));
+      renderer->input.of_scene = &*renderer->scene_photons;
+    }
     if (input_.layers) {
       renderer->layers.emplace(input_.layers->at(moment));
       renderer->input.layers = &*renderer->layers;

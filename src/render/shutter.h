@@ -33,7 +33,9 @@ public:
   /// Has the estimator of a still scene without light groups that was made already.
   void take(std::unique_ptr<Estimator> ready) { ready_ = std::move(ready); }
   /// Has the plan of the scene's own photons that was made already.
-  void follow(const PhotonPlan& plan) { scene_plan_ = plan; }
+  void follow(const PhotonPlan& plan) {
+    scene_photons_.emplace(ScenePhotons{plan, input_.world.space});
+  }
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -48,6 +50,7 @@ private:
 
     PreparedScenePtr prepared;
     Camera camera;
+    std::optional<ScenePhotons> scene_photons; ///< in this moment's units
     EstimatorInput input, path_input;
     std::optional<RayLayers> layers; ///< of this moment
     std::unique_ptr<Estimator> estimator;
@@ -56,16 +59,14 @@ private:
   };
 
   MomentRenderer& renderer_of(const Scene& moment);
-  const EstimatorInput& moment_input();
+  const ScenePhotons* scene_photons();
   void make_room();
 
   const Scene& scene_;
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
-  std::optional<PhotonPlan> scene_plan_;
-  std::optional<ScenePhotons> scene_photons_;
-  std::optional<EstimatorInput> moment_input_; ///< whose photons follow those of the scene
+  std::optional<ScenePhotons> scene_photons_; ///< that the moments' photons follow
   const std::vector<std::size_t>& probe_pixels_;
   std::unique_ptr<Estimator> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>

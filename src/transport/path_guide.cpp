@@ -32,6 +32,15 @@ Vec3f MediumBlocks::point(const Vec3<int>& block, const Vec3f& within) const {
   return result;
 }
 
+/// Flux is radiance times area: what a unit of it brings goes as the inverse.
+PathGuide PathGuide::in_units(float factor) const {
+  PathGuide guide = *this;
+  guide.blocks.scale(factor);
+  for (float& value : guide.importance)
+    value /= factor * factor;
+  return guide;
+}
+
 PathGuide::Emission PathGuide::emission(std::size_t l, double u) const {
   const std::vector<double>& c = distribution[l];
   const auto after = std::upper_bound(c.begin() + 1, c.end() - 1, u);

@@ -27,6 +27,11 @@ public:
 
   /// Moves the lattice [render units].
   void move(const Vec3f& by) { lower_ += by; }
+  /// Gives the lattice in other units, of which `factor` are one of the present.
+  void scale(float factor) {
+    lower_ *= factor;
+    per_unit_ *= 1 / factor;
+  }
 
   bool operator==(const MediumBlocks&) const = default;
 
@@ -62,6 +67,8 @@ struct PathGuide {
                               static_cast<double>(importance[blocks.at(point)]) *
                               static_cast<double>(paths) / total);
   }
+  /// The same where `factor` units of length are one of the present.
+  PathGuide in_units(float factor) const;
   /// Where light l starts the path drawn by u in [0, 1).
   Emission emission(std::size_t l, double u) const;
 

@@ -1,5 +1,6 @@
 #include "estimators/photon_plan.h"
 
+#include "estimators/beam_plan.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
@@ -44,6 +45,44 @@ TEST(PhotonPlan, ThickMediaTakeOneForLightOfOneDirection) {
   EXPECT_LE(shadow_rays_per_ray(0), 1);
   // The phase function seldom finds a disc of 10 degrees, so that there is about a ray per sample.
   EXPECT_GT(shadow_rays_per_ray(10), 1.5);
+}
+
+/// A cloud that grows while the shutter is open: render space has another unit from 2 on.
+MemoryScene cloud_of(double size) {
+  MemoryScene scene;
+  const DensityField field = closed_field(
+      {8, 8, 8}, [](int i, int j, int k) { return 0.2 + 0.8 * ((i / 8 + j / 8 + k / 8) % 2); });
+  VolumeSettings& volume = scene.add(field, box_map({8, 8, 8}, Vec3d(-size / 2), Vec3d(size / 2)));
+  volume.extinction = 10 / size;
+  volume.albedo = Rgb(0.98f);
+  scene.add_light(LightType::distant).direction = {-0.7, -0.5, 0.5};
+  scene.look({0.4, 0.3, 6}, {0, 0, 0}, 26, 64, 64);
+  return scene;
+}
+
+TEST(PhotonPlan, OfASceneServesMomentsWhoseUnitIsAnother) {
+  const TestFrame small(cloud_of(1.9)), large(cloud_of(2.1));
+  ASSERT_EQ(small.world.space.scale, 2 * large.world.space.scale);
+  const ScenePhotons photons{plan_beam_photons(small.input()), small.world.space};
+  const ScenePhotons of_moment = photons.in_units(large.world.space.scale);
+  ASSERT_NE(photons.plan.guide, nullptr);
+  // The same place of the world, and the same light.
+  const Vec3f point(0.3f, 0.2f, 0.6f);
+  for (const float flux : {0.01f, 1.0f})
+    EXPECT_FLOAT_EQ(photons.plan.guide->relative_value(flux, point, 1000),
+                    of_moment.plan.guide->relative_value(flux / 4, point * 0.5f, 1000));
+  EXPECT_FLOAT_EQ(of_moment.plan.view_reach, 0.5f * photons.plan.view_reach);
+  EstimatorInput input = large.input();
+  input.of_scene = &of_moment;
+  const PhotonPlan plan = plan_beam_photons(input), own = plan_beam_photons(large.input());
+  EXPECT_GT(own.pilot_paths, 0);
+  EXPECT_EQ(plan.pilot_paths, 0);
+  EXPECT_EQ(plan.neighbours, photons.plan.neighbours);
+  EXPECT_EQ(plan.paths, photons.plan.paths);
+  // A point as bright as that is worth as much to either plan, but for the pilots' noise.
+  const float follows = plan.guide->relative_value(1, {0, 0, 0.5f}, plan.paths);
+  const float asked = own.guide->relative_value(1, {0, 0, 0.5f}, own.paths);
+  EXPECT_NEAR(follows / asked, 1, 0.4);
 }
 
 } // namespace
