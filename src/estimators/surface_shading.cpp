@@ -37,6 +37,25 @@ int reflected_paths(const SpecularBranches& ways) {
   return std::clamp(static_cast<int>(std::lround(paths_per_ray * share)), 1, paths_per_ray - 1);
 }
 
+/// Smooth glass sends a path both ways. Rough glass does so inside, where what it reflects, a few
+/// percent, comes out somewhere else and may then show a lamp; outside shadow rays find the lamps
+/// that it reflects.
+bool splits_light(const SurfaceVertex& vertex) {
+  const Material& material = vertex.material();
+  return material.is_specular() || (material.type() == MaterialType::dielectric && !vertex.front());
+}
+
+/// One of the ways, by its share of the light.
+MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
+  const float reflected = max_component(ways.reflected.weight),
+              both = reflected + max_component(ways.refracted.weight);
+  const bool reflects = rng.uniform() * both < reflected;
+  MaterialSample way = reflects ? ways.reflected : ways.refracted;
+  if (both > 0)
+    way.weight *= both / (reflects ? reflected : both - reflected);
+  return way;
+}
+
 /// The ray that leaves a surface, up to the next.
 CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& direction) {
   CameraRay ray;
@@ -143,18 +162,24 @@ Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rn
 /// Sends the chain on from a surface; returns the light of lights that the surface reflects to it,
 /// or what is seen the other way where it goes both ways.
 Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
-  const SpecularBranches ways =
-      chain.splits > 0 ? vertex.branches(Carried::radiance) : SpecularBranches();
-  if (go_both_ways(ways)) {
-    --chain.splits;
-    Chain other = chain;
-    other.take_share(vertex, ways.reflected);
-    chain.take_share(vertex, ways.refracted);
-    return follow(other);
-  }
+  const bool specular = vertex.material().is_specular();
   Rgb light;
-  if (!vertex.material().is_specular())
+  if (!specular)
     light = tracer_.lights_at_surface(vertex, chain.rng) * chain.throughput;
+  if (chain.splits > 0 && splits_light(vertex)) {
+    const SpecularBranches ways = vertex.both_ways(Carried::radiance, chain.rng);
+    if (go_both_ways(ways)) {
+      --chain.splits;
+      Chain other = chain;
+      other.take_share(vertex, ways.reflected);
+      chain.take_share(vertex, ways.refracted);
+      return light + follow(other);
+    }
+    if (!specular) { // to draw anew would be biased
+      chain.take_all(vertex, one_of(ways, chain.rng));
+      return light;
+    }
+  }
   chain.take_all(vertex, vertex.sample(Carried::radiance, chain.rng));
   return light;
 }

@@ -22,7 +22,8 @@ struct MaterialSample {
   float refraction = 1;
 };
 
-/// The ways on from a specular surface, each with its own weight; 0: there is no such way.
+/// The ways on from a surface that reflects and refracts, each with its own weight; 0: there is no
+/// such way.
 struct SpecularBranches {
   MaterialSample reflected, refracted;
 };
@@ -40,6 +41,12 @@ public:
   virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
   /// `evaluate` is 0 for all directions: shadow rays are no use.
   virtual bool is_specular() const { return false; }
+  /// Of rough glass: a way by reflection and one by refraction, each weighted with its share of the
+  /// light, where `sample` follows one of them. Their densities are those of `pdf`.
+  virtual SpecularBranches both_ways(const Vec3f& wo, Carried carried, Rng& rng) const {
+    static_cast<void>(rng);
+    return branches(wo, carried);
+  }
   /// Of a specular surface: all ways on, of which `sample` chooses one.
   virtual SpecularBranches branches(const Vec3f& wo, Carried carried) const {
     static_cast<void>(wo), static_cast<void>(carried);

@@ -32,30 +32,54 @@ public:
       return f.reflected * visible / (4 * f.cos_o);
     return (1 - f.reflected) * visible * f.eta * f.eta * f.cos_i / f.stretch;
   }
-  MaterialSample sample(const Vec3f& wo_, Carried carried, Rng& rng) const override {
-    const float side = std::copysign(1.0f, wo_.z), eta = side > 0 ? ior_ : 1 / ior_;
-    const Vec3f wo = wo_ * Vec3f{1, 1, side};
-    const float u = rng.uniform(), v = rng.uniform();
-    const Vec3f h = facets_.visible_normal(wo, u, v);
-    const float cos_o = dot(wo, h);
-    float cos_t = 0;
-    const float reflected = fresnel_dielectric(std::clamp(cos_o, 0.0f, 1.0f), eta, cos_t);
-    const bool reflects = rng.uniform() < reflected;
-    Vec3f wi = reflects ? h * (2 * cos_o) - wo : h * (cos_o / eta - cos_t) - wo / eta;
-    if (!(cos_o > 0) || !(wo.z > 0) || !(reflects ? wi.z > 0 : wi.z < 0))
-      return {};
-    wi = normalize(wi);
-    const float masked = facets_.masking(wo, upwards(wi)) / facets_.masking(wo);
-    // Radiance over the square of the index is what stays constant along a refracted ray.
-    const float factor = !reflects && carried == Carried::radiance ? 1 / (eta * eta) : 1;
-    wi = wi * Vec3f{1, 1, side};
-    return {wi, Rgb(masked * factor), pdf(wo_, wi), factor};
+  MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const override {
+    const FacetDraw facet = draw(wo, rng);
+    return by(facet, wo, rng.uniform() < facet.reflected, carried);
+  }
+  SpecularBranches both_ways(const Vec3f& wo, Carried carried, Rng& rng) const override {
+    const FacetDraw facet = draw(wo, rng);
+    SpecularBranches ways{by(facet, wo, true, carried), by(facet, wo, false, carried)};
+    ways.reflected.weight *= facet.reflected;
+    ways.refracted.weight *= 1 - facet.reflected;
+    return ways;
   }
   Rgb absorption() const override { return absorption_; }
   bool is_solid() const override { return solid_; }
   bool shows_surroundings() const override { return narrow_; }
 
 private:
+  /// A facet that is seen from wo, drawn at random; wo is turned so that it is above.
+  struct FacetDraw {
+    Vec3f wo, h;
+    float side = 1, eta = 1;    ///< of wo, and the index on the far side over that on its side
+    float cos_o = 0, cos_t = 0; ///< of the angles at the facet
+    float reflected = 0;        ///< share of the light (Fresnel)
+  };
+  FacetDraw draw(const Vec3f& wo, Rng& rng) const {
+    FacetDraw f;
+    f.side = std::copysign(1.0f, wo.z);
+    f.eta = f.side > 0 ? ior_ : 1 / ior_;
+    f.wo = wo * Vec3f{1, 1, f.side};
+    const float u = rng.uniform(), v = rng.uniform();
+    f.h = facets_.visible_normal(f.wo, u, v);
+    f.cos_o = dot(f.wo, f.h);
+    f.reflected = fresnel_dielectric(std::clamp(f.cos_o, 0.0f, 1.0f), f.eta, f.cos_t);
+    return f;
+  }
+  /// Where the facet reflects or refracts to, weighted as if nothing went the other way.
+  MaterialSample by(const FacetDraw& f, const Vec3f& wo, bool reflects, Carried carried) const {
+    Vec3f wi =
+        reflects ? f.h * (2 * f.cos_o) - f.wo : f.h * (f.cos_o / f.eta - f.cos_t) - f.wo / f.eta;
+    if (!(f.cos_o > 0) || !(f.wo.z > 0) || !(reflects ? wi.z > 0 : wi.z < 0))
+      return {};
+    wi = normalize(wi);
+    const float masked = facets_.masking(f.wo, upwards(wi)) / facets_.masking(f.wo);
+    // Radiance over the square of the index is what stays constant along a refracted ray.
+    const float factor = !reflects && carried == Carried::radiance ? 1 / (f.eta * f.eta) : 1;
+    wi = wi * Vec3f{1, 1, f.side};
+    return {wi, Rgb(masked * factor), pdf(wo, wi), factor};
+  }
+
   /// The facets that send light from wi to wo, turned so that wo is above.
   struct Facet {
     Vec3f wo, wi, h;

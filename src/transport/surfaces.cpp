@@ -85,6 +85,11 @@ MaterialSample SurfaceVertex::sample(Carried carried, Rng& rng) const {
   return shown(material_.sample(wo_, carried, rng), carried);
 }
 
+SpecularBranches SurfaceVertex::both_ways(Carried carried, Rng& rng) const {
+  const SpecularBranches local = material_.both_ways(wo_, carried, rng);
+  return {shown(local.reflected, carried), shown(local.refracted, carried)};
+}
+
 SpecularBranches SurfaceVertex::branches(Carried carried) const {
   const SpecularBranches local = material_.branches(wo_, carried);
   return {shown(local.reflected, carried), shown(local.refracted, carried)};

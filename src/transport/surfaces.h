@@ -62,6 +62,8 @@ public:
   }
   /// Where the path goes on; the direction is in render space.
   MaterialSample sample(Carried carried, Rng& rng) const;
+  /// Of glass: a way by reflection and one by refraction, in render space.
+  SpecularBranches both_ways(Carried carried, Rng& rng) const;
   /// Of a specular material: all ways on, in render space.
   SpecularBranches branches(Carried carried) const;
 

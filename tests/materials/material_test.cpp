@@ -87,6 +87,32 @@ TEST(Materials, both_ways_of_glass_are_what_samples_choose_between) {
       }
 }
 
+/// What each way carries on average is the same, also where facets reflect all light.
+TEST(Materials, both_ways_of_rough_glass_carry_what_samples_do) {
+  for (const float side : {1.0f, -1.0f})
+    for (const double angle : {0.0, 40.0, 70.0}) {
+      const auto rough = glass(1.5, 0.4);
+      const Vec3f wo = at_angle(angle, side);
+      test::Samples chosen[2], both[2]; // refracted, reflected
+      Rng rng({}, RngStage::test, 11);
+      for (int i = 0; i < 20000; ++i) {
+        const MaterialSample sample = rough->sample(wo, Carried::radiance, rng);
+        const bool up = sample.wi.z * wo.z > 0;
+        chosen[up].add(static_cast<double>(sample.weight.x));
+        chosen[!up].add(0);
+        const SpecularBranches ways = rough->both_ways(wo, Carried::radiance, rng);
+        both[1].add(static_cast<double>(ways.reflected.weight.x));
+        both[0].add(static_cast<double>(ways.refracted.weight.x));
+        if (ways.reflected.weight.x > 0) {
+          EXPECT_FLOAT_EQ(ways.reflected.pdf, rough->pdf(wo, ways.reflected.wi));
+        }
+      }
+      test::expect_same_mean(chosen[0], both[0]);
+      test::expect_same_mean(chosen[1], both[1]);
+      EXPECT_LE(both[1].variance(), chosen[1].variance());
+    }
+}
+
 /// Rough glass reflects and refracts; the bright peak of transmission takes the most samples.
 TEST(Materials, rough_glass_is_sampled_as_it_is_evaluated) {
   for (const float side : {1.0f, -1.0f})
