@@ -18,8 +18,8 @@ namespace {
 constexpr float least_importance = 1.0f / 1024;
 /// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these.
 constexpr double trial_share = 0.25;
-constexpr double most_trial_paths = 25000;
-constexpr int trial_maps = 4;
+constexpr double most_trial_paths = 40000;
+constexpr int trial_maps = 6;
 /// Paths that tell how many photons guided paths leave, and where.
 constexpr std::uint64_t guided_pilot_paths = 1024;
 /// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie

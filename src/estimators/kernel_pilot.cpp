@@ -9,13 +9,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
 
-constexpr int most_tiles = 100;
+constexpr int most_tiles = 120;
 /// Of a tile's pixels, one in so many is told to the caller.
 constexpr std::size_t pixels_between_samples = 48;
 /// Added to the brightness in the weights, as 0.01 is in MRSE, but relative to the mean: dimming a
@@ -24,6 +25,9 @@ constexpr double offset = 0.03;
 /// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
 /// against all that they blur, less where they are as wide (measured, docs/decisions.md).
 constexpr double bias_power = 0.5;
+/// What is best for the clouds that were looked at, and by how many factors of two it differs among
+/// them (standard deviation): what is expected of a scene before the trial tells more.
+constexpr double usual_neighbours = 512, usual_octaves = 1;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
 /// matters little (docs/decisions.md).
 constexpr int balanced_passes = 64;
@@ -226,11 +230,36 @@ KernelModel::KernelModel(const KernelTrial& narrow, const KernelTrial& wide,
         std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
   else
     noise_ = 0;
-  // Where no bias stands out of the noise it may still be as large as that.
-  const double change = std::max(errors.change, errors.change_error);
   const double per_change = std::pow(std::pow(ratio, bias_power) - 1, -2);
-  bias_ = std::max(0.0, change) * per_change;
-  measured_bias_ = std::max(0.0, errors.change) * per_change;
+  bias_ = expected_bias(errors.change * per_change, errors.change_error * per_change);
+}
+
+double KernelModel::expected_bias(double measured, double error) const {
+  if (!(noise_ > 0) || !(error > 0))
+    return std::max(0.0, measured);
+  // The bias at which the usual kernels are best; the best number goes as its -1 / power.
+  const double power = noise_power_ + 2 * bias_power;
+  const Balance at = balance(balanced_passes);
+  const double usual = noise_power_ * at.noise / (2 * bias_power * at.bias_factor) *
+                       std::pow(usual_neighbours / narrow_, -power);
+  // Bayes' theorem, in small steps of the best number of photons from 2^-8 to 2^8 times the usual
+  // one. The largest logarithm of a weight is taken off, or all might vanish.
+  constexpr int steps = 256;
+  std::array<double, 2 * steps + 1> bias, logarithm;
+  for (int i = 0; i <= 2 * steps; ++i) {
+    const double octaves = 8.0 / steps * (i - steps);
+    bias[i] = usual * std::exp2(-power * octaves);
+    const double off = (measured - bias[i]) / error, unusual = octaves / usual_octaves;
+    logarithm[i] = -0.5 * (off * off + unusual * unusual);
+  }
+  const double largest = *std::max_element(logarithm.begin(), logarithm.end());
+  double sum = 0, weights = 0;
+  for (int i = 0; i <= 2 * steps; ++i) {
+    const double weight = std::exp(logarithm[i] - largest);
+    sum += weight * bias[i];
+    weights += weight;
+  }
+  return sum / weights;
 }
 
 /// Radii go as the cube root of the neighbours; both powers hold for what the passes shrink too.
@@ -262,7 +291,7 @@ double KernelModel::error(double neighbours, int passes) const {
   const Balance at = balance(passes);
   const double x = neighbours / narrow_;
   return at.noise * std::pow(x, -noise_power_) +
-         measured_bias_ * at.bias_factor * std::pow(x, 2 * bias_power);
+         bias_ * at.bias_factor * std::pow(x, 2 * bias_power);
 }
 
 } // namespace vdbeam

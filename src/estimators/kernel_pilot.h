@@ -55,11 +55,13 @@ private:
     double bias_factor = 0; ///< of their squared bias
   };
   Balance balance(int passes) const;
+  /// Of the squared bias, from what was measured of it and the standard error of that, and from
+  /// what kernels other scenes need: the less the trial tells, the more these count.
+  double expected_bias(double measured, double error) const;
 
   double narrow_, wide_;   ///< photons in the kernels of the trials
   double noise_;           ///< of one pass in narrow kernels; 0: not known
-  double bias_;            ///< squared, of narrow kernels, as far as it may be; 0: not known
-  double measured_bias_;   ///< the same without its uncertainty
+  double bias_;            ///< expected square of it in narrow kernels; 0: not known
   double noise_power_ = 1; ///< by which noise falls
   double alpha_;
 };

@@ -26,14 +26,34 @@ TEST(BestNeighbours, FollowsNoiseAndBias) {
   };
   EXPECT_GT(best(20, 0.1, 0), best(10, 0.1, 0));
   EXPECT_LT(best(10, 0.2, 0), best(10, 0.1, 0));
-  // A bias that does not stand out of the noise may still be as large as that.
-  EXPECT_EQ(best(10, -0.3, 0.1), best(10, 0.1, 0.1));
   // Beyond what was tried nothing is known.
   EXPECT_EQ(best(1e9, 1e-9, 0), 800);
   EXPECT_EQ(best(1e-9, 1, 0), 32);
   // Narrow kernels that no ray meets.
   EXPECT_EQ(best(0, 0, 0), 800);
   EXPECT_EQ(best(1, 0, 0), 800);
+}
+
+TEST(BestNeighbours, LeansOnTheUsualNumberWhereTheTrialTellsLittle) {
+  const auto best = [](double change, double error) {
+    const KernelErrors errors{1, 0.25, change, error, {}};
+    return KernelModel(trial(600), trial(2400), errors, 0.25, 0.6).best_neighbours();
+  };
+  const double sure = best(1, 0), usual = best(0, 1e9);
+  EXPECT_LT(sure, 250); // or the test would not tell one from the other
+  // The expected bias is the mean of what it may be, in which the large ones count most: kernels
+  // are somewhat narrower than those that are usual.
+  EXPECT_GT(usual, 300);
+  EXPECT_LT(usual, 512);
+  EXPECT_NEAR(best(1, 0.01), sure, 0.02 * sure);
+  EXPECT_GT(best(1, 0.3), 1.02 * sure);
+  EXPECT_LT(best(1, 0.3), usual);
+  // A change below 0 says that the bias is small, the more so the surer it is.
+  EXPECT_GT(best(-0.1, 0.3), usual);
+  EXPECT_GT(best(-0.1, 0.15), best(-0.1, 0.3));
+  // Hopelessly unlikely measurements still give a number.
+  EXPECT_GT(best(-1, 1e-3), 32);
+  EXPECT_LE(best(-1, 1e-3), 2400);
 }
 
 /// A box of smooth or lumpy medium, 12 mean free paths deep, in sunlight from the side.
