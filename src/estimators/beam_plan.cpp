@@ -17,7 +17,7 @@ namespace {
 /// the probability of those that it sees best.
 constexpr float least_importance = 1.0f / 1024;
 /// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these.
-constexpr double trial_share = 0.25;
+constexpr double trial_share = 0.125;
 constexpr double most_trial_paths = 40000;
 constexpr int trial_maps = 6;
 /// Paths that tell how many photons guided paths leave, and where.

@@ -15,9 +15,9 @@ constexpr double default_neighbours = 500;
 /// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
 /// on thin and on thick media (docs/decisions.md). A count, not a clock, so that every machine
 /// chooses the same.
-constexpr double paths_per_hit = 2;
+constexpr double paths_per_hit = 4;
 constexpr double fewest_paths = 10000;
-constexpr double most_photons = 2e6;
+constexpr double most_photons = 4e6;
 /// By which factor there may be more of them for lights that shadow rays do not reach, and photons
 /// per camera ray that meets the medium up to which there are.
 constexpr double most_for_hidden_lights = 8;
