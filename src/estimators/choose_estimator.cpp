@@ -16,7 +16,7 @@ namespace {
 
 /// Passes of `beam` after which the two are compared: its lead shrinks as passes are added, since
 /// the bias of kernels falls more slowly than noise.
-constexpr int compared_passes = 32;
+constexpr int compared_passes = 16;
 /// Names random numbers that neither passes nor other pilots draw.
 constexpr int first_trial_pass = -200;
 /// Each pixel is rendered this often, and in small pictures, of which there are few pixels, so

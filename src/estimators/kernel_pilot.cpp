@@ -30,7 +30,7 @@ constexpr double bias_power = 0.5;
 constexpr double usual_neighbours = 512, usual_octaves = 1;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
 /// matters little (docs/decisions.md).
-constexpr int balanced_passes = 64;
+constexpr int balanced_passes = 32;
 /// Adaptive radii are accurate from 32 neighbours on (docs/performance.md); fewer are never chosen.
 constexpr double fewest_neighbours = 32;
 

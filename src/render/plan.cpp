@@ -17,7 +17,7 @@ namespace vdbeam {
 namespace {
 
 /// Photons of a pass where their number is chosen by the estimator.
-constexpr std::uint64_t usual_photons = 400000;
+constexpr std::uint64_t usual_photons = 800000;
 
 std::string first_reason(std::initializer_list<std::pair<bool, std::string>> reasons) {
   for (const auto& [applies, reason] : reasons)
