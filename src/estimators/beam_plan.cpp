@@ -16,9 +16,10 @@ namespace {
 /// Where the camera sees nothing of a cell, collisions there are stored with at least this share of
 /// the probability of those that it sees best.
 constexpr float least_importance = 1.0f / 1024;
-/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these.
+/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these;
+/// where passes are small, of twice the share up to so many.
 constexpr double trial_share = 0.125;
-constexpr double most_trial_paths = 40000;
+constexpr double few_trial_paths = 5000, most_trial_paths = 40000;
 constexpr int trial_maps = 6;
 /// Paths that tell how many photons guided paths leave, and where.
 constexpr std::uint64_t guided_pilot_paths = 1024;
@@ -120,7 +121,9 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const World& world = input.world;
   const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
-  const double trial_paths = std::ceil(std::min(most_trial_paths, trial_share * paths));
+  const double trial_paths =
+      std::ceil(std::clamp(trial_share * paths, std::min(few_trial_paths, 2 * trial_share * paths),
+                           most_trial_paths));
   KernelTrial narrow, wide;
   narrow.neighbours = std::min(trial_neighbours, most_in_kernel * photons);
   wide.neighbours = wide_over_narrow * narrow.neighbours;
