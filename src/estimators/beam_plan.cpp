@@ -121,9 +121,8 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const World& world = input.world;
   const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
-  const double trial_paths =
-      std::ceil(std::clamp(trial_share * paths, std::min(few_trial_paths, 2 * trial_share * paths),
-                           most_trial_paths));
+  const double trial_paths = std::ceil(std::clamp(
+      trial_share * paths, std::min(few_trial_paths, 2 * trial_share * paths), most_trial_paths));
   KernelTrial narrow, wide;
   narrow.neighbours = std::min(trial_neighbours, most_in_kernel * photons);
   wide.neighbours = wide_over_narrow * narrow.neighbours;
