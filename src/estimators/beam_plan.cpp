@@ -32,10 +32,12 @@ constexpr double most_in_kernel = 1.0 / 16;
 /// Below this many photons per pass the trial is too noisy, and the default is used.
 constexpr double fewest_for_trial = 500;
 
-/// The nearest power of two: what the trial finds scatters, and kernels that changed with that from
-/// frame to frame would flicker. One step is a factor of 1.26 in the radius.
+/// The nearest of 640, twice and half of that and so on: what the trial finds scatters, and kernels
+/// that changed with that from frame to frame would flicker. Most clouds need 500 to 800, in the
+/// middle of a step. One step is a factor of 1.26 in the radius.
 double in_kernel_steps(double neighbours) {
-  return std::exp2(std::round(std::log2(neighbours)));
+  constexpr double middle = 640;
+  return middle * std::exp2(std::round(std::log2(neighbours / middle)));
 }
 
 /// About the radius that kernels would have without regard to the view.

@@ -27,7 +27,7 @@ class Flicker(unittest.TestCase):
                                     "extinction = { keys = [[1, 40], [3, 42]] }", text))
             result = self.run_tool(str(scene), "-f", "1-3", "--resolution", "32x18", "--passes", "2",
                                    "--reference-passes", "64", "--variant",
-                                   "more:render.photons=20000")
+                                   "more:render.photons=20000,render.estimator=beam")
         self.assertEqual(result.returncode, 0, result.stderr)
         rows = [line.split("|") for line in result.stdout.splitlines()[2:]]
         self.assertEqual([row[2].strip() for row in rows], ["per_frame", "correlated"])
