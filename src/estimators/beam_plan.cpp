@@ -34,8 +34,8 @@ constexpr double fewest_for_trial = 500;
 
 /// The nearest of 640, twice and half of that and so on: what the trial finds scatters, and kernels
 /// that changed with that from frame to frame would flicker. Most clouds need 500 to 800, in the
-/// middle of a step. One step is a factor of 1.26 in the radius. More than 1280 were best in no
-/// cloud, and kernels many mean free paths wide have a bias that twice the width does not show.
+/// middle of a step. One step is a factor of 1.26 in the radius. More than 1280 gained little in
+/// any cloud, and kernels many mean free paths wide have a bias that the trial does not show.
 double in_kernel_steps(double neighbours) {
   constexpr double middle = 640, most = 1280;
   return std::min(most, middle * std::exp2(std::round(std::log2(neighbours / middle))));

@@ -40,9 +40,17 @@ private:
                        [](const auto& found) { return found.load(); });
   }
 
+  /// Each light has random numbers of its own on each ray: whether it is found must not depend on
+  /// which others another thread has found.
+  Rng stream(int row, int column, std::size_t of) const {
+    const auto ray = static_cast<std::uint64_t>(row * rays_across + column);
+    return {{input_.settings.seed, input_.frame, sight_pass},
+            RngStage::direct,
+            of * rays_across * rays_across + ray};
+  }
+
   void look_along(int row, int column) {
-    Rng rng({input_.settings.seed, input_.frame, sight_pass}, RngStage::direct,
-            static_cast<std::uint64_t>(row * rays_across + column));
+    Rng rng = stream(row, column, 0);
     const auto along = [&](int step, int pixels) {
       return (step + static_cast<double>(rng.uniform())) * pixels / rays_across;
     };
@@ -55,12 +63,13 @@ private:
     DistanceSampler distances(world_.medium, camera.ray(), profile);
     if (!(distances.opacity(0) > 0))
       return;
-    for (int i = 0; i < points_per_ray; ++i) {
-      const float u = rng.uniform();
-      const Vec3f point = distances.sample(u, 0).position;
-      for (std::size_t l = 0; l < found_.size(); ++l)
-        if (!found_[l] &&
-            (sees(l, point, rng) || sees(l, near(l, camera.ray(), profile, rng), rng)))
+    Vec3f points[points_per_ray];
+    for (Vec3f& point : points)
+      point = distances.sample(rng.uniform(), 0).position;
+    for (std::size_t l = 0; l < found_.size(); ++l) {
+      Rng own = stream(row, column, 1 + l);
+      for (int i = 0; i < points_per_ray && !found_[l]; ++i)
+        if (sees(l, points[i], own) || sees(l, near(l, camera.ray(), profile, own), own))
           found_[l] = true;
     }
   }
