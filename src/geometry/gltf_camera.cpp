@@ -1,5 +1,6 @@
 #include "geometry/gltf_camera.h"
 
+#include "geometry/gltf_files.h"
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
@@ -188,10 +189,10 @@ bool is_gltf_file(const std::string& path) {
 }
 
 CameraTrack read_gltf_camera(const std::string& path, const std::string& name, double rate) {
-  const std::uint64_t bytes = open_input_file(path).bytes;
+  const std::uint64_t bytes = open_input_file(path).bytes + bytes_of_gltf_files(path);
   GuardLimits limits;
-  limits.cpu_seconds = 10 + 5e-6 * static_cast<double>(bytes);
-  limits.bytes = (std::uint64_t(512) << 20) + 200 * bytes;
+  limits.cpu_seconds = 2 + 5e-6 * static_cast<double>(bytes);
+  limits.bytes = std::min(std::uint64_t(16) << 30, (std::uint64_t(512) << 20) + 200 * bytes);
   const MappedFile file =
       run_guarded(path, limits, [&](int output) { parse(path, name, rate, output); });
   const std::size_t rest = file.size() - std::min(file.size(), sizeof(double));

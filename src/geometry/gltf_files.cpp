@@ -70,6 +70,16 @@ std::vector<std::string> gltf_files(const std::string& path) {
   return files;
 }
 
+std::uint64_t bytes_of_gltf_files(const std::string& path) {
+  std::uint64_t sum = 0;
+  for (const std::string& file : gltf_files(path)) {
+    std::error_code failed;
+    const std::uint64_t bytes = std::filesystem::file_size(file, failed);
+    sum += failed ? 0 : bytes;
+  }
+  return sum;
+}
+
 std::string model_identity(const std::string& path) {
   std::string identity = file_identity(path);
   for (const std::string& file : gltf_files(path))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ std::string named_by_uri(const std::string& path);
 /// their order; not what it holds itself (`data:`). None of other files, and where it cannot be
 /// read, which reading the mesh or camera will complain about.
 std::vector<std::string> gltf_files(const std::string& path);
+
+/// Bytes of the files that it names, as far as they are there.
+std::uint64_t bytes_of_gltf_files(const std::string& path);
 
 /// Tells one state of a file of meshes or cameras from another as file_identity does; a .gltf file
 /// with those that it names.

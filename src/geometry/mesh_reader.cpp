@@ -1,6 +1,7 @@
 #include "geometry/mesh_reader.h"
 
 #include "geometry/gltf_camera.h"
+#include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
 #include "geometry/obj_normals.h"
 #include "geometry/uri_files.h"
@@ -37,11 +38,12 @@ bool is_mesh_file(const std::string& path) {
 
 namespace {
 
+/// Bytes of the file and of those that it names.
 std::uint64_t check_file(const std::string& path) {
   const std::uint64_t bytes = open_input_file(path).bytes;
   if (!is_mesh_file(path))
     throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
-  return bytes;
+  return bytes + bytes_of_gltf_files(path);
 }
 
 /// Throws FrameError where a mesh has not one normal per vertex: assimp leaves such normals out
@@ -62,12 +64,13 @@ void check_gltf_normals(const std::string& path) {
     }
 }
 
-/// What a sound file of this size can need at most. An OBJ file needs about two bytes per index, of
-/// which assimp makes vertices with all their attributes.
+/// What sound files of this size can need at most. An OBJ file needs about two bytes per index, of
+/// which assimp makes vertices with all their attributes. On some damaged files assimp never ends,
+/// so the time for a small one is short.
 GuardLimits guard_limits(std::uint64_t file_bytes, const MeshLimits& limits) {
   GuardLimits guard;
   guard.seconds = limits.seconds;
-  guard.cpu_seconds = std::min(limits.seconds, 10 + 5e-6 * static_cast<double>(file_bytes));
+  guard.cpu_seconds = std::min(limits.seconds, 2 + 5e-6 * static_cast<double>(file_bytes));
   guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 200 * file_bytes);
   return guard;
 }

@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
-#include <chrono>
+#include <filesystem>
 
 namespace vdbeam {
 namespace {
@@ -237,6 +238,38 @@ TEST(GltfFiles, are_named_by_uris) {
   EXPECT_EQ(files(), (std::vector{folder.file("a b.bin"), folder.file("100%.bin")}));
   write_bytes(folder.file("a%20b.bin"), "0");
   EXPECT_EQ(files(), (std::vector{folder.file("a%20b.bin"), folder.file("100%.bin")}));
+}
+
+/// A small file may name a large one: what reading may take goes by both.
+TEST(MeshReader, gltf_with_a_large_buffer) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.gltf"), buffer = folder.file("the numbers.bin");
+  write_numbers(buffer);
+  std::filesystem::resize_file(buffer, 300'000'000);
+  std::string gltf = gltf_with_normals("", 3);
+  gltf.replace(gltf.find("72"), 2, "300000000");
+  write_bytes(path, gltf);
+  EXPECT_EQ(read_mesh(path).triangles.size(), 1u);
+}
+
+/// Files that are named may be anything: a pipe without an end is as good as no file.
+TEST(MeshReader, pipes_that_a_file_names_are_not_read) {
+  const TempFolder folder;
+  ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  write_bytes(folder.file("a.obj"), "mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(read_mesh(folder.file("a.obj"), {}, {.seconds = 5}).triangles.size(), 1u);
+  std::string gltf = gltf_with_normals("", 3);
+  gltf.replace(gltf.find("the%20numbers.bin"), 17, "pipe");
+  write_bytes(folder.file("a.gltf"), gltf);
+  EXPECT_EQ(failure(folder.file("a.gltf")).find("took"), std::string::npos);
+}
+
+/// assimp looks for the end of this header for ever.
+TEST(MeshReader, small_files_have_little_time) {
+  const TempFolder folder;
+  const std::string path = folder.file("cut.ply"), whole = ply;
+  write_bytes(path, whole.substr(0, whole.find("property float z")));
+  EXPECT_NE(failure(path).find("processor time; the file is corrupt"), std::string::npos);
 }
 
 TEST(MeshReader, far_from_the_origin_keeps_its_shape) {

@@ -1,6 +1,7 @@
 """Mutated files of every kind that vdbeam reads: each gives a result or one line of error.
 
-Kinds: scene, volume, picture of the sky (EXR and HDR), checkpoint, finished image, partial image.
+Kinds: scene, volume, picture of the sky (EXR and HDR), checkpoint, finished image, partial image, and
+meshes (OBJ, PLY, glTF, rendered and described by `info`), their buffers and their textures (PNG).
 By hand, for longer: VDBEAM_BINARY=build/release/vdbeam mutated_files_test.py --cases 10000 --seed 2
 A case is a pure function of the seed and its number, which a failure names; --case N runs that one
 and leaves its files in --keep FOLDER.
@@ -14,6 +15,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+import sample_meshes
 
 VDBEAM = os.environ.get("VDBEAM_BINARY", "vdbeam")
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
@@ -50,6 +53,19 @@ kernel = "fixed"
 radius = 1e-2
 seed = 9223372036854775807
 """ % (DATA / "smoke" / "smoke.0001.vdb").as_posix()
+
+MESH_SCENE = """[camera]
+position = [0, -2, 3]
+[[mesh]]
+file = "%s"
+smooth_angle = 40
+material = { type = "diffuse", texture = "%s" }
+[[light]]
+type = "distant"
+direction = [0.2, 0.3, -1]
+[[light]]
+type = "environment"
+"""
 
 WORDS = [b"nan", b"inf", b"-1", b"1e999", b"0", b"[", b"]", b"{", b'"', b"=", b"\n", b"\xff", b"\x00",
          b"9223372036854775807", b"-9223372036854775808", b"true", b"[[light]]", b"#", b"''' ", b"1979-05-27",
@@ -131,7 +147,29 @@ class Driver:
                 ("out.checkpoint.exr", first, lambda name: render("--passes", "2")),
                 ("out.exr", finished, lambda name: render("--passes", "1", "--skip-existing")),
                 ("first.exr", first, lambda name: ["merge", "-q", "-o", self.folder / "merged.exr",
-                                                   self.folder / name, self.folder / "second.exr"])]
+                                                   self.folder / name, self.folder / "second.exr"]),
+                *self.mesh_sources(render)]
+
+    def mesh_sources(self, render):
+        """Meshes are rendered and described; the texture is damaged under a mesh that is sound."""
+        gltf, buffer = sample_meshes.gltf_with_buffer("buffer.bin")
+        meshes = [("mesh.obj", sample_meshes.obj_file()), ("ascii.ply", sample_meshes.ply_file(binary=False)),
+                  ("binary.ply", sample_meshes.ply_file(binary=True)), ("mesh.gltf", sample_meshes.gltf_file()),
+                  ("mesh.glb", sample_meshes.glb_file())]
+        picture = sample_meshes.png_file()
+        sound = {"square.obj": meshes[0][1], "sound.png": picture, "named.gltf": gltf}
+        for name, data in sound.items():
+            (self.folder / name).write_bytes(data)
+
+        def rendered(mesh, texture="sound.png"):
+            path = self.folder / "mesh.toml"
+            path.write_text(MESH_SCENE % (mesh, texture), encoding="utf-8")
+            return render("--passes", "1", of=path)
+
+        return [*((name, data, rendered) for name, data in meshes),
+                *((name, data, lambda name: ["info", self.folder / name]) for name, data in meshes),
+                ("buffer.bin", buffer, lambda _: rendered("named.gltf")),
+                ("texture.png", picture, lambda name: rendered("square.obj", name))]
 
     def run(self, label, arguments):
         waited, before = 0, time.monotonic()
