@@ -5,6 +5,7 @@
 #include "estimators/profile_shading.h"
 #include "estimators/surface_photons.h"
 #include "transport/emission.h"
+#include "transport/optical_depth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,8 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
+/// Lamps are looked for behind rough glass by as many times more rays, which gather nothing else.
+constexpr int lamp_rays = 12;
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
 /// Interfaces beyond the first at which a path goes both ways.
@@ -28,13 +31,21 @@ bool go_both_ways(const SpecularBranches& ways) {
          max_component(ways.refracted.weight) > least_share;
 }
 
-/// Of the paths that go on from the first interface, how many are reflected there: by the share of
-/// the light, at least one each way.
+/// Of the paths that go on from the first interface, how many take a way with this share of the
+/// light: at least one goes each way.
+int paths_by_share(const Rgb& share) {
+  const long paths = std::lround(paths_per_ray * max_component(share));
+  return std::clamp(static_cast<int>(paths), 1, paths_per_ray - 1);
+}
+
 int reflected_paths(const SpecularBranches& ways) {
-  if (!go_both_ways(ways))
-    return 0;
-  const float share = max_component(ways.reflected.weight);
-  return std::clamp(static_cast<int>(std::lround(paths_per_ray * share)), 1, paths_per_ray - 1);
+  return go_both_ways(ways) ? paths_by_share(ways.reflected.weight) : 0;
+}
+
+/// Rough glass seen from outside.
+bool is_frosted(const SurfaceVertex& vertex) {
+  const Material& material = vertex.material();
+  return material.type() == MaterialType::dielectric && !material.is_specular() && vertex.front();
 }
 
 /// Smooth glass sends a path both ways. Rough glass does so inside, where what it reflects, a few
@@ -82,6 +93,7 @@ struct SurfaceShading::Chain {
   float pdf = 0;   ///< with which the direction was drawn; 0: nothing else draws it
   float scale = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
   int splits = most_splits;
+  bool lamps_found = false; ///< at the next surface, if it is rough glass or metal
   SurfaceRoulette length{};
 
   /// Leaves a surface one of several ways, all of which are followed.
@@ -141,6 +153,8 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
 template <class PathRng>
 Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
                              RenderStatistics& counts) const {
+  if (is_frosted(vertex))
+    return shown_by_frosted(vertex, path_rng, counts);
   const SpecularBranches ways = vertex.branches(Carried::radiance);
   const int reflected = reflected_paths(ways), refracted = paths_per_ray - reflected;
   Rgb sum;
@@ -159,12 +173,60 @@ Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rn
   return sum;
 }
 
+/// Frosted glass: each path draws a facet, at which it goes one way or the other.
+template <class PathRng>
+Rgb SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                     RenderStatistics& counts) const {
+  int reflected = 0;
+  Rgb sum;
+  for (int i = 0; i < paths_per_ray; ++i) {
+    Rng rng = path_rng(i);
+    if (i == 0) // by a facet of which no path makes use
+      reflected = paths_by_share(vertex.both_ways(Carried::radiance, rng).reflected.weight);
+    Chain chain{rng, counts, vertex.absorbed()};
+    sum += tracer_.lights_at_surface(vertex, rng) * chain.throughput / paths_per_ray;
+    const bool reflects = i < reflected;
+    Rgb light;
+    if (!reflects) {
+      light = lamps_behind(vertex, rng) * chain.throughput;
+      chain.lamps_found = true;
+    }
+    const SpecularBranches ways = vertex.both_ways(Carried::radiance, rng);
+    const MaterialSample& way = reflects ? ways.reflected : ways.refracted;
+    if (max_component(way.weight) > 0) {
+      chain.take_share(vertex, way);
+      light += follow(chain);
+    }
+    sum += light / static_cast<float>(reflects ? reflected : paths_per_ray - reflected);
+  }
+  return sum;
+}
+
+/// The light of lamps that the surface behind frosted glass scatters to it: where both have narrow
+/// lobes, few rays are on their way to a lamp, and those are bright.
+Rgb SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
+  Rgb sum;
+  for (int i = 0; i < lamp_rays; ++i) {
+    const MaterialSample way = vertex.both_ways(Carried::radiance, rng).refracted;
+    if (!(max_component(way.weight) > 0))
+      continue;
+    const CameraRay ray = next_ray(world_, vertex.hit().leave(way.wi), way.wi);
+    if (!ray.hit)
+      continue;
+    const SurfaceVertex next(*world_.surfaces, *ray.hit, way.wi);
+    if (next.material().shows_surroundings() && !next.material().is_specular())
+      sum += tracer_.lights_at_surface(next, rng) * next.absorbed() * way.weight *
+             exact_transmittance(world_.medium, ray.segment);
+  }
+  return sum / lamp_rays;
+}
+
 /// Sends the chain on from a surface; returns the light of lights that the surface reflects to it,
 /// or what is seen the other way where it goes both ways.
 Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
   const bool specular = vertex.material().is_specular();
   Rgb light;
-  if (!specular)
+  if (!std::exchange(chain.lamps_found, false) && !specular)
     light = tracer_.lights_at_surface(vertex, chain.rng) * chain.throughput;
   if (chain.splits > 0 && splits_light(vertex)) {
     const SpecularBranches ways = vertex.both_ways(Carried::radiance, chain.rng);

@@ -40,6 +40,10 @@ private:
   template <class PathRng>
   Rgb shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
                RenderStatistics& counts) const;
+  template <class PathRng>
+  Rgb shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
+                       RenderStatistics& counts) const;
+  Rgb lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb scatter(const SurfaceVertex& vertex, Chain& chain) const;
   Rgb follow(Chain chain) const;
   Rgb along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr, Chain& chain) const;

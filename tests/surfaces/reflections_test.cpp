@@ -55,6 +55,28 @@ TEST_P(Reflections, of_a_lamp_in_a_pane) {
   EXPECT_LT(std::sqrt(square / static_cast<double>(means.brightness.size())), 0.2 * expected);
 }
 
+/// What frosted glass reflects, a twentieth of the light, is in each pass too: one interface, over
+/// nothing, and a white ceiling that a point light shines on.
+TEST_P(Reflections, in_frosted_glass_are_no_speckles) {
+  MemoryScene scene;
+  add_surface(scene, SurfaceShape::quad, scaled(1), rough(MaterialType::dielectric, 0.1));
+  add_surface(scene, SurfaceShape::quad, moved(scaled(4), {0, 0, 2}, true), {});
+  LightSettings& lamp = scene.add_light(LightType::point);
+  lamp.position = {0, 2, -1};
+  lamp.intensity = Rgb(1000);
+  scene.look({0, -1, 1}, {0, 0, 0}, 2, 4, 4);
+  const PassMeans means = render_passes(scene, GetParam(), 32);
+  double mean = 0, square = 0;
+  for (const test::Samples& pixel : means.brightness) {
+    mean += pixel.mean();
+    square += pixel.error() * pixel.error() * 32;
+  }
+  const auto pixels = static_cast<double>(means.brightness.size());
+  EXPECT_GT(mean, 0);
+  // By chance, one path in twenty, it would be 2.2 times the mean.
+  EXPECT_LT(std::sqrt(square / pixels), 0.5 * mean / pixels);
+}
+
 /// A ball in fog with a lamp beside it and a floor below, which path tracing sees as well.
 MemoryScene ball_in_fog(const MaterialSettings& material) {
   MemoryScene scene;
@@ -94,6 +116,21 @@ TEST_P(Reflections, of_a_large_lamp_in_rough_metal) {
   const PassMeans mine = render_passes(scene, GetParam(), 64);
   test::expect_power(mine.total[0], 0.01 * path.total[0].mean());
   EXPECT_EQ(test::regions_apart(mine, path, 0.001), 0)
+      << mine.total[0].mean() << " against " << path.total[0].mean();
+}
+
+/// Frosted glass shows a lamp behind it by rays of their own: it counts once, inside and outside.
+TEST_P(Reflections, of_and_lamps_behind_frosted_glass) {
+  MemoryScene scene;
+  add_surface(scene, SurfaceShape::sphere, scaled(0.5), rough(MaterialType::dielectric, 0.4));
+  add_surface(scene, SurfaceShape::quad, moved(scaled(0.5), {0, 0, -1}), shining(4));
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.2), {0.4, 0.2, 0.8}), shining(10));
+  scene.add_light(LightType::environment).radiance = Rgb(0.2f);
+  scene.look({0, 0, 3}, {0, 0, 0}, 18, 16, 16);
+  const PassMeans path = render_passes(scene, EstimatorType::path, 256);
+  const PassMeans mine = render_passes(scene, GetParam(), 32);
+  test::expect_power(mine.total[0], 0.01 * path.total[0].mean());
+  EXPECT_EQ(test::regions_apart(mine, path, 0.002), 0)
       << mine.total[0].mean() << " against " << path.total[0].mean();
 }
 
