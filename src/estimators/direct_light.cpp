@@ -100,13 +100,7 @@ public:
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampled[l])
         continue;
-      const Light& light = world.lights[l];
-      std::optional<EquiAngular> near;
-      if (light.position() != nullptr && profile.front() < profile.back())
-        near.emplace(ray, *light.position(), profile.front(), profile.back());
-      if (near && !near->useful())
-        near.reset();
-      lights_.push_back({l, near, {}});
+      lights_.push_back({l, near_light(world.lights[l]), {}});
       if (l < shadows.size() && shadows[l])
         weigh_pieces(*shadows[l], lights_.back());
     }
@@ -183,6 +177,21 @@ private:
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
     std::vector<Piece> pieces;       ///< where a lattice tells what is shadowed; else empty
   };
+
+  /// Distances by nearness, where they are of use: to a light that is near, or that shines on a
+  /// part of the ray only.
+  std::optional<EquiAngular> near_light(const Light& light) const {
+    constexpr float small_part = 0.5f;
+    const Segment all{ray_, profile_.front(), profile_.back()};
+    if (light.position() == nullptr || all.empty())
+      return {};
+    const Segment lit = light.lit_part(all);
+    if (lit.empty())
+      return {};
+    const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end);
+    const bool small = lit.t_end - lit.t_begin < small_part * (all.t_end - all.t_begin);
+    return small || near.useful() ? std::optional(near) : std::nullopt;
+  }
 
   /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
   void weigh_pieces(const ShadowLattice& shadow, SampledLight& light) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/ray.h"
 #include "math/sampling.h"
 
 #include <numbers>
@@ -23,6 +24,10 @@ struct Cone {
                      bitangent * (sin_theta * std::sin(phi)) + axis * (1 - x));
   }
 };
+
+/// The part of a segment that lies within a cone of at most 90 degrees about its axis, with its tip
+/// at `tip`; of wider cones, or without an end, all of the segment.
+Segment part_within(const Cone& cone, const Vec3d& tip, const Segment& segment);
 
 /// 1 - cos of an angle in degrees.
 inline double one_minus_cos_degrees(double degrees) {

@@ -56,6 +56,8 @@ public:
   virtual bool is_delta() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.
   virtual const Vec3d* position() const { return nullptr; }
+  /// The part of a segment outside of which no light of it arrives; all where nothing is known.
+  virtual Segment lit_part(const Segment& segment) const { return segment; }
   /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.
   virtual const Vec3f* narrow_direction() const { return nullptr; }
   /// The surface that shines; -1 for lights that are none. Rays meet it as they meet any surface.

@@ -26,6 +26,9 @@ public:
   }
 
   Rgb power() const override { return power_; }
+  Segment lit_part(const Segment& segment) const override {
+    return part_within(outer_, *position(), segment);
+  }
 
 private:
   static Cone outer_cone(const LightSettings& settings) {

@@ -34,9 +34,12 @@ public:
     const double angle = angle_begin_ + static_cast<double>(u) * (angle_end_ - angle_begin_);
     return static_cast<float>(std::clamp(nearest_ + height_ * std::tan(angle), begin_, end_));
   }
-  /// Density of `sample` at t.
+  /// Density of `sample` at t; 0 beyond the piece.
   float pdf(float t) const {
-    const double x = static_cast<double>(t) - nearest_;
+    const auto at = static_cast<double>(t);
+    if (at < begin_ || at > end_)
+      return 0;
+    const double x = at - nearest_;
     return static_cast<float>(height_ /
                               ((angle_end_ - angle_begin_) * (height_ * height_ + x * x)));
   }

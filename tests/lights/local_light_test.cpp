@@ -181,6 +181,32 @@ TEST(SpotLight, SharpEdgeIsAllowed) {
   EXPECT_EQ(made.light->sample_incident({1.001f, 0, 1}, 0, 0).value.x, 0);
 }
 
+/// Outside of the part that a spot light says it shines on there is nothing of it, and the part is
+/// no longer than it must be.
+TEST(SpotLight, ShinesOnAPartOfARay) {
+  for (const double angle : {0.5, 12.0, 60.0, 89.0, 120.0}) {
+    const MadeLight made(spot({0.2, 0.1, -1}, {0.3, -0.2, 1}, angle, 0), region_of({cube({}, 3)}));
+    for (std::uint64_t i = 0; i < 400; ++i) {
+      Rng rng({}, RngStage::test, i);
+      const auto number = [&] { return 2 * rng.uniform() - 1; };
+      const Vec3f origin{number(), number(), number()}, to{number(), number(), number()};
+      const Segment ray{{origin, normalize(to)}, 0, 2};
+      const Segment part = made.light->lit_part(ray);
+      int lit = 0;
+      constexpr int steps = 500;
+      for (int k = 0; k < steps; ++k) {
+        const float t = (static_cast<float>(k) + 0.5f) * 2 / steps;
+        const bool shines = made.light->sample_incident(ray.ray.at(t), 0, 0).value.x > 0;
+        lit += shines;
+        EXPECT_TRUE(!shines || (part.t_begin - 1e-4f <= t && t <= part.t_end + 1e-4f))
+            << angle << " " << i;
+      }
+      const float expected = angle > 90 ? 2 : static_cast<float>(lit) * 2 / steps;
+      EXPECT_NEAR(std::max(0.0f, part.t_end - part.t_begin), expected, 0.01f) << angle << " " << i;
+    }
+  }
+}
+
 TEST(SpotLight, PhotonsGiveTheFluence) {
   const Parallelepiped box = cube({}, 1);
   // A narrow beam through the box, one wider than the box, one that starts inside, one that grazes.
