@@ -1,5 +1,6 @@
 #include "transport/build_surfaces.h"
 
+#include "geometry/placed.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -19,6 +20,25 @@ Parallelepiped thick_box(const Boxd& box) {
   const Vec3d lower = box.lower - margin, size = box.size() + margin * 2.0;
   return {Vec3f(lower),
           {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
+}
+
+/// Throws InputError where single precision, in which Embree works, cannot hold both the surface
+/// and the rest of the scene, which is about 1 wide.
+void check_size(const Shape& shape, const Affine& to_render, std::size_t i) {
+  constexpr double thinnest = 1e-12, widest = 4e9, farthest = 1e17;
+  const Boxd box = mapped(to_render, shape.bounds());
+  const double size = max_component(box.size()), reach = length(box.center()) + size;
+  const char* wrong = nullptr;
+  if (!(least_stretch(to_render.inverse()) > thinnest))
+    wrong = "a million million times smaller, in some direction, than";
+  else if (!(size < widest))
+    wrong = "thousands of millions of times larger than";
+  else if (!(reach < farthest))
+    wrong = "too far away from";
+  if (wrong)
+    throw InputError(fmt::format("mesh.{}: is {} the rest of the scene: leave it out, or check its "
+                                 "scale and place",
+                                 i, wrong));
 }
 
 } // namespace
@@ -67,6 +87,7 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
                                                           : store->texture(material, notes));
     placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
                       surfaces->textures[i] != nullptr});
+    check_size(*placed[i].shape, placed[i].to_render, i);
     surfaces->materials.push_back(make_material(material, space.scale));
     surfaces->lights.push_back(-1);
   }

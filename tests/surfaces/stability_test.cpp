@@ -1,4 +1,5 @@
 #include "support/surface_test.h"
+#include "vdbeam/error.h"
 
 #include <gtest/gtest.h>
 
@@ -95,6 +96,40 @@ TEST(SurfaceStability, coplanar_walls) {
   };
   expect_mean(lit(true), 0.5);
   test::expect_same_mean(lit(true), lit(false));
+}
+
+/// Sizes and places that single precision cannot hold beside the rest of the scene are refused, and
+/// those that it can are rendered.
+TEST(SurfaceStability, surfaces_beyond_all_measure) {
+  const auto complaint = [](const Transform& at) -> std::string {
+    MemoryScene scene;
+    scene.add_box(Vec3d(-1), Vec3d(1)).extinction = 0.5;
+    scene.add_light(LightType::distant);
+    scene.scene.render.photons = 500;
+    add_surface(scene, SurfaceShape::sphere, at, glass());
+    scene.look({0, 0, 5}, {0, 0, 0}, 40, 4, 4);
+    try {
+      for (const Rgb& pixel : render_passes(scene, EstimatorType::beam, 1).pixels)
+        EXPECT_TRUE(std::isfinite(mean_component(pixel)));
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  Transform thin = scaled(1);
+  thin[10] = 1e-25;
+  for (const double scale : {1e-11, 1e9})
+    EXPECT_EQ(complaint(scaled(scale)), "") << scale;
+  EXPECT_EQ(complaint(moved(scaled(1), {0, 1e15, 0})), "");
+  for (const double scale : {1e-13, 1e-20, 1e-38, 1e-60})
+    EXPECT_NE(complaint(scaled(scale)).find("mesh.0: is a million million times smaller"),
+              std::string::npos)
+        << scale;
+  EXPECT_NE(complaint(thin).find("smaller, in some direction"), std::string::npos);
+  for (const double scale : {1e10, 1e20, 1e38, 1e60})
+    EXPECT_NE(complaint(scaled(scale)).find("millions of times larger"), std::string::npos)
+        << scale;
+  EXPECT_NE(complaint(moved(scaled(1), {1e30, 0, 0})).find("too far away"), std::string::npos);
 }
 
 /// The same scene at any scale and place gives the same picture.
