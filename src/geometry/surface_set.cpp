@@ -122,6 +122,10 @@ void SurfaceSet::Data::run(Query& query) const {
   const double along = dot(center - query.origin, query.direction);
   query.shift = std::max(query.t_begin, along - 1.01 * radius);
   const Vec3d start = query.origin + query.direction * query.shift;
+  // From farther away it passes by them. Embree ends the program if a ray is none, or its numbers
+  // are too large for single precision.
+  if (!(length(start - center) <= 1.5 * radius) || !(dot(query.direction, query.direction) > 0))
+    return;
   RTCRayHit ray{};
   ray.ray.org_x = static_cast<float>(start.x);
   ray.ray.org_y = static_cast<float>(start.y);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace vdbeam {
 namespace {
 
@@ -22,23 +24,28 @@ Parallelepiped thick_box(const Boxd& box) {
           {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
 }
 
-/// Throws InputError where single precision, in which Embree works, cannot hold both the surface
-/// and the rest of the scene, which is about 1 wide.
-void check_size(const Shape& shape, const Affine& to_render, std::size_t i) {
-  constexpr double thinnest = 1e-12, widest = 4e9, farthest = 1e17;
-  const Boxd box = mapped(to_render, shape.bounds());
-  const double size = max_component(box.size()), reach = length(box.center()) + size;
-  const char* wrong = nullptr;
-  if (!(least_stretch(to_render.inverse()) > thinnest))
-    wrong = "a million million times smaller, in some direction, than";
-  else if (!(size < widest))
-    wrong = "thousands of millions of times larger than";
-  else if (!(reach < farthest))
-    wrong = "too far away from";
-  if (wrong)
-    throw InputError(fmt::format("mesh.{}: is {} the rest of the scene: leave it out, or check its "
-                                 "scale and place",
-                                 i, wrong));
+/// Throws InputError where single precision, in which Embree works, cannot hold both a surface and
+/// the rest of the scene, of which the medium is about 1 wide.
+void check_sizes(const std::vector<PlacedShape>& surfaces) {
+  constexpr double widest = 4e9, farthest = 1e17;
+  double reach = 1e5;
+  const auto check = [](bool sound, std::size_t i, const char* wrong) {
+    if (!sound)
+      throw InputError(fmt::format("mesh.{}: is {} the rest of the scene: leave it out, or check "
+                                   "its scale and place",
+                                   i, wrong));
+  };
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Boxd box = mapped(surfaces[i].to_render, surfaces[i].shape->bounds());
+    const double size = max_component(box.size()), away = length(box.center()) + size;
+    check(size < widest, i, "thousands of millions of times larger than");
+    check(away < farthest, i, "too far away from");
+    reach = std::max(reach, away);
+  }
+  // In a surface's own space coordinates are as many times larger as it is smaller.
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    check(least_stretch(surfaces[i].to_render.inverse()) > reach / farthest, i,
+          "a million million times smaller, in some direction, than");
 }
 
 } // namespace
@@ -87,10 +94,10 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
                                                           : store->texture(material, notes));
     placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
                       surfaces->textures[i] != nullptr});
-    check_size(*placed[i].shape, placed[i].to_render, i);
     surfaces->materials.push_back(make_material(material, space.scale));
     surfaces->lights.push_back(-1);
   }
+  check_sizes(placed);
   const double reach = static_cast<double>(length(medium.center) + medium.radius);
   surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach, previous);
   for (std::size_t i = 0; i < settings.size(); ++i)

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 
 namespace vdbeam {
 namespace {
@@ -190,6 +191,22 @@ TEST(SurfaceSet, a_far_camera_meets_a_small_surface_where_it_is) {
   ASSERT_TRUE(hit);
   EXPECT_NEAR(hit->position.x, 0.5e-3, 1e-9);
   EXPECT_FALSE(set.intersect(origin, normalize(Vec3d{1.1e-3, 0, 0} - origin), 0, 1e9));
+}
+
+/// Embree would end the program.
+TEST(SurfaceSet, what_is_no_ray_meets_nothing) {
+  const SurfaceSet set({{make_mesh_shape(sheet(4)), placed(0.7, {0.3, 0.2, 0.1})}}, 2);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   infinite = std::numeric_limits<double>::infinity();
+  for (const double far : {1e19, 1e30, 1e300, nan, infinite}) {
+    EXPECT_FALSE(set.intersect({0.3, 0.2, far}, {1, 0, 0}, 0, infinite)) << far;
+    EXPECT_FALSE(set.intersect({far, 0.2, 0}, {0, 0, 1}, 0, infinite)) << far;
+    EXPECT_FALSE(set.occluded({0.3, far, 1}, {0, 0, -1}, 0, 1)) << far;
+  }
+  EXPECT_FALSE(set.intersect({0.3, 0.2, 1}, {0, 0, 0}, 0, infinite));
+  EXPECT_FALSE(set.intersect({0.3, 0.2, 1}, {0, nan, -1}, 0, infinite));
+  EXPECT_TRUE(set.intersect({0.3, 0.2, 1}, {0, 0, -1}, 0, infinite));
+  EXPECT_TRUE(set.intersect({0.3, 0.2, 1e12}, {0, 0, -1}, 0, infinite));
 }
 
 TEST(SurfaceSet, the_camera_passes_what_it_does_not_see) {
