@@ -16,17 +16,18 @@ struct Nearest {
   double distance;
 };
 
+float radius_of(double distance) {
+  return std::nextafter(static_cast<float>(distance * (1 + 1e-5)), infinity);
+}
+
 /// Takes a primitive into account; true where Embree need not look as far any more.
 bool approach_primitive(RTCPointQueryFunctionArguments* args) {
   auto& nearest = *static_cast<Nearest*>(args->userPtr);
   const Placed& entry = (*nearest.surfaces)[args->context->instID[0]];
   const double distance = entry.surface.shape->distance(args->primID, nearest.point, entry.place);
-  if (!(distance < nearest.distance))
-    return false;
-  nearest.distance = distance;
-  // Embree's radius is one of the shape's own space, unless that is stretched unevenly.
-  const double scale = args->similarityScale > 0 ? entry.place.most_shrink : 1;
-  const float radius = std::nextafter(static_cast<float>(distance * scale * (1 + 1e-5)), infinity);
+  nearest.distance = std::min(nearest.distance, distance);
+  // The radius is that of the query as it was asked, not one of the shape's own space.
+  const float radius = radius_of(nearest.distance);
   if (!(radius < args->query->radius))
     return false;
   args->query->radius = radius;
@@ -41,6 +42,7 @@ struct SurfaceSet::Data {
   std::map<const Shape*, std::shared_ptr<const ShapeTree>> trees;
   ScenePtr scene;
   Boxd bounds;
+  double most_shrink = 1; ///< of the surfaces' places, and at least 1
   std::size_t bytes = 0;
   int trees_built = 0;
 
@@ -57,6 +59,7 @@ void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
     entry.place = ShapePlace::at(entry.surface.to_render);
     entry.bounds = mapped(entry.surface.to_render, shape.bounds());
     bounds.extend(entry.bounds);
+    most_shrink = std::max(most_shrink, entry.place.most_shrink);
     surfaces.push_back(std::move(entry));
   }
 }
@@ -198,9 +201,10 @@ bool SurfaceSet::occluded(const Vec3d& origin, const Vec3d& direction, double t_
 
 double SurfaceSet::distance(const Vec3d& point, double most) const {
   Nearest nearest{&data_->surfaces, point, most};
+  // Embree 3.13 begins in a shape's own space with the radius as it is, in units of that space: too
+  // small where the shape is. From the first primitive on it converts the radius.
   RTCPointQuery query{static_cast<float>(point.x), static_cast<float>(point.y),
-                      static_cast<float>(point.z), 0,
-                      std::nextafter(static_cast<float>(most * (1 + 1e-5)), infinity)};
+                      static_cast<float>(point.z), 0, radius_of(most * data_->most_shrink)};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(data_->scene.get(), &query, &context, approach_primitive, &nearest);

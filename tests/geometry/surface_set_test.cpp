@@ -219,6 +219,24 @@ TEST(SurfaceSet, the_camera_passes_what_it_does_not_see) {
   EXPECT_FALSE(set.occluded(origin, down, 0, 1.5));
 }
 
+/// The distance is the same whether a mesh is large in its file or made so, turned or not, and
+/// costs looks at a few triangles only.
+TEST(SurfaceSet, distances_do_not_depend_on_the_units_of_a_file) {
+  const auto shape = make_mesh_shape(ball(60));
+  const SurfaceSet plain({{shape, placed(1, {0, 0, 0})}}, 2);
+  for (const double scale : {1e-3, 0.03, 0.3, 3.0, 700.0}) {
+    const Vec3d at{0.1, -0.2, 0.3};
+    const SurfaceSet set({{shape, placed(scale, at)}}, 2);
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      Rng rng({}, RngStage::test, i);
+      const Vec3d p = direction(rng) * (1.6 * static_cast<double>(rng.uniform()));
+      const double expected = plain.distance(p, 10);
+      EXPECT_NEAR(set.distance(at + p * scale, 10 * scale) / scale, expected, 1e-5) << scale;
+      EXPECT_NEAR(set.distance(at + p * scale, 0.3 * scale) / scale, std::min(expected, 0.3), 1e-5);
+    }
+  }
+}
+
 /// Against the nearest of many points on the surfaces; never more than the true distance.
 TEST(SurfaceSet, distances_are_those_of_the_nearest_point) {
   Affine stretched = placed(0.3, {0.5, 0.2, -0.4});
