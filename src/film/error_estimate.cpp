@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace vdbeam {
 namespace {
@@ -22,11 +21,10 @@ constexpr double least_spread = 0.03;
 /// How far, as a fraction, the square of the bias may be from what narrower kernels tell, and how
 /// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
-/// Kernels are chosen so that the square of their bias is about this fraction of the noise.
-constexpr double usual_bias = 0.2;
-/// The positive part of a noisy square is too large on average. What only path-traced rays tell is
-/// shrunk by this many times its squared error over itself: it counts where it stands out.
-constexpr double probe_shrinkage = 2;
+/// The positive part of a noisy square is too large on average. It is shrunk by this many times its
+/// squared error over itself, between none and the 1 of James and Stein. What only path-traced rays
+/// tell counts where it stands out.
+constexpr double blur_shrinkage = 0.75, probe_shrinkage = 2;
 constexpr std::size_t batches_of_interval = 4;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
@@ -167,22 +165,8 @@ struct SquaredBias {
   double value = 0, error = 0;
 };
 
-double positive_part(double square, double error) {
-  return square > 0 ? std::max(0.0, square - probe_shrinkage * error * error / square) : 0;
-}
-
-/// The mean of what a square, known to be positive, may be where it was measured with a normal
-/// error: by Bayes' theorem, with an exponential distribution of mean `usual` beforehand. That is a
-/// normal distribution about a shifted mean, cut off at 0.
-double expected_square(double measured, double error, double usual) {
-  if (!(error > 0) || !(usual > 0))
-    return std::max(0.0, measured);
-  const double mean = measured - error * error / usual, z = mean / error;
-  if (z < -20) // only the end of the tail, an exponential distribution, is left
-    return error / -z;
-  const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
-  const double below = std::erfc(-z / std::sqrt(2.0)) / 2;
-  return error * (z + density / below);
+double positive_part(double square, double error, double shrinkage) {
+  return square > 0 ? std::max(0.0, square - shrinkage * error * error / square) : 0;
 }
 
 /// What the widths of kernels and the probes tell together, each weighted by how well it knows.
@@ -192,10 +176,10 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
   if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
     if (!probed)
       return {};
-    return {positive_part(bias.mrse, bias.mrse_error), bias.mrse_error};
+    return {positive_part(bias.mrse, bias.mrse_error, probe_shrinkage), bias.mrse_error};
   }
   SquaredBias result;
-  result.value = expected_square(bias.blur, bias.blur_error, usual_bias * noise);
+  result.value = positive_part(bias.blur, bias.blur_error, blur_shrinkage);
   result.error = std::hypot(bias.blur_error, blur_uncertainty * result.value, unseen_bias * noise);
   if (probed && result.error > 0 && bias.mrse_error > 0) {
     const double a = 1 / (result.error * result.error), b = 1 / (bias.mrse_error * bias.mrse_error);
@@ -205,7 +189,7 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
   // What nobody has seen yet widens the interval; it must not let rays that are too few to see it
   // outvote the kernels.
   if (std::isfinite(bias.hidden) && std::isfinite(bias.hidden_error)) {
-    result.value += positive_part(bias.hidden, bias.hidden_error);
+    result.value += positive_part(bias.hidden, bias.hidden_error, probe_shrinkage);
     result.error = std::hypot(result.error, bias.hidden_error);
   }
   return result;
