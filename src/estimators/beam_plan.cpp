@@ -5,6 +5,7 @@
 #include "estimators/kernel_support.h"
 #include "estimators/view_importance.h"
 #include "estimators/view_thinning.h"
+#include "transport/similar_medium.h"
 
 #include <cmath>
 #include <utility>
@@ -154,6 +155,11 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
 }
 
 } // namespace
+
+ScenePhotons plan_scene_photons(const EstimatorInput& input) {
+  PassWorlds worlds(input.world, default_photon_plan(input).similar);
+  return {plan_beam_photons(input.in(worlds.of(0))), input.world.space};
+}
 
 PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   if (input.of_scene && may_follow(input, *input.of_scene))

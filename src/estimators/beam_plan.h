@@ -10,4 +10,7 @@ namespace vdbeam {
 /// the scene's settings decide otherwise.
 PhotonPlan plan_beam_photons(const EstimatorInput& input);
 
+/// The plan of a scene's photons, which its moments follow.
+ScenePhotons plan_scene_photons(const EstimatorInput& input);
+
 } // namespace vdbeam

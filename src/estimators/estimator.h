@@ -40,8 +40,8 @@ struct EstimatorTask {
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
-  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows; null: it
-  /// makes one of its own.
+  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
+  /// each group of its lights, one after the other; null: it makes plans of its own.
   const ScenePhotons* of_scene = nullptr;
 };
 

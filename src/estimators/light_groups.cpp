@@ -1,5 +1,7 @@
 #include "estimators/light_groups.h"
 
+#include "estimators/beam_plan.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,20 +12,21 @@ namespace {
 
 constexpr const char* rest = "rest";
 
-/// What is asked of a group: its photons are its own.
-EstimatorTask task_of(const EstimatorTask& of_all) {
+/// What is asked of a group: its photons are its own, also those that it follows.
+EstimatorTask task_of(const EstimatorTask& of_all, std::size_t group) {
   EstimatorTask task = of_all;
   task.photons = nullptr;
-  task.of_scene = nullptr;
+  if (task.of_scene)
+    task.of_scene += group;
   return task;
 }
 
-/// One group and what renders it.
+/// The lights of one group, as if there were no others.
 struct Group {
-  Group(const EstimatorInput& from, const EstimatorType& type, const std::vector<bool>& lights,
+  Group(const EstimatorInput& from, std::size_t index, const std::vector<bool>& lights,
         bool with_emission)
       : world(from.world), plan(from.plan),
-        input(world, from.camera, from.settings, plan, task_of(from)) {
+        input(world, from.camera, from.settings, plan, task_of(from, index)) {
     world.lights = from.world.lights.only(lights);
     if (!with_emission)
       world.medium.emitters.clear();
@@ -31,7 +34,6 @@ struct Group {
     for (std::size_t i = 0; i < from.plan.shadow_ray_lights.size(); ++i)
       if (lights[i])
         plan.shadow_ray_lights.push_back(from.plan.shadow_ray_lights[i]);
-    estimator = make_estimator(type, input);
   }
   Group(const Group&) = delete;
 
@@ -40,6 +42,19 @@ struct Group {
   EstimatorInput input;
   std::unique_ptr<Estimator> estimator;
 };
+
+std::vector<std::unique_ptr<Group>> groups_of(const Scene& scene, const EstimatorInput& input) {
+  std::vector<std::unique_ptr<Group>> groups;
+  for (const std::string& name : light_group_names(scene)) {
+    const bool is_rest = name == rest;
+    // Volumes that glow are lights that come after those of the scene.
+    std::vector<bool> lights(input.world.lights.size(), is_rest);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      lights[i] = scene.lights[i].group == (is_rest ? "" : name);
+    groups.push_back(std::make_unique<Group>(input, groups.size(), lights, is_rest));
+  }
+  return groups;
+}
 
 void add(std::vector<Rgb>& to, const std::vector<Rgb>& what) {
   for (std::size_t i = 0; i < what.size(); ++i)
@@ -59,15 +74,10 @@ void add_blur(std::vector<PixelValue>& to, const std::vector<PixelValue>& what) 
 
 class GroupedEstimator : public Estimator {
 public:
-  GroupedEstimator(const Scene& scene, const EstimatorInput& input) : input_(input) {
-    for (const std::string& name : light_group_names(scene)) {
-      const bool is_rest = name == rest;
-      // Volumes that glow are lights that come after those of the scene.
-      std::vector<bool> lights(input.world.lights.size(), is_rest);
-      for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        lights[i] = scene.lights[i].group == (is_rest ? "" : name);
-      groups_.push_back(std::make_unique<Group>(input, scene.render.estimator, lights, is_rest));
-    }
+  GroupedEstimator(const Scene& scene, const EstimatorInput& input)
+      : input_(input), groups_(groups_of(scene, input)) {
+    for (const std::unique_ptr<Group>& group : groups_)
+      group->estimator = make_estimator(scene.render.estimator, group->input);
   }
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override {
@@ -132,6 +142,13 @@ std::vector<std::string> light_group_names(const Scene& scene) {
 
 std::unique_ptr<Estimator> make_grouped_estimator(const Scene& scene, const EstimatorInput& input) {
   return std::make_unique<GroupedEstimator>(scene, input);
+}
+
+std::vector<ScenePhotons> plan_group_photons(const Scene& scene, const EstimatorInput& input) {
+  std::vector<ScenePhotons> plans;
+  for (const std::unique_ptr<Group>& group : groups_of(scene, input))
+    plans.push_back(plan_scene_photons(group->input));
+  return plans;
 }
 
 } // namespace vdbeam

@@ -144,7 +144,7 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
       if (scene.moments.empty())
         shutter.take(std::move(choice.beam));
       else
-        shutter.follow(choice.beam->photons().plan());
+        shutter.follow({{choice.beam->photons().plan(), world.space}}, result.statistics);
     }
   }
   for (const std::string& line : limit_notes(scene, input))

@@ -5,7 +5,6 @@
 #include "machine/stopwatch.h"
 #include "render/memory_check.h"
 #include "render/prepared_scene.h"
-#include "transport/similar_medium.h"
 
 #include <algorithm>
 #include <bit>
@@ -62,7 +61,7 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   const bool still = scene_.moments.empty();
   const Scene& moment =
       still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
-  MomentRenderer& renderer = renderer_of(moment);
+  MomentRenderer& renderer = renderer_of(moment, statistics);
   renderer.last_pass = pass;
   if (!renderer.estimator) {
     const Stopwatch watch;
@@ -84,20 +83,29 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   return {*renderer.estimator, renderer.probe.get()};
 }
 
-/// What moments' photons follow, if they do. It depends on the scene alone, never on which moment
-/// came first.
-const ScenePhotons* Shutter::scene_photons() {
-  // Only `beam` looks where photons are seen.
-  if (!input_.plan.needs(Stage::photon_importance) || !light_group_names(scene_).empty())
-    return nullptr;
-  if (!scene_photons_) {
-    PassWorlds worlds(input_.world, default_photon_plan(input_).similar);
-    follow(plan_beam_photons(input_.in(worlds.of(0))));
+void Shutter::follow(std::vector<ScenePhotons> photons, RenderStatistics& statistics) {
+  scene_photons_ = std::move(photons);
+  for (const ScenePhotons& each : scene_photons_) {
+    statistics.pilot_paths += each.plan.pilot_paths;
+    statistics.importance_rays += each.plan.importance_rays;
   }
-  return &*scene_photons_;
 }
 
-Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
+/// What moments' photons follow; empty where they do not. It depends on the scene alone, never on
+/// which moment came first.
+const std::vector<ScenePhotons>& Shutter::scene_photons(RenderStatistics& statistics) {
+  // Only `beam` looks where photons are seen.
+  if (!input_.plan.needs(Stage::photon_importance) || !scene_photons_.empty())
+    return scene_photons_;
+  const Stopwatch watch;
+  follow(light_group_names(scene_).empty() ? std::vector{plan_scene_photons(input_)}
+                                           : plan_group_photons(scene_, input_),
+         statistics);
+  statistics.pilot += watch.seconds();
+  return scene_photons_;
+}
+
+Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatistics& statistics) {
   const std::string key = &moment == &scene_ ? "" : moved_world_settings(moment, *prepared_);
   std::unique_ptr<MomentRenderer>& renderer = renderers_[key];
   if (!renderer) {
@@ -105,10 +113,11 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment) {
         &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
     renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(scene_.camera, scene_.image, prepared->world->space), input_, path_plan_);
-    if (const ScenePhotons* photons = &moment == &scene_ ? nullptr : scene_photons()) {
-      renderer->scene_photons.emplace(photons->in_units(prepared->world->space.scale));
-      renderer->input.of_scene = &*renderer->scene_photons;
-    }
+    if (&moment != &scene_)
+      for (const ScenePhotons& photons : scene_photons(statistics))
+        renderer->scene_photons.push_back(photons.in_units(prepared->world->space.scale));
+    if (!renderer->scene_photons.empty())
+      renderer->input.of_scene = renderer->scene_photons.data();
     if (input_.layers) {
       renderer->layers.emplace(input_.layers->at(moment));
       renderer->input.layers = &*renderer->layers;

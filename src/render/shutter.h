@@ -32,10 +32,9 @@ public:
 
   /// Has the estimator of a still scene without light groups that was made already.
   void take(std::unique_ptr<Estimator> ready) { ready_ = std::move(ready); }
-  /// Has the plan of the scene's own photons that was made already.
-  void follow(const PhotonPlan& plan) {
-    scene_photons_.emplace(ScenePhotons{plan, input_.world.space});
-  }
+  /// Has the plans of the scene's own photons, by group of its lights, that moments are to follow;
+  /// adds the work that they took.
+  void follow(std::vector<ScenePhotons> photons, RenderStatistics& statistics);
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -50,7 +49,7 @@ private:
 
     PreparedScenePtr prepared;
     Camera camera;
-    std::optional<ScenePhotons> scene_photons; ///< in this moment's units
+    std::vector<ScenePhotons> scene_photons; ///< in this moment's units
     EstimatorInput input, path_input;
     std::optional<RayLayers> layers; ///< of this moment
     std::unique_ptr<Estimator> estimator;
@@ -58,15 +57,15 @@ private:
     int last_pass = 0;
   };
 
-  MomentRenderer& renderer_of(const Scene& moment);
-  const ScenePhotons* scene_photons();
+  MomentRenderer& renderer_of(const Scene& moment, RenderStatistics& statistics);
+  const std::vector<ScenePhotons>& scene_photons(RenderStatistics& statistics);
   void make_room();
 
   const Scene& scene_;
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
-  std::optional<ScenePhotons> scene_photons_; ///< that the moments' photons follow
+  std::vector<ScenePhotons> scene_photons_; ///< that the moments' photons follow, by group
   const std::vector<std::size_t>& probe_pixels_;
   std::unique_ptr<Estimator> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>

@@ -176,6 +176,45 @@ TEST_F(ShutterTest, PartsOfAMovingCameraMergeToTheWhole) {
   }
 }
 
+/// What is found out about photons before the first pass is found out once, whatever the moments:
+/// in all, and for each group of lights.
+TEST_F(ShutterTest, PhotonsArePlannedOnceForAllMoments) {
+  for (const bool grouped : {false, true}) {
+    const auto render_it = [&](bool open) {
+      std::vector<std::string> more{"render.estimator=beam", "render.thinning=view",
+                                    "volume.0.extinction=4", "light.1.type=distant",
+                                    "light.1.direction=[1,-1,0]"};
+      if (grouped)
+        more.insert(more.end(), {"light.0.group=sky", "light.1.group=sun"});
+      if (open)
+        more.push_back("camera.shutter_close=0.5");
+      return render(load(more));
+    };
+    const RenderResult still = render_it(false), blurred = render_it(true);
+    EXPECT_GT(still.statistics.pilot_paths, 0u);
+    EXPECT_EQ(blurred.statistics.pilot_paths, still.statistics.pilot_paths);
+  }
+}
+
+/// Light paths that follow the plan of their group bring the light of that group.
+TEST_F(ShutterTest, GroupsOfABlurredFrameAddUpToThePicture) {
+  const Scene scene =
+      load({"render.estimator=beam", "render.thinning=view", "volume.0.extinction=4",
+            "light.1.type=distant", "light.1.direction=[1,-1,0]", "light.0.group=sky",
+            "camera.shutter_close=0.5"});
+  const Image whole = render(scene).image;
+  const auto sum_of = [&](const char* name) {
+    double sum = 0;
+    for (const float value : plane(whole, name))
+      sum += static_cast<double>(value);
+    return sum;
+  };
+  EXPECT_GT(sum_of("light_sky.R"), 0);
+  EXPECT_GT(sum_of("light_rest.R"), 0);
+  EXPECT_NEAR(sum_of("light_sky.R") + sum_of("light_rest.R"), sum_of("R"), 1e-4 * sum_of("R"));
+  expect_same(merge_partials(test::render_parts(scene, folder_, {{9, 15}, {0, 8}})), whole);
+}
+
 TEST_F(ShutterTest, TheHashKnowsWhatMoves) {
   const std::string a = scene_hash(load({"camera.shutter_close=0.5"}));
   const std::string keys = "shutter_close = 0.5\n";
