@@ -3,6 +3,7 @@
 #include "photonmap/cell_radii.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 namespace vdbeam {
 namespace {
@@ -14,9 +15,18 @@ constexpr float cell_share = 1.0f / 16;
 float radius_floor(const PhotonBlocks& blocks, float asked) {
   if (asked > 0)
     return asked;
-  Boxf box;
-  for (std::size_t i = 0; i < blocks.count(); ++i)
-    box.extend(blocks.position(i));
+  constexpr std::size_t photons_at_once = 4096;
+  const Boxf box = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once), Boxf(),
+      [&](const tbb::blocked_range<std::size_t>& range, Boxf so_far) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          so_far.extend(blocks.position(i));
+        return so_far;
+      },
+      [](Boxf a, const Boxf& b) {
+        a.extend(b);
+        return a;
+      });
   const Vec3f reach = max(max(box.upper, -box.lower), Vec3f(0));
   return std::max({max_component(box.size()) * 1e-5f, max_component(reach) * 1e-6f, 1e-9f});
 }

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "math/affine.h"
-
-#include <tbb/cache_aligned_allocator.h>
+#include "math/unfilled_array.h"
 
 #include <array>
 #include <cstdint>
@@ -20,10 +19,13 @@ public:
   enum Field : int { x = 0, y = 1, z = 2, radius = 3, power = 4 };
 
   PhotonBlocks() = default;
+  /// Room for `count` photons, which have no value until they are written; the padding has.
   PhotonBlocks(std::size_t count, int channels, bool directions, bool first_flights = false)
       : count_(count), channels_(channels), directions_(directions), first_flights_(first_flights),
-        stride_(width * (4 + channels + (directions ? 3 : 0))),
-        rows_(block_count() * stride_, 0.0f) {}
+        stride_(width * (4 + channels + (directions ? 3 : 0))), rows_(block_count() * stride_) {
+    if (count % width != 0)
+      std::fill(rows_.end() - static_cast<std::ptrdiff_t>(stride_), rows_.end(), 0.0f);
+  }
 
   std::size_t count() const { return count_; }
   std::size_t block_count() const { return (count_ + width - 1) / width; }
@@ -46,6 +48,12 @@ public:
   float& at(std::size_t photon, int field) { return row(photon / width, field)[photon % width]; }
   Vec3f position(std::size_t photon) const { return {at(photon, x), at(photon, y), at(photon, z)}; }
   std::size_t bytes() const { return rows_.size() * sizeof(float); }
+  /// The same photons once more.
+  PhotonBlocks copy() const {
+    PhotonBlocks other(count_, channels_, directions_, first_flights_);
+    copy_in_parallel(rows_, other.rows_.data());
+    return other;
+  }
   static constexpr std::size_t bytes_per_photon(int channels, bool directions) {
     return static_cast<std::size_t>(4 + channels + (directions ? 3 : 0)) * sizeof(float);
   }
@@ -55,7 +63,7 @@ private:
   int channels_ = 1;
   bool directions_ = false, first_flights_ = false;
   std::size_t stride_ = 0;
-  std::vector<float, tbb::cache_aligned_allocator<float>> rows_;
+  UnfilledArray<float> rows_;
 };
 
 /// Bounds of eight sibling nodes: a box around the photons' centres and their greatest radius,
@@ -71,7 +79,7 @@ struct alignas(32) BoxGroup {
 /// is one group.
 struct BlockTree {
   static constexpr int max_levels = 12;
-  std::vector<std::vector<BoxGroup, tbb::cache_aligned_allocator<BoxGroup>>> levels;
+  std::vector<UnfilledArray<BoxGroup>> levels;
   Boxf bounds; ///< of all spheres
 
   std::size_t bytes() const {

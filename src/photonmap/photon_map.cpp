@@ -8,12 +8,17 @@
 #include "photonmap/photon_order.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <bit>
 #include <cmath>
+#include <functional>
 
 namespace vdbeam {
 namespace {
+
+/// Photons that one thread looks at in a row.
+constexpr std::size_t photons_at_once = 4096;
 
 bool finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -25,17 +30,28 @@ bool placeable(const Vec3f& p) {
   return std::abs(p.x) < farthest && std::abs(p.y) < farthest && std::abs(p.z) < farthest;
 }
 
-std::vector<OrderedPhoton> finite_photons(const PhotonList& photons) {
-  std::vector<OrderedPhoton> ordered;
-  ordered.reserve(photons.size());
-  for (std::size_t i = 0; i < photons.size(); ++i)
-    if (placeable(photons.position[i]) && finite(photons.power[i]) &&
-        (photons.direction.empty() || finite(photons.direction[i])))
-      ordered.push_back({photons.position[i], static_cast<std::uint32_t>(i)});
+UnfilledArray<OrderedPhoton> finite_photons(const PhotonList& photons) {
+  const auto usable = [&](std::size_t i) {
+    return placeable(photons.position[i]) && finite(photons.power[i]) &&
+           (photons.direction.empty() || finite(photons.direction[i]));
+  };
+  UnfilledArray<OrderedPhoton> ordered(photons.size());
+  const bool all = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, photons.size(), photons_at_once), true,
+      [&](const tbb::blocked_range<std::size_t>& range, bool so_far) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          ordered[i] = {photons.position[i], static_cast<std::uint32_t>(i)};
+          so_far = so_far && usable(i);
+        }
+        return so_far;
+      },
+      std::logical_and<>());
+  if (!all)
+    std::erase_if(ordered, [&](const OrderedPhoton& photon) { return !usable(photon.index); });
   return ordered;
 }
 
-PhotonBlocks gather_blocks(const PhotonList& photons, const std::vector<OrderedPhoton>& order,
+PhotonBlocks gather_blocks(const PhotonList& photons, const UnfilledArray<OrderedPhoton>& order,
                            int channels) {
   PhotonBlocks blocks(order.size(), channels, !photons.direction.empty(),
                       !photons.first_flight.empty());
@@ -125,9 +141,14 @@ struct PhotonMap::Data {
   /// After radii have changed.
   void refit() {
     tree = build_block_tree(blocks);
-    double sum = 0;
-    for (std::size_t i = 0; i < blocks.count(); ++i)
-      sum += blocks.at(i, PhotonBlocks::radius);
+    const double sum = tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once), 0.0,
+        [&](const tbb::blocked_range<std::size_t>& range, double so_far) {
+          for (std::size_t i = range.begin(); i < range.end(); ++i)
+            so_far += static_cast<double>(blocks.at(i, PhotonBlocks::radius));
+          return so_far;
+        },
+        std::plus<>());
     mean_radius =
         blocks.count() ? static_cast<float>(sum / static_cast<double>(blocks.count())) : 0;
   }
@@ -145,7 +166,7 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   Data& data = *map.data_;
   data.shape = shape;
   Stopwatch watch;
-  std::vector<OrderedPhoton> order = finite_photons(photons);
+  UnfilledArray<OrderedPhoton> order = finite_photons(photons);
   order_photons(order);
   data.blocks = gather_blocks(photons, order, channels);
   data.times.order = watch.restart();
@@ -160,7 +181,7 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
 
 PhotonMap PhotonMap::copy() const {
   PhotonMap map;
-  *map.data_ = *data_;
+  *map.data_ = {data_->blocks.copy(), data_->tree, data_->shape, data_->times, data_->mean_radius};
   return map;
 }
 

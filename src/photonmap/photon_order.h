@@ -1,9 +1,9 @@
 #pragma once
 
+#include "math/unfilled_array.h"
 #include "vdbeam/vec.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace vdbeam {
 
@@ -16,6 +16,6 @@ struct OrderedPhoton {
 /// Puts photons in kd-median order: every aligned run of 16 * 2^l photons is a cell of a kd tree
 /// whose splits halve the longest side of the cell's tight box. The result depends only on the
 /// input.
-void order_photons(std::vector<OrderedPhoton>& photons);
+void order_photons(UnfilledArray<OrderedPhoton>& photons);
 
 } // namespace vdbeam

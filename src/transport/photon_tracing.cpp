@@ -254,6 +254,28 @@ private:
   bool single_scattering_; ///< photons may bring light that the medium has not scattered yet
 };
 
+/// What the tracers have in one array of theirs, `member` of `list`, one after the other.
+template <class T>
+UnfilledArray<T> joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list,
+                        UnfilledArray<T> PhotonList::*member) {
+  std::vector<std::size_t> first{0};
+  for (const PathTracer& tracer : tracers)
+    first.push_back(first.back() + (tracer.*list.*member).size());
+  UnfilledArray<T> all(first.back());
+  tbb::parallel_for(std::size_t(0), tracers.size(), [&](std::size_t i) {
+    const UnfilledArray<T>& part = tracers[i].*list.*member;
+    std::copy(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first[i]));
+  });
+  return all;
+}
+
+PhotonList joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list) {
+  return {joined(tracers, list, &PhotonList::position),
+          joined(tracers, list, &PhotonList::direction), joined(tracers, list, &PhotonList::power),
+          joined(tracers, list, &PhotonList::first_flight),
+          joined(tracers, list, &PhotonList::path)};
+}
+
 } // namespace
 
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
@@ -310,20 +332,10 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
                                              std::min(paths, (chunk + 1) * paths_per_chunk), first);
                     });
   std::uint64_t collisions = 0;
-  std::size_t stored = 0;
-  for (const PathTracer& tracer : tracers) {
+  for (const PathTracer& tracer : tracers)
     collisions += tracer.collisions;
-    stored += tracer.photons.size();
-  }
-  pass.photons.position.reserve(stored);
-  pass.photons.direction.reserve(settings.directions ? stored : 0);
-  pass.photons.power.reserve(stored);
-  pass.photons.first_flight.reserve(stored);
-  pass.photons.path.reserve(settings.path_numbers ? stored : 0);
-  for (PathTracer& tracer : tracers) {
-    pass.photons.append(tracer.photons);
-    pass.surface_photons.append(tracer.surface_photons);
-  }
+  pass.photons = joined(tracers, &PathTracer::photons);
+  pass.surface_photons = joined(tracers, &PathTracer::surface_photons);
   pass.mean_collisions =
       paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
   return pass;

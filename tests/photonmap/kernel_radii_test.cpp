@@ -16,7 +16,7 @@ using MakePoint = std::function<Vec3f(Rng&)>;
 
 PhotonBlocks ordered_blocks(std::size_t count, const MakePoint& make) {
   Rng rng({}, RngStage::test, 11);
-  std::vector<OrderedPhoton> photons;
+  UnfilledArray<OrderedPhoton> photons;
   for (std::size_t i = 0; i < count; ++i)
     photons.push_back({make(rng), static_cast<std::uint32_t>(i)});
   order_photons(photons);
