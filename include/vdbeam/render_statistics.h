@@ -26,6 +26,7 @@ struct RenderStatistics {
   std::uint64_t maps_reused = 0;      ///< passes whose photons were those of an earlier frame
   std::uint64_t pilot_paths = 0;      ///< light paths traced before the first pass, to plan photons
   std::uint64_t importance_rays = 0;  ///< rays that found out where the camera sees photons
+  std::uint64_t grids_read = 0;       ///< of volumes' files; not those that were kept
   std::uint64_t meshes_read = 0, textures_read = 0; ///< files; not those that were kept
   std::uint64_t trees_built = 0;                    ///< of Embree, over shapes
   std::uint64_t peak_memory = 0;                    ///< bytes, whole process

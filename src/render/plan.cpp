@@ -182,13 +182,16 @@ std::uint64_t volume_memory(const Scene& scene, const std::vector<VolumeFacts>& 
   return bytes;
 }
 
-/// Volumes that are seen at several moments, and may have a velocity.
-bool may_move(const Scene& scene) {
+/// How many copies of volumes a shutter needs at least that sees them at several moments: two
+/// moments, and what they are made from where it is not the world itself.
+int copies_of_moments(const Scene& scene) {
+  int copies = 0;
   for (const VolumeSettings& volume : scene.volumes)
     if (!scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
         volume.velocity.scale != 0)
-      return true;
-  return false;
+      copies =
+          std::max(copies, volume.glows() || volume.remap.changes() || volume.box_lower ? 3 : 2);
+  return copies;
 }
 
 /// A ray that ends in opaque matter after the whole medium has the most pieces.
@@ -221,8 +224,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);
-  if (may_move(scene))
-    plan.moment_bytes = 2 * plan.volume_bytes;
+  plan.moment_bytes = static_cast<std::uint64_t>(copies_of_moments(scene)) * plan.volume_bytes;
   if (scene.image.deep)
     plan.deep_bytes = deep_memory(scene.image);
   plan.film_bytes = film_memory(

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace vdbeam {
 namespace {
 
@@ -57,15 +59,33 @@ void keep_facts(const DensityGrid& grid, ReadVolume& read) {
   read.facts.color = grid.color;
 }
 
+/// A volume at the moments that passes see.
+std::vector<VolumeSettings> moments_of(const Scene& scene, std::size_t volume) {
+  std::vector<VolumeSettings> moments;
+  for (const Scene& moment : scene.moments) // of which several may differ by the camera alone
+    if (moments.empty() || moments.back().velocity.time != moment.volumes[volume].velocity.time)
+      moments.push_back(moment.volumes[volume]);
+  return moments;
+}
+
 } // namespace
 
 void add_work(RenderStatistics& statistics, const PreparedScene& prepared) {
   statistics.read += prepared.seconds_read;
   statistics.prepare += prepared.seconds_build;
+  statistics.grids_read += prepared.grids_read;
   const WorldFacts::SurfaceWork& work = prepared.facts.surfaces;
   statistics.meshes_read += static_cast<std::uint64_t>(work.meshes_read);
   statistics.textures_read += static_cast<std::uint64_t>(work.textures_read);
   statistics.trees_built += static_cast<std::uint64_t>(work.trees_built);
+}
+
+std::uint64_t PreparedScene::source_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const ReadVolume& volume : volumes)
+    for (const SourceGrid& source : volume.sources)
+      bytes += source.grid.field.bytes();
+  return bytes;
 }
 
 std::string moved_world_settings(const Scene& moment, const PreparedScene& prepared) {
@@ -94,7 +114,15 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       prepared->photons = previous->photons;
     if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
       prepared->photons = std::make_shared<PhotonCache>(cache_capacity());
-    take_velocities(scene, previous, *prepared);
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+      ReadVolume& read = prepared->volumes[i];
+      read.sources.clear();
+      take_velocity(scene, i, previous, read);
+      keep_sources(scene.volumes[i], moments_of(scene, i), previous, read);
+      prepared->grids_read += std::exchange(read.grids_read, 0);
+    }
+    note_velocities(scene, *prepared);
+    prepared->seconds_read = prepared->grids_read > 0 ? watch.seconds() : 0;
     return prepared;
   }
   std::vector<DensityGrid> grids;
@@ -103,13 +131,14 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const VolumeSettings& volume = scene.volumes[i];
     ReadVolume read;
-    if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
-      read.velocity = previous->volumes[i].velocity;
+    take_velocity(scene, i, previous, read);
+    keep_sources(volume, moments_of(scene, i), previous, read);
     grids.push_back(take_grid(volume, previous, read));
     take_colors(volume, previous, read, grids.back());
     keep_facts(grids.back(), read);
     emissions.push_back(take_emission(volume, previous, read));
     read.emission = emissions.back();
+    prepared->grids_read += std::exchange(read.grids_read, 0);
     // As build_world leaves volumes out.
     const bool empty = grids.back().field.empty() || !volume.absorbs_or_scatters();
     read.index = empty ? -1 : kept++;
@@ -122,7 +151,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
                   previous ? previous->world.get() : nullptr));
   prepared->seconds_build = watch.seconds();
-  take_velocities(scene, previous, *prepared);
+  note_velocities(scene, *prepared);
   for (ReadVolume& read : prepared->volumes)
     if (read.index >= 0 &&
         prepared->world->medium.volumes[static_cast<std::size_t>(read.index)].limited)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/photon_cache.h"
+#include "render/source_grid.h"
 #include "transport/world.h"
 #include "vdbeam/render.h"
 #include "volume/vector_reader.h"
@@ -24,6 +25,9 @@ struct ReadVolume {
   std::string velocity_identity; ///< what it was read from; empty: nothing was read
   Colors colors;                 ///< of its color_grid
   std::string color_identity;    ///< what they were read from; empty: nothing was read
+  /// What the moments of its scene are made from, beyond what the world holds.
+  std::vector<SourceGrid> sources;
+  std::uint64_t grids_read = 0; ///< from its file; not those that were kept
 };
 
 class PreparedScene {
@@ -36,6 +40,10 @@ public:
   /// Photons of earlier frames with this world; null where no frame can use those of another.
   std::shared_ptr<PhotonCache> photons;
   double seconds_read = 0, seconds_build = 0;
+  std::uint64_t grids_read = 0;
+
+  /// Bytes of the grids that are kept for the moments of the scene.
+  std::uint64_t source_bytes() const;
 };
 
 /// Adds what preparing the scene took.

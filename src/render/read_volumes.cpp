@@ -5,15 +5,12 @@
 #include "render/memory_check.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
-#include "volume/combined_grid.h"
 #include "volume/edited_field.h"
 #include "volume/noise.h"
-#include "volume/refined_grid.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace vdbeam {
 namespace {
@@ -32,13 +29,6 @@ std::optional<Motion> motion_of(const VolumeSettings& volume, const ReadVolume& 
   if (!read.velocity || volume.velocity.time == 0)
     return std::nullopt;
   return Motion{*read.velocity, volume.velocity};
-}
-
-std::string noise_text(const VolumeSettings& volume) {
-  const NoiseSettings& noise = volume.noise;
-  return noise.amplitude > 0 ? fmt::format("|noise {} {} {} {}", noise.amplitude, noise.size,
-                                           noise.octaves, noise.seed)
-                             : "";
 }
 
 /// The settings that edit a volume's density, as text.
@@ -67,6 +57,11 @@ std::string box_text(const VolumeSettings& volume) {
   return text;
 }
 
+/// All but the file that decides a volume's density and its colours.
+std::string density_text(const VolumeSettings& volume) {
+  return "|" + volume.density + edits_text(volume) + box_text(volume) + colors_text(volume);
+}
+
 /// The edits of a grid that lies in its place; those of the density where `density`.
 GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool density) {
   GridEdits edits;
@@ -76,48 +71,6 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   if (volume.box_lower && volume.box_upper)
     edits.box = Boxd{*volume.box_lower, *volume.box_upper};
   return edits;
-}
-
-/// The names of a list like "a, b".
-std::vector<std::string> names_in(const std::string& text) {
-  std::vector<std::string> names;
-  std::istringstream list(text);
-  for (std::string name; std::getline(list, name, ',');) {
-    const auto first = name.find_first_not_of(' '), last = name.find_last_not_of(' ');
-    if (first != std::string::npos)
-      names.push_back(name.substr(first, last - first + 1));
-  }
-  return names;
-}
-
-DensityGrid masked_density(const VolumeSettings& volume, const std::optional<WantedBox>& wanted,
-                           DensityGrid grid) {
-  for (const std::string& name : names_in(volume.mask)) {
-    const DensityGrid mask = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
-    GridEdits edits;
-    edits.to_world = grid.index_to_world;
-    edits.mask = &mask;
-    edits.mask_to_world = mask.index_to_world;
-    grid.field = edited_field(grid.field, edits);
-  }
-  return grid;
-}
-
-/// The density as its file has it, with all that is added, times its masks, displaced by noise.
-DensityGrid read_density(const VolumeSettings& volume, const std::optional<WantedBox>& wanted) {
-  std::vector<DensityGrid> grids;
-  std::vector<std::string> names = names_in(volume.add);
-  names.insert(names.begin(), volume.density);
-  for (const std::string& name : names) {
-    grids.push_back(read_density_grid(volume.file, name, {}, Background::refused, wanted));
-    if (volume.interpolation == Interpolation::cubic)
-      grids.back() = refined_grid(grids.back(), volume.file, granted_memory());
-  }
-  DensityGrid grid = grids.size() == 1
-                         ? std::move(grids.front())
-                         : sum_of_grids(std::move(grids), volume.file, granted_memory());
-  grid = masked_density(volume, wanted, std::move(grid));
-  return displaced_grid(grid, volume.noise, volume.file, granted_memory());
 }
 
 /// Everything that decides an emission field but the contents of the file; its strength does not.
@@ -135,12 +88,45 @@ std::string emission_identity(const VolumeSettings& volume) {
 
 /// The colours of a volume, read, or taken from `previous`.
 Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                   const std::string& identity) {
+                   const std::string& identity, ReadVolume& read) {
   if (previous)
     for (const ReadVolume& known : previous->volumes)
       if (known.color_identity == identity)
         return known.colors;
+  ++read.grids_read;
   return read_colors(volume.file, volume.color_grid);
+}
+
+/// A grid that the volume keeps, or one of `previous` does; null: there is none.
+const DensityGrid* find_source(const std::string& identity, const std::optional<WantedBox>& wanted,
+                               const PreparedScenePtr& previous, const ReadVolume& read) {
+  for (const SourceGrid& source : read.sources)
+    if (source.has(identity, wanted))
+      return &source.grid;
+  if (previous)
+    for (const ReadVolume& volume : previous->volumes)
+      for (const SourceGrid& source : volume.sources)
+        if (source.has(identity, wanted))
+          return &source.grid;
+  return nullptr;
+}
+
+DensityGrid take_density_source(const VolumeSettings& volume,
+                                const std::optional<WantedBox>& wanted,
+                                const PreparedScenePtr& previous, ReadVolume& read) {
+  if (const DensityGrid* known =
+          find_source(density_source_identity(volume), wanted, previous, read))
+    return *known;
+  return read_density_source(volume, wanted, read.grids_read);
+}
+
+DensityGrid take_emission_source(const VolumeSettings& volume, const std::string& name,
+                                 const std::optional<WantedBox>& wanted,
+                                 const PreparedScenePtr& previous, ReadVolume& read) {
+  if (const DensityGrid* known =
+          find_source(emission_source_identity(volume, name), wanted, previous, read))
+    return *known;
+  return read_emission_source(volume, name, wanted, read.grids_read);
 }
 
 } // namespace
@@ -155,12 +141,36 @@ std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* 
   return WantedBox{{box.lower - noise - ways.upper, box.upper + noise - ways.lower}};
 }
 
+void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings>& moments,
+                  const PreparedScenePtr& previous, ReadVolume& read) {
+  bool density = false, glows = false;
+  std::optional<WantedBox> wanted = wanted_box(volume, nullptr);
+  const std::string edits = density_text(volume), emission = emission_identity(volume);
+  for (const VolumeSettings& moment : moments) {
+    const auto motion = motion_of(moment, read);
+    density |= (motion && edits_of(moment, {}, true).changes()) || density_text(moment) != edits;
+    glows |= motion || emission_identity(moment) != emission;
+    const auto part = wanted_box(moment, motion ? &*motion : nullptr);
+    if (wanted && part)
+      wanted->world.extend(part->world);
+    else
+      wanted.reset();
+  }
+  if (density && volume.needs_density())
+    read.sources.push_back({density_source_identity(volume), wanted,
+                            take_density_source(volume, wanted, previous, read)});
+  if (glows && volume.glows())
+    for (const std::string& name : {volume.emission.intensity, volume.emission.temperature})
+      if (!name.empty())
+        read.sources.push_back({emission_source_identity(volume, name), wanted,
+                                take_emission_source(volume, name, wanted, previous, read)});
+}
+
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read) {
   if (!volume.needs_density())
     return {};
-  const std::string edits = edits_text(volume) + box_text(volume);
-  read.identity = file_identity(volume.file) + "|" + volume.density + edits + colors_text(volume);
+  read.identity = file_identity(volume.file) + density_text(volume);
   const auto motion = motion_of(volume, read);
   const bool edited = edits_of(volume, {}, true).changes();
   // What was edited cannot be moved: the box would move too.
@@ -173,7 +183,8 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
     read.identity.clear(); // other frames have no use for it
     return moved_grid(grid, *motion, volume.file, granted_memory());
   }
-  DensityGrid grid = read_density(volume, wanted_box(volume, motion ? &*motion : nullptr));
+  DensityGrid grid =
+      take_density_source(volume, wanted_box(volume, motion ? &*motion : nullptr), previous, read);
   if (motion) {
     read.identity.clear();
     grid = moved_grid(grid, *motion, volume.file, granted_memory());
@@ -193,18 +204,10 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
       for (const ReadVolume& known : previous->volumes)
         if (known.emission_identity == read.emission_identity)
           return known.emission;
-    if (!volume.box_lower && volume.interpolation == Interpolation::linear &&
-        volume.noise.amplitude == 0)
-      return read_emission_grid(volume.file, volume.emission);
   }
   const std::optional<WantedBox> wanted = wanted_box(volume, motion ? &*motion : nullptr);
-  const auto take = [&](const std::string& name) -> DensityGrid {
-    if (name.empty())
-      return {};
-    DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
-    if (volume.interpolation == Interpolation::cubic)
-      grid = refined_grid(grid, volume.file, granted_memory());
-    grid = displaced_grid(grid, volume.noise, volume.file, granted_memory());
+  const auto take = [&](const std::string& name) {
+    DensityGrid grid = take_emission_source(volume, name, wanted, previous, read);
     if (motion)
       grid = moved_grid(grid, *motion, volume.file, granted_memory());
     grid.field = edited_field(grid.field, edits_of(volume, grid, false));
@@ -219,7 +222,7 @@ void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
   if (volume.color_grid.empty() || grid.field.empty() || grid.color)
     return;
   read.color_identity = file_identity(volume.file) + colors_text(volume);
-  read.colors = find_colors(volume, previous, read.color_identity);
+  read.colors = find_colors(volume, previous, read.color_identity, read);
   if (!read.colors.field) {
     grid.notes.push_back(volume.file + ": has no grid of colours (color_grid = \"auto\")");
     return;
@@ -251,28 +254,35 @@ void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
   });
 }
 
-void take_velocities(const Scene& scene, const PreparedScenePtr& previous,
-                     PreparedScene& prepared) {
+void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& previous,
+                   ReadVolume& read) {
+  const VolumeSettings& volume = scene.volumes[i];
   const bool wanted = !scene.moments.empty() || asks_for_layer(scene, "motion");
-  for (std::size_t i = 0; i < scene.volumes.size() && wanted; ++i) {
-    const VolumeSettings& volume = scene.volumes[i];
-    ReadVolume& read = prepared.volumes[i];
-    if (!volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
-      continue;
-    const std::string identity = fmt::format(
-        "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,
-        volume.velocity.scale, static_cast<int>(volume.velocity.units));
-    if (previous && i < previous->volumes.size() &&
-        previous->volumes[i].velocity_identity == identity)
-      read.velocity = previous->volumes[i].velocity;
-    else
-      read.velocity = read_velocity(volume.file, volume.velocity);
-    read.velocity_identity = identity;
-    if (read.velocity && read.velocity->outliers() > 0)
+  if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
+    read.velocity = previous->volumes[i].velocity;
+  if (!wanted || !volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
+    return;
+  const std::string identity = fmt::format(
+      "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,
+      volume.velocity.scale, static_cast<int>(volume.velocity.units));
+  if (previous && i < previous->volumes.size() &&
+      previous->volumes[i].velocity_identity == identity) {
+    read.velocity = previous->volumes[i].velocity;
+  } else {
+    read.velocity = read_velocity(volume.file, volume.velocity);
+    ++read.grids_read;
+  }
+  read.velocity_identity = identity;
+}
+
+void note_velocities(const Scene& scene, PreparedScene& prepared) {
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const ReadVolume& read = prepared.volumes[i];
+    if (!read.velocity_identity.empty() && read.velocity && read.velocity->outliers() > 0)
       prepared.facts.notes.push_back(fmt::format(
           "{}: {} voxels have a velocity that is not a number or crosses the whole grid "
           "within a frame; they move like their neighbours",
-          volume.file, read.velocity->outliers()));
+          scene.volumes[i].file, read.velocity->outliers()));
   }
 }
 

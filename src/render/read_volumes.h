@@ -11,6 +11,11 @@ namespace vdbeam {
 /// moves it, or null.
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion);
 
+/// Keeps the grids of a volume's file that its `moments` will move or edit, each in its own way, so
+/// that they need not read them. Its velocity must be known.
+void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings>& moments,
+                  const PreparedScenePtr& previous, ReadVolume& read);
+
 /// A volume's density as the scene wants it: read, or taken from `previous`, moved and edited.
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read);
@@ -23,7 +28,10 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
 void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous, ReadVolume& read,
                  DensityGrid& grid);
 
-/// Reads the velocities of volumes that passes see at several moments.
-void take_velocities(const Scene& scene, const PreparedScenePtr& previous, PreparedScene& prepared);
+/// Reads the velocity of a volume that passes see at several moments, or takes it from `previous`.
+void take_velocity(const Scene& scene, std::size_t volume, const PreparedScenePtr& previous,
+                   ReadVolume& read);
+/// Notes what is wrong with velocities.
+void note_velocities(const Scene& scene, PreparedScene& prepared);
 
 } // namespace vdbeam

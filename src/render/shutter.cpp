@@ -130,7 +130,7 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatist
 
 /// Drops the worlds that were used longest ago where all take more than a quarter of the memory.
 void Shutter::make_room() {
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = prepared_->source_bytes();
   for (const auto& [key, renderer] : renderers_)
     bytes += bytes_of(*renderer->prepared->world);
   while (renderers_.size() > 2 && bytes > granted_memory() / 4) {

@@ -158,6 +158,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"pilot_paths", statistics.pilot_paths},
                       {"directions", statistics.directions},
                       {"maps_reused", statistics.maps_reused},
+                      {"grids_read", statistics.grids_read},
                       {"meshes_read", statistics.meshes_read},
                       {"textures_read", statistics.textures_read},
                       {"trees_built", statistics.trees_built}};

@@ -18,6 +18,8 @@ public:
     Affine shift;
     shift.translation = Vec3d(field.origin());
     to_world_ = edits.to_world.after(shift);
+    if (edits.box)
+      box_ = with_its_faces(*edits.box);
     if (!edits.remap.curve.empty())
       curve_.emplace(edits.remap.curve, 1);
     if (!edits.mask)
@@ -77,12 +79,23 @@ private:
     return inside;
   }
   bool in_box(const Vec3d& local) const {
-    if (!edits_.box)
+    if (!box_)
       return true;
     const Vec3d p = to_world_.point(local);
-    const Boxd& box = *edits_.box;
-    return p.x >= box.lower.x && p.y >= box.lower.y && p.z >= box.lower.z && p.x <= box.upper.x &&
-           p.y <= box.upper.y && p.z <= box.upper.z;
+    return p.x >= box_->lower.x && p.y >= box_->lower.y && p.z >= box_->lower.z &&
+           p.x <= box_->upper.x && p.y <= box_->upper.y && p.z <= box_->upper.z;
+  }
+  /// The box, larger by so little that lattice points on its faces lie in it however the transform
+  /// is rounded.
+  Boxd with_its_faces(Boxd box) const {
+    constexpr double share_of_voxel = 1e-6;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3d& row = to_world_.rows[static_cast<std::size_t>(axis)];
+      const double by = share_of_voxel * (std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+      box.lower[axis] -= by;
+      box.upper[axis] += by;
+    }
+    return box;
   }
   float value_at(float value, const Vec3d& local) const {
     if (value == 0 || !in_box(local))
@@ -113,6 +126,7 @@ private:
   const DensityField& field_;
   const GridEdits& edits_;
   std::optional<Curve> curve_;
+  std::optional<Boxd> box_;
   Affine to_world_, to_mask_;
   std::vector<std::int32_t> table_;
   std::vector<float> uniform_;

@@ -12,8 +12,10 @@ namespace vdbeam {
 /// and tracking are as exact as for a file that holds the result.
 struct GridEdits {
   DensityRemap remap;
-  Affine to_world;                   ///< of the grid's index coordinates
-  std::optional<Boxd> box;           ///< values outside of it are 0 [world]
+  Affine to_world; ///< of the grid's index coordinates
+  /// Values at lattice points outside of it are 0; those on its faces, within a millionth of a
+  /// voxel, belong to it [world].
+  std::optional<Boxd> box;
   const DensityGrid* mask = nullptr; ///< multiplies values, before they are mapped
   Affine mask_to_world;
 

@@ -99,15 +99,4 @@ EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& 
   return result;
 }
 
-EmissionGrid read_emission_grid(const std::string& path, const EmissionSettings& settings,
-                                const ReadLimits& limits) {
-  const auto read = [&](const std::string& name) {
-    return name.empty() ? DensityGrid{}
-                        : read_density_grid(path, name, limits, Background::ignored);
-  };
-  const DensityGrid intensity = read(settings.intensity);
-  const DensityGrid temperature = read(settings.temperature);
-  return make_emission(settings, intensity, temperature, path, limits.bytes);
-}
-
 } // namespace vdbeam

@@ -30,9 +30,4 @@ EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& 
                            const DensityGrid& temperature, const std::string& label,
                            std::uint64_t maximum_bytes);
 
-/// Reads the grids that the settings name, and no others. Throws as read_density_grid; but unlike a
-/// density, they may have a background, which counts as 0.
-EmissionGrid read_emission_grid(const std::string& path, const EmissionSettings& settings,
-                                const ReadLimits& limits = {});
-
 } // namespace vdbeam

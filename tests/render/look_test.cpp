@@ -51,6 +51,56 @@ TEST_F(Look, TheBoxCutsAndStaysWhereItIs) {
   EXPECT_EQ(at(later, 0.6, 1.1), 0);
 }
 
+/// Each grid of a moving volume is read once, whatever is done to it at each moment; the picture is
+/// that of moments that read for themselves.
+TEST_F(Look, MomentsDoNotReadFilesAgain) {
+  const std::vector<std::string> open{"camera.shutter_open=-0.2", "camera.shutter_close=0.4",
+                                      "camera.shutter_times=2"};
+  const std::vector<std::string> box{"volume.0.box_lower=[-2, -2, -6]",
+                                     "volume.0.box_upper=[0.3, 2, 6]"};
+  const std::vector<std::string> scaled{"volume.0.density_scale=2", "volume.0.interpolation=cubic"};
+  const std::vector<std::string> glowing{"volume.0.emission.intensity=density",
+                                         "volume.0.noise_amplitude=0.05"};
+  const std::vector<std::string> turning{"volume.0.translate={keys=[[1,[0,0,0]],[2,[0.5,0,0]]]}"};
+  struct Case {
+    std::vector<std::vector<std::string>> settings;
+    std::uint64_t grids; ///< velocity, density and emission
+  };
+  for (const Case& which : {Case{{}, 2}, Case{{box}, 2}, Case{{scaled}, 2}, Case{{glowing}, 3},
+                            Case{{box, scaled, glowing}, 3}, Case{{box, turning}, 2}}) {
+    std::vector<std::string> more = open;
+    for (const std::vector<std::string>& settings : which.settings)
+      more.insert(more.end(), settings.begin(), settings.end());
+    const Scene scene = load(more);
+    const RenderResult result = render(scene);
+    EXPECT_EQ(result.statistics.grids_read, which.grids) << testing::PrintToString(more);
+    // The moments one by one: each is the scene's own picture at its time.
+    PreparedScenePtr prepared = prepare_scene(scene);
+    auto without = std::make_shared<PreparedScene>(*prepared);
+    for (ReadVolume& volume : without->volumes)
+      volume.sources.clear();
+    for (const std::size_t m : {std::size_t{0}, scene.moments.size() - 1}) {
+      const PreparedScenePtr kept = prepare_scene(scene.moments[m], prepared),
+                             read = prepare_scene(scene.moments[m], without);
+      EXPECT_EQ(kept->grids_read, 0u);
+      EXPECT_EQ(kept->world->medium.volumes[0].field.maximum(),
+                read->world->medium.volumes[0].field.maximum());
+      const DensityField &a = kept->world->medium.volumes[0].field,
+                         &b = read->world->medium.volumes[0].field;
+      double sum = 0;
+      for (int i = -20; i <= 20; ++i)
+        for (int j = -20; j <= 20; ++j)
+          for (int k = -20; k <= 20; k += 2) {
+            const Vec3d at(0.5 + i, 0.5 + j, k);
+            const float value = a.sample(Vec3f(at - Vec3d(a.origin())));
+            ASSERT_NEAR(value, b.sample(Vec3f(at - Vec3d(b.origin()))), 2e-5) << at.x;
+            sum += static_cast<double>(value);
+          }
+      EXPECT_GT(sum, 100);
+    }
+  }
+}
+
 /// Of the file only what can come into the box is read, whatever brings it there, and the plan
 /// knows.
 TEST_F(Look, TheBoxIsAllThatIsRead) {

@@ -82,6 +82,36 @@ TEST(EditedField, ClipsToABox) {
   });
 }
 
+/// However decimal places and the transform are rounded, points on a face lie inside, the next ones
+/// outside; where faces are on the lattice, all samples inside are those of the whole field.
+TEST(EditedField, PointsOnTheFacesOfABoxBelongToIt) {
+  for (const double voxel : {0.1, 1.0 / 3, 0.7, 1e-3})
+    for (const double place : {0.0, -0.3, 1000.1}) {
+      DensityGrid source = grid();
+      for (int a = 0; a < 3; ++a)
+        source.index_to_world.rows[static_cast<std::size_t>(a)] = Vec3d(0);
+      for (std::size_t a = 0; a < 3; ++a) // the axes turned
+        source.index_to_world.rows[a][static_cast<int>((a + 1) % 3)] = a == 1 ? -voxel : voxel;
+      source.index_to_world.translation = Vec3d(place);
+      GridEdits edits;
+      edits.to_world = source.index_to_world;
+      // Index coordinates 3 to 11, 5 to 19 and 2 to 16, as a user would write them in the world.
+      edits.box = Boxd{{place + 5 * voxel, place - 16 * voxel, place + 3 * voxel},
+                       {place + 19 * voxel, place - 2 * voxel, place + 11 * voxel}};
+      const DensityField cut = edited_field(source.field, edits);
+      expect_points(source, cut, [&](double v, const Vec3d& p) {
+        const Vec3d at = source.index_to_world.inverse().point(p);
+        const auto i = std::lround(at.x), j = std::lround(at.y), k = std::lround(at.z);
+        return i >= 3 && i <= 11 && j >= 5 && j <= 19 && k >= 2 && k <= 16 ? v : 0;
+      });
+      for (int s = 0; s < 200; ++s) {
+        const auto part = [s](double prime) { return std::fmod(s * std::sqrt(prime), 1.0); };
+        const Vec3f p(Vec3d(3 + 8 * part(2), 5 + 14 * part(3), 2 + 14 * part(5)));
+        ASSERT_EQ(cut.sample(p), source.field.sample(p));
+      }
+    }
+}
+
 TEST(EditedField, MultipliesByAMask) {
   const DensityGrid source = grid();
   DensityGrid mask; // twice as coarse, on the same place

@@ -29,6 +29,15 @@ EmissionSettings named(const char* intensity, const char* temperature) {
 
 constexpr std::uint64_t plenty = std::uint64_t(1) << 30;
 
+/// The emission of a file.
+EmissionGrid read_emission_grid(const std::string& path, const EmissionSettings& settings) {
+  const auto read = [&](const std::string& name) {
+    return name.empty() ? DensityGrid{} : read_density_grid(path, name, {}, Background::ignored);
+  };
+  return make_emission(settings, read(settings.intensity), read(settings.temperature), path,
+                       plenty);
+}
+
 /// A ramp takes the place of a black body, and of an intensity without a temperature.
 TEST(EmissionRamp, GivesTheColours) {
   const Vec3<int> cells{1, 1, 1};
