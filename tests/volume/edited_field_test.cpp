@@ -95,9 +95,11 @@ TEST(EditedField, PointsOnTheFacesOfABoxBelongToIt) {
       source.index_to_world.translation = Vec3d(place);
       GridEdits edits;
       edits.to_world = source.index_to_world;
-      // Index coordinates 3 to 11, 5 to 19 and 2 to 16, as a user would write them in the world.
-      edits.box = Boxd{{place + 5 * voxel, place - 16 * voxel, place + 3 * voxel},
-                       {place + 19 * voxel, place - 2 * voxel, place + 11 * voxel}};
+      // Index coordinates 3 to 11, 5 to 19 and 2 to 16, rounded to the inside.
+      const Vec3d lower(place + 5 * voxel, place - 16 * voxel, place + 3 * voxel),
+          upper(place + 19 * voxel, place - 2 * voxel, place + 11 * voxel);
+      const Vec3d rounding(1e-14 * (1 + std::abs(place)));
+      edits.box = Boxd{lower + rounding, upper - rounding};
       const DensityField cut = edited_field(source.field, edits);
       expect_points(source, cut, [&](double v, const Vec3d& p) {
         const Vec3d at = source.index_to_world.inverse().point(p);
