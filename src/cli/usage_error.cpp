@@ -143,6 +143,8 @@ std::string value_error(const CLI::App& command, const CLI::ParseError& error) {
   if (!option)
     return text;
   const std::string usage = option_usage(*option);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->count() > 1)
+    return fmt::format("{} may be given once only: {}", option->get_name(), usage);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error))
     return fmt::format("{} needs a value: {}", option->get_name(), usage);
   const std::string value = option->results().empty() ? "" : option->results().front();

@@ -65,7 +65,9 @@ std::string why_no_layer(const std::string& name, const std::vector<std::string>
   names.insert(names.end(), others.begin(), others.end());
   if (std::find(names.begin(), names.end(), name) != names.end())
     return "";
-  return fmt::format("must be {}, got \"{}\"", join_words(names, "or"), name);
+  const auto near = nearest_word(name, names);
+  return fmt::format("must be {}, got \"{}\"{}", join_words(names, "or"), name,
+                     near ? "; did you mean " + *near + "?" : "");
 }
 
 Image develop_layers(const Film& film, const std::vector<LayerSettings>& layers) {

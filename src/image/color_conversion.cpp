@@ -35,15 +35,28 @@ void for_each_color(Image& image, const Visit& visit) {
   }
 }
 
+constexpr std::pair<const char*, ColorSpace> known_spaces[] = {
+    {"rec709", ColorSpace::rec709},
+    {"rec2020", ColorSpace::rec2020},
+    {"acescg", ColorSpace::acescg},
+    {"aces2065_1", ColorSpace::aces2065_1}};
+
 std::optional<ColorSpace> known_space(const std::string& name) {
-  const std::pair<const char*, ColorSpace> names[] = {{"rec709", ColorSpace::rec709},
-                                                      {"rec2020", ColorSpace::rec2020},
-                                                      {"acescg", ColorSpace::acescg},
-                                                      {"aces2065_1", ColorSpace::aces2065_1}};
-  for (const auto& [known, space] : names)
+  for (const auto& [known, space] : known_spaces)
     if (name == known)
       return space;
   return std::nullopt;
+}
+
+/// What may have been meant by a name that there is not: one of ours or of a configuration, if any.
+std::string suggestion(const std::string& name, const ocio::ConstConfigRcPtr& config) {
+  std::vector<std::string> names;
+  for (const auto& [known, space] : known_spaces)
+    names.emplace_back(known);
+  for (int i = 0; config && i < config->getNumColorSpaces(); ++i)
+    names.emplace_back(config->getColorSpaceNameByIndex(i));
+  const auto near = nearest_word(name, names);
+  return near ? fmt::format("; did you mean {}?", one_line(*near)) : "";
 }
 
 /// From scene-linear ACES2065-1 to a colour space of the configuration.
@@ -52,12 +65,13 @@ ocio::ConstCPUProcessorRcPtr make_processor(const std::string& name) {
   if (!file || !*file)
     throw InputError(fmt::format("must be rec709, rec2020, acescg or aces2065_1, or a colour space "
                                  "of the OpenColorIO configuration that the environment variable "
-                                 "OCIO names, which is not set; got \"{}\"",
-                                 name));
+                                 "OCIO names, which is not set; got \"{}\"{}",
+                                 name, suggestion(name, nullptr)));
   try {
     const ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file);
     if (!config->getColorSpace(name.c_str()))
-      throw InputError(fmt::format("must be a colour space of {}, got \"{}\"", file, name));
+      throw InputError(fmt::format("must be a colour space of {}, got \"{}\"{}", file, name,
+                                   suggestion(name, config)));
     return config->getProcessor("aces_interchange", name.c_str())->getDefaultCPUProcessor();
   } catch (const ocio::Exception& problem) {
     throw InputError(

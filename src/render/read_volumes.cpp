@@ -278,6 +278,12 @@ void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& pr
 void note_velocities(const Scene& scene, PreparedScene& prepared) {
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const ReadVolume& read = prepared.volumes[i];
+    if (!read.velocity_identity.empty() && !read.velocity && !scene.moments.empty())
+      prepared.facts.notes.push_back(
+          fmt::format("{}: has no grid of velocities (\"velocity\", \"vel\", \"v\" or three "
+                      "components), so nothing in it is blurred by its own motion; name "
+                      "volume.{}.velocity, or write \"none\" there",
+                      scene.volumes[i].file, i));
     if (!read.velocity_identity.empty() && read.velocity && read.velocity->outliers() > 0)
       prepared.facts.notes.push_back(fmt::format(
           "{}: {} voxels have a velocity that is not a number or crosses the whole grid "

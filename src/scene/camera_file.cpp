@@ -183,7 +183,8 @@ CameraPose pose_between(const CameraSettings& settings, const CameraFile::Track&
     const CameraPose a = matrix_pose(before, track.rows, path),
                      b = matrix_pose(after, track.rows, path);
     const auto mix = [&](const Vec3d& x, const Vec3d& y) { return x + (y - x) * share; };
-    return {mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), track.fov};
+    return {
+        mix(a.position, b.position), mix(a.forward, b.forward), mix(a.up, b.up), track.fov, 0, 0};
   }
   std::vector<double> values;
   for (std::size_t i = 0; i < after.values.size(); ++i)
@@ -221,6 +222,8 @@ CameraPose CameraFile::pose_at(const CameraSettings& settings, double time) {
     *v = turned_world(*v, settings.file_axes);
   pose.forward = normalize(pose.forward);
   pose.up = normalize(pose.up);
+  pose.first = keys.front().frame;
+  pose.last = keys.back().frame;
   return pose;
 }
 

@@ -13,7 +13,8 @@ namespace vdbeam {
 /// Where a camera stands and looks, in the world of the scene; unit vectors.
 struct CameraPose {
   Vec3d position, forward, up;
-  std::optional<double> fov; ///< vertical, degrees
+  std::optional<double> fov;  ///< vertical, degrees
+  double first = 0, last = 0; ///< frames of the file; the same where the camera stands still
 };
 
 /// The camera file of a scene, as it was read last: the moments of a shutter and the frames of a

@@ -99,6 +99,9 @@ Scene SceneReader::read(const toml::table& root) {
 
 /// Tells of what is right but cannot be what was meant.
 void SceneReader::note_idle_keys() {
+  if (scene_.camera.focal_length && locations_.contains("camera.fov"))
+    scene_.notes.push_back(locate("camera.fov") +
+                           ": camera.fov does nothing beside camera.focal_length");
   for (std::size_t i = 0; i < scene_.volumes.size(); ++i)
     for (const char* name : {"kelvin", "kelvin_offset", "reference", "law"}) {
       const SceneKey& key = *find_key(SceneSection::emission, name);
@@ -382,6 +385,11 @@ void SceneReader::place_camera(const toml::table& table) {
   camera.picture_up = pose.up;
   if (pose.fov && !table.contains("fov"))
     camera.fov = *pose.fov;
+  if (pose.first < pose.last && (frame_.time < pose.first || frame_.time > pose.last))
+    scene_.notes.push_back(
+        fmt::format("{}: has the camera from frame {:g} to {:g}; in frame {:g} it "
+                    "stands still, as in the nearest of them",
+                    camera.file, pose.first, pose.last, frame_.time));
 }
 
 std::string SceneReader::locate(const std::string& key) const {

@@ -37,10 +37,12 @@ std::optional<std::string> nearest_word(const std::string& word,
   for (const std::string& candidate : candidates) {
     const bool extends =
         word.size() >= 3 && (candidate.starts_with(word) || word.starts_with(candidate));
-    const std::size_t distance = extends ? 1 : edit_distance(word, candidate);
+    // An ending that is missing is nearer than two wrong letters, and farther than one.
+    const std::size_t edits = 2 * edit_distance(word, candidate);
+    const std::size_t distance = extends ? std::min<std::size_t>(edits, 3) : edits;
     const std::size_t allowed =
-        std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
-    if (distance <= allowed && (!best || distance < best_distance)) {
+        2 * std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
+    if ((extends || distance <= allowed) && (!best || distance < best_distance)) {
       best = candidate;
       best_distance = distance;
     }

@@ -85,6 +85,8 @@ TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
        "vdbeam render: SCENE|VDB is missing: Scene file, or a VDB (#### for the frame "
        "number)\n"},
       {{"render", cloud, "--passes"}, "vdbeam render: --passes needs a value: --passes N\n"},
+      {{"render", cloud, "--passes", "2", "--passes", "3"},
+       "vdbeam render: --passes may be given once only: --passes N\n"},
       {{"render", cloud, "--exposure", "bright"},
        "vdbeam render: --exposure bright: must be a number\n"},
       {{"render", cloud, "--on-error", "stpo"},

@@ -63,6 +63,23 @@ TEST_F(ShutterTest, TellsOfTooFewPasses) {
   EXPECT_EQ(notes_of("16").find("open shutter"), std::string::npos);
 }
 
+/// Volumes that stay sharp under an open shutter are told of.
+TEST_F(ShutterTest, TellsOfMissingVelocities) {
+  const auto notes_of = [&](const std::vector<std::string>& more) {
+    std::string all;
+    for (const std::string& note : render(load(more)).notes)
+      all += note + "\n";
+    return all;
+  };
+  EXPECT_EQ(notes_of({"camera.shutter_close=0.5"}).find("velocities"), std::string::npos);
+  write("noise", "ball.vdb");
+  EXPECT_NE(notes_of({"camera.shutter_close=0.5"}).find("has no grid of velocities"),
+            std::string::npos);
+  EXPECT_EQ(notes_of({}).find("velocities"), std::string::npos);
+  EXPECT_EQ(notes_of({"camera.shutter_close=0.5", "volume.0.velocity=none"}).find("velocities"),
+            std::string::npos);
+}
+
 /// The blurred picture is the mean of the pictures at the moments: each pass is that of the scene
 /// with the volume moved. Optical depths are small, so opacity adds up to the mass of the ball, and
 /// its centre tells how far it came.

@@ -49,6 +49,35 @@ TEST_F(CameraFileTest, InterpolatesAndHolds) {
   expect_near(camera(text, {99}).position, {10, 0, 0});
 }
 
+/// Frames that the file does not have are told; a camera that stands still has them all.
+TEST_F(CameraFileTest, TellsOfFramesBeyondTheFile) {
+  const auto notes_of = [&](const std::string& text, int frame) {
+    write("shot.cam", text);
+    std::string notes;
+    for (const std::string& note : load(scene_text, {}, {frame}).notes)
+      notes += note.find("[[") == std::string::npos ? note + "\n" : ""; // of no volume, no light
+    return notes;
+  };
+  const std::string text = "10 0 0 0 0 0 0 20\n20 10 0 0 0 90 0 40\n";
+  EXPECT_NE(
+      notes_of(text, 9).find("has the camera from frame 10 to 20; in frame 9 it stands still"),
+      std::string::npos);
+  EXPECT_NE(notes_of(text, 21).find("in frame 21 it stands still"), std::string::npos);
+  EXPECT_EQ(notes_of(text, 10), "");
+  EXPECT_EQ(notes_of(text, 20), "");
+  EXPECT_EQ(notes_of("1 0 0 0  90 90 0\n", 7), "");
+}
+
+TEST_F(CameraFileTest, TheFocalLengthCounts) {
+  write("shot.cam", "1 0 0 0  90 90 0\n");
+  const auto notes = [&](const std::vector<std::string>& overrides) {
+    return testing::PrintToString(load(scene_text, overrides).notes);
+  };
+  const char* idle = "--set camera.fov=20: camera.fov does nothing beside camera.focal_length";
+  EXPECT_NE(notes({"camera.fov=20", "camera.focal_length=50"}).find(idle), std::string::npos);
+  EXPECT_EQ(notes({"camera.fov=20"}).find(idle), std::string::npos);
+}
+
 /// At (5, 6, 7), turned by 90 degrees about Y: X to -Z, and -Z, where it looks, to -X.
 TEST_F(CameraFileTest, MatricesOfBothConventions) {
   const CameraSettings blender =

@@ -55,6 +55,9 @@ TEST(Text, NearestWord) {
   EXPECT_EQ(nearest_word("dnesity", words), "density");
   EXPECT_EQ(nearest_word("alb", words), "albedo");
   EXPECT_EQ(nearest_word("temperature", words), std::nullopt);
+  // One letter is nearer than an ending.
+  EXPECT_EQ(nearest_word("velocityscale", {"velocity", "velocity_scale"}), "velocity_scale");
+  EXPECT_EQ(nearest_word("velocityscale", {"velocity", "scale"}), "velocity");
 }
 
 TEST(Text, Durations) {
