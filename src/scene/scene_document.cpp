@@ -102,6 +102,13 @@ bool is_animated(const toml::node& node) {
   return animated;
 }
 
+/// Whether a list like "a, b" has this name.
+bool lists(const std::string& list, const std::string& name) {
+  std::string bare = list;
+  std::erase(bare, ' ');
+  return ("," + bare + ",").find("," + name + ",") != std::string::npos;
+}
+
 /// The camera moves and all that it sees stands still: photons can serve many frames
 /// (docs/sequences.md) if they do not depend on the view.
 bool only_camera_moves(const toml::table& root) {
@@ -179,11 +186,32 @@ std::vector<SceneFile> SceneDocument::files() const {
   return files;
 }
 
+std::string SceneDocument::who_names(std::size_t volume, const std::string& line) const {
+  const std::size_t begin = line.find('"'), end = line.find('"', begin + 1);
+  const auto* list = root_.get_as<toml::array>("volume");
+  const auto* table = list && volume < list->size() ? (*list)[volume].as_table() : nullptr;
+  if (end == std::string::npos || !table)
+    return "";
+  const std::string grid = line.substr(begin + 1, end - begin - 1);
+  for (const char* key : {"density", "velocity", "color_grid", "add", "mask", "emission.intensity",
+                          "emission.temperature"}) {
+    const toml::node* node = table->at_path(key).node();
+    const auto* text = node ? node->as_string() : nullptr;
+    if (text && (text->get() == grid || lists(text->get(), grid)))
+      return fmt::format("{}: volume.{}.{}: ", location_of(*node), volume, key);
+  }
+  return "";
+}
+
 std::string SceneDocument::whose_file(const Scene& scene, const std::string& line) const {
   std::string key;
   for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-    if (key.empty() && line.starts_with(scene.volumes[i].file + ":"))
+    if (const std::string file = scene.volumes[i].file + ":";
+        key.empty() && line.starts_with(file)) {
+      if (const std::string grid = who_names(i, line.substr(file.size())); !grid.empty())
+        return grid;
       key = fmt::format("volume.{}.file", i);
+    }
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (key.empty() && !scene.lights[i].image.empty() &&
         line.starts_with(scene.lights[i].image + ":"))

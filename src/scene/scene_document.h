@@ -38,11 +38,14 @@ public:
   std::vector<SceneFile> files() const;
 
   /// What is in front of a line about a file of this frame's scene: "scene.toml:12: volume.0.file:
-  /// ". Empty for a bare VDB, which names itself, and for a line about anything else.
+  /// ", or the key that names the grid that the line is about. Empty for a bare VDB, which names
+  /// itself, and for a line about anything else.
   std::string whose_file(const Scene& scene, const std::string& line) const;
 
 private:
   std::string first_pattern() const;
+  /// Of the first name in quotes; empty where no key of the volume holds it.
+  std::string who_names(std::size_t volume, const std::string& line) const;
 
   std::string path_;
   std::filesystem::path folder_;

@@ -112,11 +112,20 @@ TEST_F(BatchCommand, NamesTheLineOfTheSceneThatNamesABadFile) {
   write_sequence();
   const std::string head = "[[volume]]\nfile = 'c.####.vdb'\n",
                     light = "[[light]]\ntype = 'environment'\n";
-  write("s.toml", head + "density = 'densty'\n" + light);
-  EXPECT_NE(render_frames("1").error.find("s.toml:2: volume.0.file: "), std::string::npos);
+  const auto error_of = [&](const std::string& key) {
+    write("s.toml", head + key + "\n" + light);
+    return render_frames("1").error;
+  };
+  EXPECT_NE(error_of("density = 'densty'").find("s.toml:3: volume.0.density: "), std::string::npos);
+  EXPECT_NE(error_of("mask = 'density,matt'").find("s.toml:3: volume.0.mask: "), std::string::npos);
+  EXPECT_NE(error_of("emission = { temperature = 'heat' }")
+                .find("s.toml:3: volume.0.emission.temperature: "),
+            std::string::npos);
   write("sky.exr", "no picture");
   write("s.toml", head + light + "image = 'sky.exr'\n");
   EXPECT_NE(render_frames("1").error.find("s.toml:5: light.0.image: "), std::string::npos);
+  write("c.0001.vdb", "not a volume");
+  EXPECT_NE(error_of("").find("s.toml:2: volume.0.file: "), std::string::npos);
 }
 
 TEST_F(BatchCommand, NotesACameraThatLooksPastTheVolume) {
