@@ -1,6 +1,7 @@
 #include "estimators/scene_tracer.h"
 
 #include "materials/throws_light.h"
+#include "transport/bounded_tracking.h"
 #include "transport/emission.h"
 #include "transport/optical_depth.h"
 
@@ -104,13 +105,19 @@ bool SceneTracer::fly(Path& path, float t_end, float medium_end, Collision& hit)
   };
   bool collided = false;
   if (!medium.empty()) {
-    MediumTracker tracker(medium, {ray, 0, medium_end});
-    while (!collided && tracker.advance(path.rng)) {
-      hit = tracker.collision();
+    BoundedTracker tracker(medium, {ray, 0, medium_end});
+    for (hit = tracker.next(path.rng); hit.volume; hit = tracker.next(path.rng)) {
       // A coloured throughput changes at null collisions too.
       if (medium.chromatic)
         gather(hit.t);
       collided = sample_real_collision(hit, medium.chromatic, path.throughput, path.rng);
+      if (collided)
+        break;
+      // Without colours those have a bound of their own.
+      if (medium.chromatic && !path.length.survive(path.throughput, path.rng)) {
+        path.throughput = Rgb(0);
+        break;
+      }
     }
   }
   gather(collided ? hit.t : medium_end);

@@ -1,7 +1,5 @@
 #include "transport/optical_depth.h"
 
-#include "transport/delta_tracking.h"
-
 namespace vdbeam {
 
 namespace {
@@ -57,11 +55,16 @@ bool RatioTracking::attenuate(Rng& rng) {
   const Collision hit = tracker_.collision();
   weight_ *= Rgb(1) - hit.volume->channel_scale * (hit.sigma_t / hit.majorant);
   const float largest = max_component(weight_);
-  if (largest >= roulette_below)
+  if (largest < roulette_below) {
+    const bool survives = rng.uniform() * roulette_below < largest;
+    weight_ = survives ? weight_ * (roulette_below / largest) : Rgb(0);
+    if (!survives)
+      return false;
+  }
+  if (++collisions_ < most_tentative_collisions)
     return true;
-  const bool survives = rng.uniform() * roulette_below < largest;
-  weight_ = survives ? weight_ * (roulette_below / largest) : Rgb(0);
-  return survives;
+  weight_ *= exact_transmittance(*medium_, {segment_.ray, hit.t, segment_.t_end});
+  return false;
 }
 
 } // namespace vdbeam

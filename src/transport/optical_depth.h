@@ -1,6 +1,6 @@
 #pragma once
 
-#include "transport/delta_tracking.h"
+#include "transport/bounded_tracking.h"
 
 namespace vdbeam {
 
@@ -138,20 +138,26 @@ Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u
                            Rgb* taken_out = nullptr);
 
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
-/// little is left, a collision at a time. Requires a medium that is not empty.
+/// little is left, a collision at a time, and by the exact integral over what is left of the
+/// segment after most_tentative_collisions. Requires a medium that is not empty.
 class RatioTracking {
 public:
-  RatioTracking(const Medium& medium, const Segment& segment) : tracker_(medium, segment) {}
+  RatioTracking(const Medium& medium, const Segment& segment)
+      : medium_(&medium), segment_(segment), tracker_(medium, segment) {}
 
   /// Advances to the next tentative collision; false where there is none: the estimate is complete.
   bool advance(Rng& rng) { return tracker_.advance(rng); }
-  /// Multiplies by the transmittance factor of that collision; false where nothing is left.
+  /// Multiplies by the transmittance factor of that collision; false where the estimate is
+  /// complete.
   bool attenuate(Rng& rng);
   const Rgb& transmittance() const { return weight_; }
 
 private:
+  const Medium* medium_;
+  Segment segment_;
   MediumTracker tracker_;
   Rgb weight_{1, 1, 1};
+  int collisions_ = 0;
 };
 
 } // namespace vdbeam
