@@ -74,6 +74,31 @@ TEST(SurfaceBalance, integrating_sphere) {
   test::expect_mean(means.total[0], albedo * share / (1 - albedo * (1 - share)));
 }
 
+class SurfaceLaws : public ::testing::TestWithParam<EstimatorType> {};
+
+/// In a closed room whose walls and fog take nothing in, only the lamp, which is black, ends light.
+/// So all the room is as bright as the lamp, by paths and by photons: what it sends out comes back.
+TEST_P(SurfaceLaws, white_room_is_as_bright_as_its_lamp) {
+  MemoryScene scene;
+  scene.add_box(Vec3d(-1), Vec3d(1)).extinction = 0.5;
+  scene.scene.render.photons = 8000;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      SurfaceSettings& wall = add_surface(scene, SurfaceShape::quad, scaled(1), white());
+      wall.transform = {};
+      for (int i = 0; i < 3;
+           ++i) // columns: two axes of the wall, and its normal, which points inward
+        wall.transform[static_cast<std::size_t>(4 * ((axis + 1 + i) % 3) + i)] = i < 2 ? 1 : -side;
+      wall.transform[static_cast<std::size_t>(4 * axis + 3)] = side;
+    }
+  add_surface(scene, SurfaceShape::sphere, moved(scaled(0.5), {0.2, -0.3, -0.1}), shining(1));
+  scene.look({-0.7, 0.5, 0.8}, {0.2, 0, 0}, 60, 8, 8);
+  const PassMeans means =
+      render_passes(scene, GetParam(), GetParam() == EstimatorType::path ? 64 : 24);
+  expect_power(means.total[0], 0.01);
+  expect_mean(means.total[0], 1, GetParam() == EstimatorType::path ? 0 : 0.01);
+}
+
 /// Two equal squares face each other: the form factor (Howell, A catalog of radiation heat transfer
 /// configuration factors, C-11) times radiance pi is the mean irradiance.
 TEST(SurfaceFormFactor, parallel_squares) {
@@ -110,7 +135,7 @@ TEST(SurfaceFormFactor, perpendicular_squares) {
 
 /// A wall's shadow in a thin homogeneous medium, parallel light from above: single scattering along
 /// the camera ray against quadrature.
-TEST(SurfaceShadow, of_a_wall_in_a_medium) {
+TEST_P(SurfaceLaws, shadow_of_a_wall_in_a_medium) {
   MemoryScene scene;
   VolumeSettings& box = scene.add_box(Vec3d(-1), Vec3d(1));
   box.extinction = 0.7;
@@ -134,9 +159,14 @@ TEST(SurfaceShadow, of_a_wall_in_a_medium) {
     const double x = (i + 0.5) / steps; // only x in (0, 1) is lit, 1 below the top
     sum += std::exp(-0.7 * (1 + x)) * std::exp(-0.7) * 0.35 / (4 * M_PI) * 3 / steps;
   }
-  const PassMeans means = render_passes(scene, EstimatorType::path, 256);
+  const PassMeans means = render_passes(scene, GetParam(), 256);
   test::expect_mean(means.total[0], sum, 1e-4 * sum);
 }
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceLaws,
+                         ::testing::Values(EstimatorType::path, EstimatorType::beam,
+                                           EstimatorType::march),
+                         [](const auto& estimator) { return std::string(estimator.param.name); });
 
 /// A sky is seen through a sphere of glass where Snell's law has it, and no less bright.
 TEST(SurfaceSky, through_clear_glass) {

@@ -132,28 +132,39 @@ TEST(SurfaceStability, surfaces_beyond_all_measure) {
   EXPECT_NE(complaint(moved(scaled(1), {1e30, 0, 0})).find("too far away"), std::string::npos);
 }
 
-/// The same scene at any scale and place gives the same picture.
-TEST(SurfaceStability, scale_and_place_do_not_matter) {
+class SurfaceScale : public ::testing::TestWithParam<EstimatorType> {};
+
+/// The same scene at any scale and place gives the same picture, region by region.
+TEST_P(SurfaceScale, does_not_matter) {
   const auto render_at = [](double scale, const Vec3d& at) {
     MemoryScene scene;
     scene.add_box(at - Vec3d(scale), at + Vec3d(scale)).extinction = 1 / scale;
+    scene.scene.render.photons = 3000;
     LightSettings& sun = scene.add_light(LightType::distant);
     sun.direction = {0.3, -1, 0.2};
     sun.angular_radius = 2;
-    MaterialSettings ground;
-    ground.albedo = Rgb(0.5f);
-    SurfaceSettings& plane = add_surface(scene, SurfaceShape::quad, scaled(1), ground);
+    SurfaceSettings& plane = add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(0.5));
     plane.transform = {3 * scale,          0, 0,          at.x, 0,   0, scale,
                        at.y - 0.9 * scale, 0, -3 * scale, 0,    at.z};
     add_surface(scene, SurfaceShape::sphere, moved(scaled(0.4 * scale), at), glass());
     scene.look(at + Vec3d{0, 1, 5} * scale, at, 40, 16, 12);
-    return render_passes(scene, EstimatorType::path, 48).total[0];
+    return render_passes(scene, GetParam(), GetParam() == EstimatorType::path ? 48 : 16);
   };
-  const test::Samples reference = render_at(1, {0, 0, 0});
-  test::expect_same_mean(render_at(1e-3, {0, 0, 0}), reference);
-  test::expect_same_mean(render_at(1e4, {0, 0, 0}), reference);
-  test::expect_same_mean(render_at(1, {1e6, 2e6, -1e6}), reference);
+  const PassMeans reference = render_at(1, {0, 0, 0});
+  const auto expect_same = [&](const char* where, const PassMeans& mine) {
+    SCOPED_TRACE(where);
+    test::expect_same_mean(mine.total[0], reference.total[0]);
+    EXPECT_EQ(regions_apart(mine, reference, 0), 0);
+  };
+  expect_same("a thousandth", render_at(1e-3, {0, 0, 0}));
+  expect_same("ten thousand", render_at(1e4, {0, 0, 0}));
+  expect_same("far away", render_at(1, {1e6, 2e6, -1e6}));
+  expect_same("far away and small", render_at(1e-3, {1e3, 2e3, -1e3}));
 }
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceScale,
+                         ::testing::Values(EstimatorType::path, EstimatorType::beam,
+                                           EstimatorType::march));
 
 /// What holds for paths holds where photons bring the light.
 class PhotonStability : public ::testing::TestWithParam<EstimatorType> {
