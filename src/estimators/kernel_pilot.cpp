@@ -17,8 +17,9 @@ namespace vdbeam {
 namespace {
 
 constexpr int most_tiles = 120;
-/// Of a tile's pixels, one in so many is told to the caller.
-constexpr std::size_t pixels_between_samples = 48;
+/// Of a tile's pixels, one in so many is told to the caller: fewer are passed over where not so
+/// many samples would be left, of which some dark pixel might weigh more than all others.
+constexpr std::size_t pixels_between_samples = 48, fewest_samples = 64;
 /// Added to the brightness in the weights, as 0.01 is in MRSE, but relative to the mean: dimming a
 /// light must not change the kernels.
 constexpr double offset = 0.03;
@@ -161,10 +162,11 @@ private:
   }
 };
 
-/// A few of the tile's pixels, with their weights.
-void add_pixels(const TileView& view, double dark, std::vector<TrialPixel>& pixels) {
+/// One in so many of the tile's pixels, with their weights.
+void add_pixels(const TileView& view, std::size_t step, double dark,
+                std::vector<TrialPixel>& pixels) {
   const std::size_t channels = view.pixels.empty() ? 1 : view.places.size() / view.pixels.size();
-  for (std::size_t i = 0; i < view.pixels.size(); i += pixels_between_samples) {
+  for (std::size_t i = 0; i < view.pixels.size(); i += step) {
     TrialPixel sample{view.pixels[i], {}};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t at = i * channels + std::min(c, channels - 1);
@@ -215,8 +217,13 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
   for (double* sum :
        {&errors.noise_narrow, &errors.noise_wide, &errors.change, &errors.change_error})
     *sum /= pixels;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    add_pixels(views[i], offset * brightness / pixels, errors.pixels);
+  std::size_t hits = 0;
+  for (const TileView& view : views)
+    hits += view.pixels.size();
+  const std::size_t step =
+      std::clamp(hits / fewest_samples, std::size_t{1}, pixels_between_samples);
+  for (const TileView& view : views)
+    add_pixels(view, step, offset * brightness / pixels, errors.pixels);
   return errors;
 }
 
