@@ -71,13 +71,13 @@ void WalkTracer::scatter_towards_light(PathWalk& walk) const {
   const float drawn =
       detours / static_cast<float>(count) * walk.phase->evaluate(dot(towards, direction));
 
-  MediumTracker tracker(medium, {{ray.origin, direction}});
+  BoundedTracker tracker(medium, {{ray.origin, direction}});
   Rgb throughput = walk.throughput;
   Collision hit;
   do {
-    if (!tracker.advance(walk.rng))
+    hit = tracker.next(walk.rng);
+    if (!hit.volume)
       return;
-    hit = tracker.collision();
   } while (!sample_real_collision(hit, medium.chromatic, throughput, walk.rng));
   const Vec3f point = ray.origin + direction * hit.t;
   const float v1 = walk.rng.uniform(), v2 = walk.rng.uniform();
@@ -105,7 +105,27 @@ bool WalkTracer::step(PathWalk& walk) const {
     ++walk.light;
     return sample_lights(walk);
   }
+  if (walk.null_collisions >= most_tentative_collisions)
+    return end_flight(walk);
   return step_flight(world_.medium, walk, *this);
+}
+
+/// Ends a flight that met too many null collisions, from its present one on: by collisions that are
+/// found in the exact optical depth, of which the first is real but where channels differ.
+bool WalkTracer::end_flight(PathWalk& walk) const {
+  const Medium& medium = world_.medium;
+  Collision hit = walk.tracker->collision();
+  for (;;) {
+    meet(walk, hit);
+    if (sample_real_collision(hit, medium.chromatic, walk.throughput, walk.rng))
+      return collide(walk, hit);
+    if (medium.chromatic && !walk.length.survive(walk.throughput, walk.rng))
+      return false;
+    const Segment rest{walk.segment.ray, hit.t, walk.segment.t_end};
+    hit = exact_collision(medium, rest, walk.rng);
+    if (!hit.volume)
+      return leave(walk);
+  }
 }
 
 /// Null collisions leave a grey throughput as it is, so the light of a flight is gathered in one
@@ -165,6 +185,7 @@ bool WalkTracer::scatter(PathWalk& walk) const {
   walk.drawn = {direction, walk.phase, walk.phase->evaluate(dot(ray.direction, direction))};
   ++walk.bounces;
   walk.gathered = 0;
+  walk.null_collisions = 0;
   walk.start(world_.medium, {{ray.origin, direction}});
   return advance_flight(walk, *this);
 }

@@ -25,8 +25,9 @@ struct PathWalk : Flight {
   std::size_t volume = 0;               ///< of the scene, that scatters its light to the camera
   const PhaseFunction* phase = nullptr; ///< at the last real collision
   DrawnDirection drawn, drawn_before;   ///< of this flight and of the one before it
-  float gathered = 0;   ///< distance of the flight up to which light that it meets was added
-  Rgb direct, indirect; ///< light so far that was scattered once, and more often
+  float gathered = 0;      ///< distance of the flight up to which light that it meets was added
+  int null_collisions = 0; ///< of this flight
+  Rgb direct, indirect;    ///< light so far that was scattered once, and more often
   std::optional<RatioTracking> shadow;
   std::size_t light = 0; ///< that the shadow ray is sent to
   Rgb shadow_value;      ///< its contribution, without the transmittance
@@ -63,12 +64,16 @@ public:
 
   // What happens at the collisions of a flight (step_flight).
   void meet(PathWalk& walk, const Collision& hit) const;
-  bool pass(const PathWalk&) const { return true; }
+  bool pass(PathWalk& walk) const {
+    ++walk.null_collisions;
+    return true;
+  }
   bool collide(PathWalk& walk, const Collision& hit) const;
   bool leave(PathWalk& walk) const;
 
 private:
   bool sample_lights(PathWalk& walk) const;
+  bool end_flight(PathWalk& walk) const;
   bool scatter(PathWalk& walk) const;
   void find_narrow_lights();
   void scatter_towards_light(PathWalk& walk) const;
