@@ -85,8 +85,9 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
   }
   if (pilot.photons.size() == 0) // only where a pilot was stopped
     return;
-  ViewThinning thinning = thin_by_view(input.world, std::move(importance), pilot.photons,
-                                       std::max(1e-3, pilot.mean_collisions), plan.stored_per_path);
+  ViewThinning thinning =
+      thin_by_view(input.world, input.camera, std::move(importance), pilot.photons,
+                   std::max(1e-3, pilot.mean_collisions), plan.stored_per_path);
   plan.store_probability_by_cell =
       std::make_shared<const CellTables>(std::move(thinning.store_probability));
   plan.stored_per_path = thinning.stored_per_path;

@@ -185,6 +185,7 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.store = input.settings.store;
   settings.store_probability = static_cast<float>(plan.store_probability);
   settings.store_probability_by_cell = plan.store_probability_by_cell;
+  settings.camera = plan.store_probability_by_cell ? &input.camera : nullptr;
   settings.guide = plan.guide;
   settings.skip_first_flight = plan.sampled_lights;
   settings.max_bounces = input.settings.max_bounces;

@@ -2,6 +2,7 @@
 
 #include "materials/throws_light.h"
 #include "transport/flight.h"
+#include "transport/towards_camera.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -225,17 +226,21 @@ private:
     return sum;
   }
 
-  float store_probability(const Volume& volume, const Vec3f& point) const {
+  float store_probability(const Volume& volume, const Vec3f& point, const Vec3f& direction) const {
     if (!settings_.store_probability_by_cell)
       return settings_.store_probability;
     const auto index = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
-    return (*settings_.store_probability_by_cell)[index][volume.cell_at(point)];
+    const float by_cell = (*settings_.store_probability_by_cell)[index][volume.cell_at(point)];
+    if (!settings_.camera || !settings_.directions)
+      return by_cell;
+    return by_cell * towards_camera(*settings_.camera, world_.medium, volume, point, direction);
   }
 
   void store(LightPath& path, const Collision& hit, const Rgb& power) {
     ++collisions;
     const Vec3f point = path.segment.ray.at(hit.t);
-    const float probability = store_probability(*hit.volume, point);
+    const float probability =
+        std::min(1.0f, store_probability(*hit.volume, point, path.segment.ray.direction));
     if (probability < 1 && path.rng.uniform() >= probability)
       return;
     photons.position.push_back(point);
@@ -301,7 +306,7 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
 
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
-  const auto& [paths, store, store_probability, store_probability_by_cell, truncation_order,
+  const auto& [paths, store, store_probability, store_probability_by_cell, camera, truncation_order,
                skip_first_flight, max_bounces, surface_photon_lights, directions, albedo, guide,
                path_numbers, key, stop] = a;
   static_cast<void>(stop);
@@ -309,8 +314,8 @@ bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
   const bool same_guide = guide == b.guide || (guide && b.guide && *guide == *b.guide);
-  return same_cells && same_guide && path_numbers == b.path_numbers && paths == b.paths &&
-         surface_photon_lights == b.surface_photon_lights && store == b.store &&
+  return !camera && !b.camera && same_cells && same_guide && path_numbers == b.path_numbers &&
+         paths == b.paths && surface_photon_lights == b.surface_photon_lights && store == b.store &&
          store_probability == b.store_probability && truncation_order == b.truncation_order &&
          skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
          directions == b.directions && albedo == b.albedo && key == b.key;

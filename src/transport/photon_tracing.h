@@ -9,14 +9,19 @@
 
 namespace vdbeam {
 
+class Camera;
+
 /// What a photon pass needs to know.
 struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
   /// With which probability a storable collision is stored, its power divided by it; 0: none is.
   float store_probability = 1;
-  /// Where given, in place of `store_probability`: the probability by cell, each > 0.
+  /// Where given, in place of `store_probability`: the probability by cell, each > 0; more than 1
+  /// counts as 1.
   std::shared_ptr<const CellTables> store_probability_by_cell;
+  /// Where given, the probability by cell is multiplied by towards_camera().
+  const Camera* camera = nullptr;
   /// Order of the truncation that made the world's medium of the scene's; 0: none.
   int truncation_order = 0;
   /// Per light: true where its first flight is left to shadow rays and not stored.
@@ -41,8 +46,8 @@ struct PhotonPassSettings {
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
                                        const PathGuide* guide);
 
-/// True where trace_photons gives the same photons in the same world. `stop` is not compared: the
-/// flag it points to may be gone.
+/// True where trace_photons gives the same photons in the same world; false where they are stored
+/// for a camera. `stop` is not compared: the flag it points to may be gone.
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
 struct TracedPhotons {

@@ -100,8 +100,8 @@ TEST(ViewThinning, KeepsWhatIsWanted) {
   View view(noisy_cube(60));
   const TracedPhotons pilot = collisions_of(view.world);
   for (const double wanted : {1.0, 4.0}) {
-    const ViewThinning thinning = thin_by_view(view.world, view.importance(0.05f), pilot.photons,
-                                               pilot.mean_collisions, wanted);
+    const ViewThinning thinning = thin_by_view(view.world, view.camera, view.importance(0.05f),
+                                               pilot.photons, pilot.mean_collisions, wanted);
     EXPECT_NEAR(thinning.stored_per_path, wanted, 0.01 * wanted);
     PhotonPassSettings settings;
     settings.paths = 4000;
@@ -109,6 +109,7 @@ TEST(ViewThinning, KeepsWhatIsWanted) {
     settings.skip_first_flight = {true};
     settings.store_probability_by_cell =
         std::make_shared<const CellTables>(thinning.store_probability);
+    settings.camera = &view.camera;
     const TracedPhotons pass = trace_photons(view.world, settings);
     const double stored = static_cast<double>(pass.photons.size()) / 4000;
     EXPECT_NEAR(stored, wanted, 0.1 * wanted);
@@ -143,8 +144,8 @@ TEST(ViewThinning, StoresFewPhotonsOutsideTheView) {
   View view(scene);
   const float reach = 0.04f;
   const TracedPhotons all = collisions_of(view.world, 4000);
-  const ViewThinning thinning =
-      thin_by_view(view.world, view.importance(reach), all.photons, all.mean_collisions, 4);
+  const ViewThinning thinning = thin_by_view(view.world, view.camera, view.importance(reach),
+                                             all.photons, all.mean_collisions, 4);
   PhotonPassSettings settings;
   settings.paths = 4000;
   settings.skip_first_flight = {true};
@@ -165,6 +166,61 @@ TEST(ViewThinning, StoresFewPhotonsOutsideTheView) {
   ASSERT_GT(outside(all.photons), 0.5 * static_cast<double>(all.photons.size()));
   EXPECT_LT(outside(kept.photons), 0.02 * outside(all.photons));
   EXPECT_GT(kept.photons.size(), 1000u);
+}
+
+/// What photons bring to the camera if they are stored by cell alone, or by direction too: by pass,
+/// and its mean square over the square of its mean, by photon.
+struct Brought {
+  test::Samples passes;
+  double uneven = 0;
+};
+
+Brought bring(View& view, const ViewThinning& thinning, bool by_direction) {
+  Brought brought;
+  PhotonPassSettings settings;
+  settings.paths = 1000;
+  settings.skip_first_flight = {true};
+  settings.store_probability_by_cell =
+      std::make_shared<const CellTables>(thinning.store_probability);
+  settings.camera = by_direction ? &view.camera : nullptr;
+  const Volume& volume = view.world.medium.volumes[0];
+  double count = 0, sum = 0, squares = 0;
+  for (std::uint64_t pass = 1; pass <= 24; ++pass) {
+    settings.key = {1, 1, pass};
+    const PhotonList photons = trace_photons(view.world, settings).photons;
+    double of_pass = 0;
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+      const Vec3f& position = photons.position[i];
+      const Vec3f towards(view.camera.direction_towards(Vec3d(position)));
+      const double importance =
+          static_cast<double>(thinning.store_probability[0][volume.cell_at(position)]);
+      const double value = importance * static_cast<double>(photons.power[i].x) *
+                           static_cast<double>(view.world.medium.phases[0].evaluate(
+                               -dot(photons.direction[i], towards)));
+      of_pass += value;
+      squares += value * value;
+    }
+    count += static_cast<double>(photons.size());
+    sum += of_pass;
+    brought.passes.add(of_pass);
+  }
+  brought.uneven = squares * count / (sum * sum);
+  return brought;
+}
+
+/// Photons that bring alike are worth most: as many of them have less noise.
+TEST(ViewThinning, FollowsWhatIsScatteredTowardsTheCamera) {
+  View view(noisy_cube(60));
+  PhotonPassSettings settings;
+  settings.paths = 2000;
+  settings.skip_first_flight = {true};
+  const TracedPhotons pilot = trace_photons(view.world, settings);
+  const ViewThinning thinning = thin_by_view(view.world, view.camera, view.importance(0.05f),
+                                             pilot.photons, pilot.mean_collisions, 2);
+  const Brought by_cell = bring(view, thinning, false), by_both = bring(view, thinning, true);
+  EXPECT_LT(by_both.uneven, 0.7 * by_cell.uneven);
+  expect_same_mean(by_cell.passes, by_both.passes, 0);
+  expect_power(by_both.passes, 0.03 * by_both.passes.mean());
 }
 
 /// With one radius for all kernels both ways of thinning have the same expectation.
