@@ -185,7 +185,8 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.store = input.settings.store;
   settings.store_probability = static_cast<float>(plan.store_probability);
   settings.store_probability_by_cell = plan.store_probability_by_cell;
-  settings.camera = plan.store_probability_by_cell ? &input.camera : nullptr;
+  if (plan.store_probability_by_cell)
+    settings.camera = input.camera;
   settings.guide = plan.guide;
   settings.skip_first_flight = plan.sampled_lights;
   settings.max_bounces = input.settings.max_bounces;

@@ -197,8 +197,13 @@ std::string SceneDocument::who_names(std::size_t volume, const std::string& line
                           "emission.temperature"}) {
     const toml::node* node = table->at_path(key).node();
     const auto* text = node ? node->as_string() : nullptr;
-    if (text && (text->get() == grid || lists(text->get(), grid)))
-      return fmt::format("{}: volume.{}.{}: ", location_of(*node), volume, key);
+    if (!text || !(text->get() == grid || lists(text->get(), grid)))
+      continue;
+    const std::string location = location_of(*node);
+    // In the scene that a bare VDB gets by default nobody wrote the key.
+    return is_vdb_file(path_) && location.starts_with(path_)
+               ? ""
+               : fmt::format("{}: volume.{}.{}: ", location, volume, key);
   }
   return "";
 }

@@ -44,7 +44,7 @@ public:
 
 private:
   std::string first_pattern() const;
-  /// Of the first name in quotes; empty where no key of the volume holds it.
+  /// Of the first name in quotes; empty where no key of the volume that the user wrote holds it.
   std::string who_names(std::size_t volume, const std::string& line) const;
 
   std::string path_;

@@ -22,6 +22,8 @@ CameraFrame camera_frame(const CameraSettings& settings);
 /// parallel rays at any depth, in world units. x to the right, y up.
 struct ViewWindow {
   double x0 = -1, x1 = 1, y0 = -1, y1 = 1;
+
+  bool operator==(const ViewWindow&) const = default;
 };
 ViewWindow view_window(const CameraSettings& settings, const ImageSettings& image);
 
@@ -62,6 +64,8 @@ public:
     return projection_ == Projection::orthographic || lens_.radius() > 0;
   }
   const Vec3d& origin() const { return origin_; }
+  bool operator==(const Camera&) const = default;
+
   int width() const { return width_; }
   int height() const { return height_; }
 

@@ -11,6 +11,8 @@ public:
   /// `angle` turns the polygon counter-clockwise from a corner on the x axis [degrees].
   Lens(double radius, int blades, double angle) : radius_(radius), blades_(blades), angle_(angle) {}
 
+  bool operator==(const Lens&) const = default;
+
   double radius() const { return radius_; }
   /// A point uniform over the opening; u, v in [0, 1). z is 0.
   Vec3d sample(double u, double v) const;

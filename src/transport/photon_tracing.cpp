@@ -314,7 +314,7 @@ bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
   const bool same_guide = guide == b.guide || (guide && b.guide && *guide == *b.guide);
-  return !camera && !b.camera && same_cells && same_guide && path_numbers == b.path_numbers &&
+  return camera == b.camera && same_cells && same_guide && path_numbers == b.path_numbers &&
          paths == b.paths && surface_photon_lights == b.surface_photon_lights && store == b.store &&
          store_probability == b.store_probability && truncation_order == b.truncation_order &&
          skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&

@@ -2,14 +2,13 @@
 
 #include "math/stop_token.h"
 #include "photonmap/photon.h"
+#include "transport/camera.h"
 #include "transport/path_guide.h"
 #include "transport/world.h"
 
 #include <memory>
 
 namespace vdbeam {
-
-class Camera;
 
 /// What a photon pass needs to know.
 struct PhotonPassSettings {
@@ -21,7 +20,7 @@ struct PhotonPassSettings {
   /// counts as 1.
   std::shared_ptr<const CellTables> store_probability_by_cell;
   /// Where given, the probability by cell is multiplied by towards_camera().
-  const Camera* camera = nullptr;
+  std::optional<Camera> camera;
   /// Order of the truncation that made the world's medium of the scene's; 0: none.
   int truncation_order = 0;
   /// Per light: true where its first flight is left to shadow rays and not stored.
@@ -46,8 +45,8 @@ struct PhotonPassSettings {
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
                                        const PathGuide* guide);
 
-/// True where trace_photons gives the same photons in the same world; false where they are stored
-/// for a camera. `stop` is not compared: the flag it points to may be gone.
+/// True where trace_photons gives the same photons in the same world. `stop` is not compared: the
+/// flag it points to may be gone.
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
 struct TracedPhotons {

@@ -13,6 +13,8 @@ class FilterSampler {
 public:
   FilterSampler(PixelFilter filter, double width);
 
+  bool operator==(const FilterSampler&) const = default;
+
   /// An offset from the pixel's left or upper edge [pixels] from a number in [0, 1); the pixel's
   /// centre lies at 0.5.
   double offset(double u) const;

@@ -109,7 +109,7 @@ TEST(ViewThinning, KeepsWhatIsWanted) {
     settings.skip_first_flight = {true};
     settings.store_probability_by_cell =
         std::make_shared<const CellTables>(thinning.store_probability);
-    settings.camera = &view.camera;
+    settings.camera = view.camera;
     const TracedPhotons pass = trace_photons(view.world, settings);
     const double stored = static_cast<double>(pass.photons.size()) / 4000;
     EXPECT_NEAR(stored, wanted, 0.1 * wanted);
@@ -182,7 +182,8 @@ Brought bring(View& view, const ViewThinning& thinning, bool by_direction) {
   settings.skip_first_flight = {true};
   settings.store_probability_by_cell =
       std::make_shared<const CellTables>(thinning.store_probability);
-  settings.camera = by_direction ? &view.camera : nullptr;
+  if (by_direction)
+    settings.camera = view.camera;
   const Volume& volume = view.world.medium.volumes[0];
   double count = 0, sum = 0, squares = 0;
   for (std::uint64_t pass = 1; pass <= 24; ++pass) {
