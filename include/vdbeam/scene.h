@@ -81,6 +81,10 @@ enum class PhotonThinning { automatic, view, even };
 /// Whether the forward peak of the phase function is taken out of multiple scattering, by ever less
 /// from pass to pass (docs/physics.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
+/// Whether `beam` gathers photons where walks from the camera ray arrive, instead of along it
+/// (docs/physics.md, "Final gathering"): in later passes where a pilot tells that it pays, never,
+/// or from the first pass on.
+enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
 enum class SeedPolicy { per_frame, correlated };
@@ -102,8 +106,9 @@ struct RenderSettings {
   double min_radius = 0; ///< world units; 0: automatic
   double max_radius = 0; ///< world units; 0: automatic
   double alpha = 0.6;    ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
-  ForwardPeak forward_peak = ForwardPeak::automatic;   ///< of scattering (beam, march)
-  PhotonThinning thinning = PhotonThinning::automatic; ///< which collisions are stored (beam)
+  ForwardPeak forward_peak = ForwardPeak::automatic;       ///< of scattering (beam, march)
+  PhotonThinning thinning = PhotonThinning::automatic;     ///< which collisions are stored (beam)
+  FinalGathering final_gather = FinalGathering::automatic; ///< walks from camera rays (beam)
   double keep = 0;                ///< fraction of them that is stored, evenly; 0: automatic
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends

@@ -1,5 +1,7 @@
 #include "estimators/beam_plan.h"
 
+#include "estimators/choose_final_gather.h"
+#include "estimators/final_gather.h"
 #include "estimators/fit_path_guide.h"
 #include "estimators/kernel_pilot.h"
 #include "estimators/kernel_support.h"
@@ -153,6 +155,7 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const KernelModel model(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
   plan.neighbours = in_kernel_steps(model.best_neighbours());
   plan.trial = std::make_shared<const KernelTrialResult>(KernelTrialResult{model, errors.pixels});
+  plan.first_final_gather = choose_final_gather(input, plan, narrow, trial_paths / paths);
 }
 
 } // namespace
@@ -175,6 +178,8 @@ PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
     try_kernels(input, plan);
+  if (input.settings.final_gather == FinalGathering::always && may_gather_finally(input, plan))
+    plan.first_final_gather = 0;
   return plan;
 }
 

@@ -24,10 +24,13 @@ public:
         value->radiance = gathered(i) - narrow(rays[i], tile, i);
   }
 
+  /// Where the blur of a pixel is to be noted; null where nobody asked for it. No two threads may
+  /// have the same pixel.
+  PixelValue* find(std::size_t pixel);
+
   std::vector<PixelValue> take() { return std::move(values_); }
 
 private:
-  PixelValue* find(std::size_t pixel);
   /// What the ray gathers in narrow kernels.
   Rgb narrow(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const;
 

@@ -66,21 +66,11 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
                                std::size_t target, Rng& rng, const Rng& walk_rng, Scratch& scratch,
                                PassImage& image) const {
   const Medium& medium = input_.world.medium;
-  // Which volume scatters, in proportion to its share.
-  float total = 0;
-  for (const Rgb& weight : *point.weights)
-    total += mean_component(weight);
-  if (!(total > 0))
+  const std::optional<VolumeChoice> chosen = choose_volume(point, rng.uniform());
+  if (!chosen)
     return;
-  std::size_t volume = 0;
-  float left = rng.uniform() * total - mean_component((*point.weights)[0]);
-  while (left >= 0 && volume + 1 < medium.volumes.size())
-    left -= mean_component((*point.weights)[++volume]);
-  const Rgb& weight = (*point.weights)[volume];
-  if (!(mean_component(weight) > 0))
-    return;
+  const auto& [volume, throughput] = *chosen;
   const Ray ray{point.position, camera.ray().direction};
-  const Rgb throughput = weight * (total / mean_component(weight));
   const PhaseFunction& phase = medium.phases[medium.volumes[volume].phase_index];
   const DeepRay deep(input_.world, camera, target, image);
   if (!scene_tracer_) {

@@ -12,7 +12,8 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
                        KernelDomain domain)
     : input_(input), worlds_(input.world, default_photon_plan(input).similar),
       world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
-      boundary_share_(boundary_share(input, domain)) {
+      boundary_share_(boundary_share(input, domain)),
+      final_share_(boundary_share(input, KernelDomain::ball)) {
   const World& world = *world_;
   if (input.plan.needs(Stage::photons) && !plan_.trial) // kernels were tried for the paths it has
     plan_.paths = paths_with_hidden_lights(input.in(world), plan_);
@@ -46,10 +47,11 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   make_maps(pass, radii, statistics);
   const Stopwatch watch;
   clear_of_surfaces(world, maps_.medium);
+  const KernelShare& share = plan_.gathers_finally(pass) ? final_share_ : boundary_share_;
   if (input_.blur_pixels)
-    narrow_map_ = maps_.medium.divide_power(boundary_share_, PassImage::blur_narrowing);
+    narrow_map_ = maps_.medium.divide_power(share, PassImage::blur_narrowing);
   else
-    maps_.medium.divide_power(boundary_share_);
+    maps_.medium.divide_power(share);
   statistics.radii += watch.seconds();
   statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);

@@ -46,7 +46,7 @@ private:
   const World* world_; ///< of the pass at hand
   PhotonPlan plan_;
   ShadowLattices shadows_;
-  KernelShare boundary_share_;
+  KernelShare boundary_share_, final_share_; ///< of the estimator's kernels, and of walks'
   bool pilot_counted_ = false;
   PhotonMaps maps_;
   PhotonMap narrow_map_;

@@ -22,6 +22,9 @@ constexpr double most_photons = 4e6;
 /// per camera ray that meets the medium up to which there are.
 constexpr double most_for_hidden_lights = 8;
 constexpr double photons_per_hit = 1;
+/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
+/// out some of its noise (docs/decisions.md).
+constexpr float final_gather_neighbours = 0.5f;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
@@ -222,6 +225,8 @@ RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& pl
   radii.mode = settings.kernel;
   radii.fixed_radius = static_cast<float>(settings.radius) * scale;
   radii.neighbours = static_cast<float>(plan.neighbours);
+  if (plan.gathers_finally(pass) && settings.neighbours == 0)
+    radii.neighbours *= final_gather_neighbours;
   radii.scale = radius_scale(pass, settings.alpha);
   radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
   // Kernels as wide as the medium would lose most of its light outside.

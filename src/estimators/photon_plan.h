@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace vdbeam {
@@ -42,6 +43,10 @@ struct PhotonPlan {
   /// Shadow-ray samples of a camera ray that meets the optical depth `depth`: more where it is
   /// small and lights have an extent, since what is seen there is mostly scattered once.
   int direct_samples_of(float depth) const;
+
+  /// Pass from which on photons are gathered by walks (FinalGather); none: never.
+  std::optional<int> first_final_gather;
+  bool gathers_finally(int pass) const { return first_final_gather && pass >= *first_final_gather; }
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen

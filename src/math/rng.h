@@ -23,7 +23,8 @@ enum class RngStage : std::uint64_t {
   walk,
   split,
   surface,
-  line
+  line,
+  final_gather
 };
 
 /// Everything that identifies a stream, except the index within its stage.

@@ -152,6 +152,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                       {"emission_rays", statistics.emission_rays},
                       {"camera_walks", statistics.camera_walks},
                       {"walk_collisions", statistics.walk_collisions},
+                      {"gather_walks", statistics.gather_walks},
                       {"bias_rays", statistics.bias_rays},
                       {"neighbourhoods", statistics.neighbourhoods},
                       {"importance_rays", statistics.importance_rays},

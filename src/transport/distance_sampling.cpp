@@ -73,4 +73,21 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   return {t, pdf, ray_.at(t), &weights_};
 }
 
+std::optional<VolumeChoice> choose_volume(const ScatterPoint& point, float u) {
+  const std::vector<Rgb>& weights = *point.weights;
+  float total = 0;
+  for (const Rgb& weight : weights)
+    total += mean_component(weight);
+  if (!(total > 0))
+    return std::nullopt;
+  std::size_t volume = 0;
+  float left = u * total - mean_component(weights[0]);
+  while (left >= 0 && volume + 1 < weights.size())
+    left -= mean_component(weights[++volume]);
+  const float own = mean_component(weights[volume]);
+  if (!(own > 0))
+    return std::nullopt;
+  return VolumeChoice{volume, weights[volume] * (total / own)};
+}
+
 } // namespace vdbeam

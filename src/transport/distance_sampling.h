@@ -2,6 +2,8 @@
 
 #include "transport/depth_profile.h"
 
+#include <optional>
+
 namespace vdbeam {
 
 /// A scattering point drawn along a ray.
@@ -46,5 +48,15 @@ private:
   Rgb end_;
   std::vector<Rgb> weights_;
 };
+
+/// A volume that scatters at a point, and what it weighs.
+struct VolumeChoice {
+  std::size_t volume = 0;
+  Rgb weight;
+};
+
+/// One of the volumes that scatter at the point, drawn by u in [0, 1) in proportion to its share;
+/// none where nothing scatters.
+std::optional<VolumeChoice> choose_volume(const ScatterPoint& point, float u);
 
 } // namespace vdbeam

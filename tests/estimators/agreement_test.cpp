@@ -177,6 +177,20 @@ TEST_P(Agreement, BeamAndMarchWithPath) {
   }
 }
 
+/// Walks that begin on camera rays find the same light, with as little as nothing of the blur.
+TEST_P(Agreement, FinalGatheringWithPath) {
+  MemoryScene scene = GetParam().make();
+  const PassMeans truth = truth_of(scene);
+  scene.scene.render.final_gather = FinalGathering::always;
+  for (const ForwardPeak peak : {ForwardPeak::automatic, ForwardPeak::kept}) {
+    scene.scene.render.forward_peak = peak;
+    const PassMeans means = test::render_passes(scene, EstimatorType::beam, 1);
+    EXPECT_GT(means.statistics.gather_walks, 0u);
+    expect_agreement(scene, truth, EstimatorType::beam, 24, 0.005, GetParam().power,
+                     peak == ForwardPeak::kept);
+  }
+}
+
 /// The guard of the test above: it would tell a picture from its mirror image.
 TEST(AgreementOfRegions, SeesAMirroredPicture) {
   const PassMeans truth = truth_of(lamps());

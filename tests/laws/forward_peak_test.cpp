@@ -70,6 +70,27 @@ Picture render(const MemoryScene& scene, int passes) {
   return picture;
 }
 
+/// The same where photons are gathered by walks from the camera rays.
+TEST(ForwardPeakBeam, FurnaceOfLumpsByFinalGathering) {
+  for (const PhaseSettings& phase : {henyey_greenstein(0.9), mie()}) {
+    MemoryScene scene = lumps(10, phase);
+    scene.add_light(LightType::environment).radiance = Rgb(1);
+    scene.scene.render.estimator = EstimatorType::beam;
+    scene.scene.render.final_gather = FinalGathering::always;
+    scene.scene.render.photons = 40000;
+    scene.scene.render.neighbours = 300;
+    const Picture picture = render(scene, 96);
+    double mean = 0, worst = 0;
+    for (std::size_t i = 0; i < picture.mean.size(); ++i) {
+      EXPECT_NEAR(picture.mean[i], 1, 5 * std::sqrt(picture.variance[i]) + 0.03) << i;
+      mean += picture.mean[i] / static_cast<double>(picture.mean.size());
+      worst = std::max(worst, picture.variance[i]);
+    }
+    EXPECT_LT(std::sqrt(worst), 0.06);
+    EXPECT_NEAR(mean, 1, 0.005);
+  }
+}
+
 class ForwardPeak : public testing::TestWithParam<EstimatorType> {};
 
 /// With albedo 1 and a sky of 1 every pixel is 1, also rims where the peak alone carries light, and

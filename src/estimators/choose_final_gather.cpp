@@ -1,0 +1,85 @@
+#include "estimators/choose_final_gather.h"
+
+#include "estimators/final_gather.h"
+#include "estimators/tile_rays.h"
+
+#include <tbb/parallel_for.h>
+
+namespace vdbeam {
+
+namespace {
+
+/// Passes before the first that gathers finally: in few passes there is more noise than bias, and
+/// noise is what walks have more of.
+constexpr int passes_before = 16;
+/// Passes after which the two are compared. The longer a render, the more bias tells.
+constexpr int compared_passes = 128;
+/// By which the time of a pass grows, measured on clouds of all depths (docs/decisions.md).
+constexpr double relative_time = 1.5;
+
+/// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
+struct GatherNoise {
+  double walk = 0; ///< of a single walk, among the same photons
+  double maps = 0; ///< of the mean of two walks, among all maps
+};
+
+/// Each pixel's rays look at each map by two walks.
+GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
+                          const KernelTrial& trial) {
+  const std::vector<TrialPixel>& pixels = plan.trial->pixels;
+  const auto width = static_cast<std::size_t>(input.camera.width());
+  const RngKey key{input.settings.seed, input.frame, pilot_pass};
+  std::vector<GatherNoise> noise(pixels.size());
+  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+    const std::size_t pixel = pixels[i].pixel;
+    TileRays::PixelRay ray = TileRays::pixel_ray(input, key, static_cast<int>(pixel % width),
+                                                 static_cast<int>(pixel / width));
+    ray.profile.build(input.world.medium, ray.camera.segment,
+                      static_cast<float>(input.settings.cutoff));
+    if (ray.profile.empty() || input.stopped())
+      return;
+    Rng rng(key, RngStage::final_gather, pixel);
+    RenderStatistics uncounted;
+    std::vector<Rgb> means;
+    Rgb mean, walk;
+    for (const PhotonMap& map : trial.maps) {
+      const FinalGather gather(input.world, plan, map);
+      const auto light = [&] {
+        const GatheredLight found = gather.gather(ray.camera.ray(), ray.profile, 1, rng, uncounted);
+        return found.direct + found.indirect;
+      };
+      const Rgb a = light(), b = light(), d = a - b;
+      means.push_back((a + b) * 0.5f);
+      mean += means.back() / static_cast<float>(trial.maps.size());
+      walk += d * d * (0.5f / static_cast<float>(trial.maps.size()));
+    }
+    Rgb maps;
+    for (const Rgb& one : means)
+      maps += (one - mean) * (one - mean) / static_cast<float>(means.size() - 1);
+    noise[i] = {static_cast<double>(mean_component(walk * pixels[i].weight)),
+                static_cast<double>(mean_component(maps * pixels[i].weight))};
+  });
+  GatherNoise sum; // in the order of the pixels, for any number of threads
+  for (const GatherNoise& pixel : noise) {
+    sum.walk += pixel.walk / static_cast<double>(pixels.size());
+    sum.maps += pixel.maps / static_cast<double>(pixels.size());
+  }
+  return sum;
+}
+
+} // namespace
+
+std::optional<int> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
+                                       const KernelTrial& trial, double paths_share) {
+  if (!plan.trial || plan.trial->pixels.empty() || trial.maps.size() < 2 ||
+      input.settings.final_gather != FinalGathering::automatic || !may_gather_finally(input, plan))
+    return std::nullopt;
+  const GatherNoise noise = measure_noise(input, plan, trial);
+  const double of_photons = std::max(0.0, noise.maps - noise.walk / 2) * paths_share;
+  const double error = (of_photons + noise.walk / final_gather_walks) / compared_passes;
+  const bool pays =
+      relative_time * error < plan.trial->model.error(plan.neighbours, compared_passes);
+  return pays && error > 0 ? std::optional<int>(passes_before) : std::nullopt;
+}
+
+} // namespace vdbeam

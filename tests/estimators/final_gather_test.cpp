@@ -1,0 +1,113 @@
+// When photons are gathered by walks, and that it lessens the blur of kernels.
+#include "support/render_passes.h"
+
+#include "estimators/beam.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+/// Lumps with sharp edges, some in the shade of others.
+MemoryScene lumps(double extinction, int width) {
+  MemoryScene scene;
+  const Vec3<int> cells{4, 4, 4};
+  VolumeSettings& volume = scene.add(
+      closed_field(cells,
+                   [](int i, int j, int k) {
+                     return std::sin(0.7 * i) * std::cos(0.5 * j + 1) * std::sin(0.6 * k + 2) > 0.1
+                                ? 1.0
+                                : 0.0;
+                   }),
+      box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
+  volume.extinction = extinction;
+  scene.add_light(LightType::distant).direction = {1, -0.4, -0.5};
+  scene.look({0.5, 0.6, 2.5}, {0, 0, 0}, 24, width, width);
+  return scene;
+}
+
+std::optional<int> first_final_gather(const MemoryScene& scene) {
+  const TestFrame frame(scene);
+  return BeamEstimator(frame.input()).photons().plan().first_final_gather;
+}
+
+/// Where the medium is thin kernels blur little, and walks are noisier than kernels.
+TEST(FinalGather, IsUsedInLaterPassesWhereItPays) {
+  EXPECT_EQ(first_final_gather(lumps(10, 160)), std::nullopt);
+  EXPECT_EQ(first_final_gather(lumps(160, 160)), 16);
+}
+
+TEST(FinalGather, FollowsTheSettings) {
+  MemoryScene scene = lumps(160, 160);
+  RenderSettings& render = scene.scene.render;
+  render.final_gather = FinalGathering::never;
+  EXPECT_EQ(first_final_gather(scene), std::nullopt);
+  render.final_gather = FinalGathering::always;
+  EXPECT_EQ(first_final_gather(scene), 0);
+  render.max_bounces = 8;
+  EXPECT_EQ(first_final_gather(scene), std::nullopt);
+  render.max_bounces.reset();
+  render.direct = DirectLight::photons; // no walk would meet a sun without extent
+  EXPECT_EQ(first_final_gather(scene), std::nullopt);
+}
+
+/// Kernels as wide as the lumps: the mean over many passes is off by their blur, and less so where
+/// photons are gathered by walks.
+TEST(FinalGather, LessensTheBlur) {
+  MemoryScene scene = lumps(40, 48);
+  RenderSettings& render = scene.scene.render;
+  const PassMeans truth = render_passes(scene, EstimatorType::path, 200);
+  render.kernel = KernelRadius::fixed;
+  render.radius = 0.1;
+  render.photons = 40000;
+  const auto squared_error = [&](FinalGathering how) {
+    render.final_gather = how;
+    const PassMeans means = render_passes(scene, EstimatorType::beam, 64);
+    double sum = 0;
+    for (std::size_t i = 0; i < means.brightness.size(); ++i) {
+      const Samples &a = means.brightness[i], &b = truth.brightness[i];
+      const double d = a.mean() - b.mean();
+      sum += d * d - a.error() * a.error() - b.error() * b.error();
+    }
+    return sum / static_cast<double>(means.brightness.size());
+  };
+  const double along = squared_error(FinalGathering::never);
+  const double walks = squared_error(FinalGathering::always);
+  EXPECT_GT(along, 0);
+  EXPECT_LT(walks, along / 4);
+}
+
+/// At a probed pixel the blur is told by the same walks in narrower kernels, and no pixel changes
+/// for it.
+TEST(FinalGather, TellsItsBlur) {
+  MemoryScene scene = lumps(40, 48);
+  RenderSettings& render = scene.scene.render;
+  render.kernel = KernelRadius::fixed;
+  render.radius = 0.15;
+  render.photons = 20000;
+  render.final_gather = FinalGathering::always;
+  const TestFrame frame(scene);
+  std::vector<std::size_t> pixels(48 * 48);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = i;
+  const auto mean_blur = [&](bool probed, PassImage& image) {
+    EstimatorInput input = frame.input();
+    input.blur_pixels = probed ? &pixels : nullptr;
+    RenderStatistics statistics;
+    make_estimator(EstimatorType::beam, input)->render_pass(0, image, statistics);
+    double sum = 0;
+    for (const PixelValue& blur : image.blur)
+      sum += std::abs(static_cast<double>(blur.radiance.x));
+    return sum;
+  };
+  PassImage probed, plain;
+  EXPECT_GT(mean_blur(true, probed), 0);
+  EXPECT_EQ(mean_blur(false, plain), 0);
+  EXPECT_EQ(probed.blur.size(), pixels.size());
+  EXPECT_EQ(probed.indirect, plain.indirect);
+}
+
+} // namespace
+} // namespace vdbeam
