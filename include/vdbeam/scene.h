@@ -81,9 +81,8 @@ enum class PhotonThinning { automatic, view, even };
 /// Whether the forward peak of the phase function is taken out of multiple scattering, by ever less
 /// from pass to pass (docs/physics.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
-/// Whether `beam` gathers photons where walks from the camera ray arrive, instead of along it
-/// (docs/physics.md, "Final gathering"): in later passes where a pilot tells that it pays, never,
-/// or from the first pass on.
+/// Whether `beam` gathers photons where walks from the camera ray arrive, not along it; automatic:
+/// in later passes where a pilot tells that it pays (docs/physics.md, "Final gathering").
 enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
