@@ -67,12 +67,27 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
   return sum;
 }
 
+/// Whether walks find the scene's lights without rare, bright values, which the pilot would miss:
+/// lights beyond the medium, by shadow rays or, where one surrounds it evenly, by leaving it. Close
+/// to a lamp a shadow ray's value has no bound, and a small light is met by chance only.
+bool lights_are_easy(const EstimatorInput& input, const PhotonPlan& plan) {
+  const LightSet& lights = input.world.lights;
+  for (std::size_t l = 0; l < input.plan.shadow_ray_lights.size(); ++l) {
+    const LightTraits& traits = lights.traits(l);
+    if (plan.sampled_lights[l] ? !traits.surrounds && !lights[l].narrow_direction()
+                               : !traits.surrounds || traits.wants_shadow_rays)
+      return false;
+  }
+  return true;
+}
+
 } // namespace
 
 std::optional<int> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
                                        const KernelTrial& trial, double paths_share) {
   if (!plan.trial || plan.trial->pixels.empty() || trial.maps.size() < 2 ||
-      input.settings.final_gather != FinalGathering::automatic || !may_gather_finally(input, plan))
+      input.settings.final_gather != FinalGathering::automatic ||
+      !may_gather_finally(input, plan) || !lights_are_easy(input, plan))
     return std::nullopt;
   const GatherNoise noise = measure_noise(input, plan, trial);
   const double of_photons = std::max(0.0, noise.maps - noise.walk / 2) * paths_share;

@@ -39,6 +39,15 @@ TEST(FinalGather, IsUsedInLaterPassesWhereItPays) {
   EXPECT_EQ(first_final_gather(lumps(160, 160)), 16);
 }
 
+/// Shadow rays to a lamp among the lumps have no bound, which a pilot would miss.
+TEST(FinalGather, IsNotUsedByItselfWithLamps) {
+  MemoryScene scene = lumps(160, 160);
+  scene.add_light(LightType::point).position = {0, 0, 0};
+  EXPECT_EQ(first_final_gather(scene), std::nullopt);
+  scene.scene.render.final_gather = FinalGathering::always;
+  EXPECT_EQ(first_final_gather(scene), 0);
+}
+
 TEST(FinalGather, FollowsTheSettings) {
   MemoryScene scene = lumps(160, 160);
   RenderSettings& render = scene.scene.render;
