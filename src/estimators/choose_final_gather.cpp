@@ -9,21 +9,22 @@ namespace vdbeam {
 
 namespace {
 
-/// Passes before the first that gathers finally: in few passes there is more noise than bias, and
-/// noise is what walks have more of.
-constexpr int passes_before = 16;
-/// Passes after which the two are compared. The longer a render, the more bias tells.
-constexpr int compared_passes = 128;
+/// Passes before the first that gathers finally, at least and at most. In few passes there is more
+/// noise than bias, and noise is what walks have more of.
+constexpr int fewest_passes_before = 16, most_passes_before = 512;
+/// The two are compared after as many times the passes before. That is late, but the error that is
+/// forecast for walks is rather too large (docs/decisions.md).
+constexpr int compared_passes = 8;
 /// By which the time of a pass grows, measured on clouds of all depths (docs/decisions.md).
-constexpr double relative_time = 1.5;
+constexpr double relative_time = 2;
 
 /// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
 struct GatherNoise {
-  double walk = 0; ///< of a single walk, among the same photons
-  double maps = 0; ///< of the mean of two walks, among all maps
+  double walks = 0; ///< of the walks of a ray, among the same photons
+  double maps = 0;  ///< of the mean of two such values, among all maps
 };
 
-/// Each pixel's rays look at each map by two walks.
+/// Each pixel's ray looks at each map twice.
 GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
                           const KernelTrial& trial) {
   const std::vector<TrialPixel>& pixels = plan.trial->pixels;
@@ -41,27 +42,28 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
     Rng rng(key, RngStage::final_gather, pixel);
     RenderStatistics uncounted;
     std::vector<Rgb> means;
-    Rgb mean, walk;
+    Rgb mean, walks;
     for (const PhotonMap& map : trial.maps) {
       const FinalGather gather(input.world, plan, map);
       const auto light = [&] {
-        const GatheredLight found = gather.gather(ray.camera.ray(), ray.profile, 1, rng, uncounted);
+        const GatheredLight found =
+            gather.gather(ray.camera.ray(), ray.profile, final_gather_walks, rng, uncounted);
         return found.direct + found.indirect;
       };
       const Rgb a = light(), b = light(), d = a - b;
       means.push_back((a + b) * 0.5f);
       mean += means.back() / static_cast<float>(trial.maps.size());
-      walk += d * d * (0.5f / static_cast<float>(trial.maps.size()));
+      walks += d * d * (0.5f / static_cast<float>(trial.maps.size()));
     }
     Rgb maps;
     for (const Rgb& one : means)
       maps += (one - mean) * (one - mean) / static_cast<float>(means.size() - 1);
-    noise[i] = {static_cast<double>(mean_component(walk * pixels[i].weight)),
+    noise[i] = {static_cast<double>(mean_component(walks * pixels[i].weight)),
                 static_cast<double>(mean_component(maps * pixels[i].weight))};
   });
   GatherNoise sum; // in the order of the pixels, for any number of threads
   for (const GatherNoise& pixel : noise) {
-    sum.walk += pixel.walk / static_cast<double>(pixels.size());
+    sum.walks += pixel.walks / static_cast<double>(pixels.size());
     sum.maps += pixel.maps / static_cast<double>(pixels.size());
   }
   return sum;
@@ -90,11 +92,14 @@ std::optional<int> choose_final_gather(const EstimatorInput& input, const Photon
       !may_gather_finally(input, plan) || !lights_are_easy(input, plan))
     return std::nullopt;
   const GatherNoise noise = measure_noise(input, plan, trial);
-  const double of_photons = std::max(0.0, noise.maps - noise.walk / 2) * paths_share;
-  const double error = (of_photons + noise.walk / final_gather_walks) / compared_passes;
-  const bool pays =
-      relative_time * error < plan.trial->model.error(plan.neighbours, compared_passes);
-  return pays && error > 0 ? std::optional<int>(passes_before) : std::nullopt;
+  const double of_photons = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
+  const double error = relative_time * (of_photons + noise.walks);
+  for (int first = fewest_passes_before; first <= most_passes_before; first *= 2) {
+    const int passes = compared_passes * first;
+    if (error > 0 && error / passes < plan.trial->model.error(plan.neighbours, passes))
+      return first;
+  }
+  return std::nullopt;
 }
 
 } // namespace vdbeam

@@ -7,7 +7,7 @@
 namespace vdbeam {
 
 /// Walks from each camera ray of a pass that gathers finally.
-inline constexpr int final_gather_walks = 12;
+inline constexpr int final_gather_walks = 20;
 
 /// The pass from which on photons are to be gathered by walks (FinalGather), where
 /// `render.final_gather` is automatic: a later one if the forecast error after many passes is less

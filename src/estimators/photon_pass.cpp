@@ -17,12 +17,13 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
   const World& world = *world_;
   if (input.plan.needs(Stage::photons) && !plan_.trial) // kernels were tried for the paths it has
     plan_.paths = paths_with_hidden_lights(input.in(world), plan_);
-  constexpr double pixels_per_lattice_ray = 16; // a lattice then costs a fraction of a pass
+  // One for many passes costs little; a moment of the shutter may serve a single pass.
+  const double rays_per_pixel = input.of_scene ? 1.0 / 16 : 2;
   if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
       !input.stopped())
     shadows_ = make_shadow_lattices(world, plan_.sampled_lights,
-                                    static_cast<double>(input.camera.width()) *
-                                        input.camera.height() / pixels_per_lattice_ray);
+                                    rays_per_pixel * static_cast<double>(input.camera.width()) *
+                                        input.camera.height());
 }
 
 /// The pilot belongs to no pass; its counts go with the first.
@@ -34,7 +35,7 @@ void PhotonPass::count_pilot(RenderStatistics& statistics) {
 }
 
 void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
-  world_ = &worlds_.of(pass);
+  world_ = &worlds_.of(pass, plan_.gathers_finally(pass));
   narrow_map_ = {};
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);

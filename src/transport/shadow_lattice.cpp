@@ -12,7 +12,7 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int fewest_steps = 8, most_steps = 64; ///< along the longest edge of the lattice
+constexpr int fewest_steps = 8, most_steps = 192; ///< along the longest edge of the lattice
 
 /// The box as its corners lie along the axes.
 Boxf box_along(const std::array<Vec3f, 3>& axes, const Boxf& box) {

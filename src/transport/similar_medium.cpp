@@ -18,6 +18,8 @@ constexpr int passes_of_first_order = 64;
 /// The first order takes no larger share than this for a peak. With more, light that is scattered
 /// twice by small angles, towards which one looks at a sun through the medium, is too dark.
 constexpr float largest_first_peak = 0.6f;
+/// The same of passes that gather photons by walks (docs/decisions.md).
+constexpr float largest_peak_of_walks = 0.45f;
 
 /// In media of this typical depth without the peak or more, the first order is the lowest; in
 /// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
@@ -40,21 +42,26 @@ Volume similar_volume(const Volume& volume, float f, PeakTakenOut& peak) {
   return similar;
 }
 
-/// The order of the first passes; what is beyond a whole number is the share of passes of one more.
-double first_order(const Medium& medium) {
-  const auto forward = [](const PhaseFunction& phase, int order) {
-    return truncate_peak(phase, order).forward;
-  };
-  int lowest = least_truncation_order, highest = most_order_for_thinness;
+/// The lowest order that takes no larger share than this of any phase function for a peak.
+int lowest_order(const Medium& medium, float largest_peak) {
+  int lowest = least_truncation_order;
   while (lowest < most_truncation_order &&
          std::any_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
-           return forward(phase, lowest) > largest_first_peak;
+           return truncate_peak(phase, lowest).forward > largest_peak;
          }))
     ++lowest;
+  return lowest;
+}
+
+/// The order of the first passes; what is beyond a whole number is the share of passes of one more.
+double first_order(const Medium& medium) {
+  const int lowest = lowest_order(medium, largest_first_peak);
+  int highest = most_order_for_thinness;
   // Not so high that there is no peak to take out.
   while (highest > lowest &&
-         std::all_of(medium.phases.begin(), medium.phases.end(),
-                     [&](const PhaseFunction& phase) { return forward(phase, highest) == 0; }))
+         std::all_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
+           return truncate_peak(phase, highest).forward == 0;
+         }))
     --highest;
   const auto similar = highest > lowest ? similar_medium(medium, lowest) : nullptr;
   if (!similar)
@@ -119,21 +126,24 @@ double typical_depth(const Medium& medium) {
 
 PassWorlds::PassWorlds(const World& world, bool take_out)
     : world_(world), take_out_(take_out),
-      first_order_(take_out ? first_order(world.medium) : least_truncation_order) {}
+      first_order_(take_out ? first_order(world.medium) : least_truncation_order),
+      first_order_of_walks_(std::max<double>(
+          first_order_,
+          take_out ? lowest_order(world.medium, largest_peak_of_walks) : least_truncation_order)) {}
 
-int PassWorlds::order(int pass) const {
+int PassWorlds::order(int pass, bool walks) const {
   // Multiples of the golden ratio spread the passes of one more evenly.
   const double spread = std::fmod(0.5 + 0.61803398875 * pass, 1.0);
-  int result = static_cast<int>(first_order_ + spread);
+  int result = static_cast<int>((walks ? first_order_of_walks_ : first_order_) + spread);
   for (std::int64_t until = passes_of_first_order; pass >= until; until *= 3)
     ++result;
   return std::min(result, most_truncation_order);
 }
 
-const World& PassWorlds::of(int pass) {
+const World& PassWorlds::of(int pass, bool walks) {
   if (!take_out_)
     return world_;
-  const auto [at, is_new] = similar_.try_emplace(order(pass));
+  const auto [at, is_new] = similar_.try_emplace(order(pass, walks));
   if (is_new)
     if (const auto medium = similar_medium(world_.medium, at->first)) {
       at->second = std::make_unique<World>(world_);

@@ -22,17 +22,19 @@ public:
   /// `world` must outlive this. `take_out`: false where the scene's own medium is wanted.
   PassWorlds(const World& world, bool take_out);
 
-  /// The world of a pass.
-  const World& of(int pass);
+  /// The world of a pass. `walks`: as for passes that gather photons by walks.
+  const World& of(int pass, bool walks = false);
 
   /// The truncation order of a pass: at first one that leaves enough of each phase function, higher
-  /// where the medium is thin; then one more whenever the number of passes has tripled.
-  int order(int pass) const;
+  /// where the medium is thin or where walks gather, whose kernels blur so little that truncation
+  /// would be most of the bias; then one more whenever the number of passes has tripled.
+  int order(int pass, bool walks = false) const;
 
 private:
   const World& world_;
   bool take_out_;
   double first_order_; ///< what is beyond a whole number is the share of passes of one more
+  double first_order_of_walks_;                   ///< likewise
   std::map<int, std::unique_ptr<World>> similar_; ///< by order; null where no peak is taken out
 };
 

@@ -239,5 +239,23 @@ TEST(PassWorlds, TakeOutLessAndLess) {
   EXPECT_FALSE(PassWorlds(world, false).of(0).medium.peak);
 }
 
+/// Walks blur so little that truncation would be most of the bias: no more than 45 % is taken out.
+TEST(PassWorlds, TakeOutLessWhereWalksGather) {
+  for (const double g : {0.7, 0.85, 0.9}) {
+    const MemoryScene scene = lumps(1000, henyey_greenstein(g));
+    const World world = scene.world();
+    PassWorlds worlds(world, true);
+    for (const int pass : {16, 100, 1000}) {
+      EXPECT_GE(worlds.order(pass, true), worlds.order(pass));
+      const World& similar = worlds.of(pass, true);
+      EXPECT_LE(similar.medium.peak ? similar.medium.peak->forward[0] : 0, 0.45f);
+    }
+  }
+  const MemoryScene scene = lumps(1000, henyey_greenstein(0.85));
+  const World world = scene.world();
+  const PassWorlds worlds(world, true);
+  EXPECT_GT(worlds.order(16, true), worlds.order(16));
+}
+
 } // namespace
 } // namespace vdbeam
