@@ -82,7 +82,7 @@ enum class PhotonThinning { automatic, view, even };
 /// from pass to pass (docs/physics.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
 /// Whether `beam` gathers photons where walks from the camera ray arrive, not along it; automatic:
-/// in later passes where a pilot tells that it pays (docs/physics.md, "Final gathering").
+/// from the pass on from which a pilot tells that it pays (docs/physics.md, "Final gathering").
 enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).

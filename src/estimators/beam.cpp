@@ -2,11 +2,10 @@
 
 #include "estimators/beam_weights.h"
 #include "estimators/blur_probe.h"
-#include "estimators/choose_final_gather.h"
 #include "estimators/deep_tile.h"
 #include "estimators/estimator_table.h"
-#include "estimators/final_gather.h"
 #include "estimators/tile_shading.h"
+#include "estimators/walk_pass.h"
 
 namespace vdbeam {
 
@@ -21,10 +20,12 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   weights.colored = channels > 1;
   weights.reach = 4 * photons_.map().mean_radius();
   BlurProbe blur(input_, photons_);
-  const bool finally = photons_.plan().gathers_finally(pass);
+  std::optional<WalkPass> walks;
+  if (photons_.plan().gathers_finally(pass))
+    walks.emplace(input_, photons_, pass);
   const auto gather = [&](TileScratch& scratch, const RngKey& key) {
-    if (finally)
-      return gather_finally(scratch, key, blur, image);
+    if (walks)
+      return walks->gather(scratch, key, blur, image);
     fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
     scratch.tile.radiance.assign(static_cast<std::size_t>(channels) * BeamTile::ray_count, 0);
     scratch.tile.first_flight.assign(first_flights ? scratch.tile.radiance.size() : 0, 0);
@@ -55,35 +56,12 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
     photons_.map().query_ray(ray_weights(world, ray, profile, weights, table), sum);
     return sum;
   };
-  shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
+  shade_tiles(walks ? walks->input() : input_, photons_, pass, image, statistics, gather,
+              gather_along);
+  if (walks)
+    walks->share(blur, image);
   image.blur = blur.take();
   photons_.release();
-}
-
-/// What walks from the tile's rays gather, in place of what lies along them.
-void BeamEstimator::gather_finally(TileScratch& scratch, const RngKey& key, BlurProbe& blur,
-                                   PassImage& image) const {
-  const World& world = photons_.world();
-  const PhotonMap* narrow = input_.blur_pixels ? &photons_.narrow_map() : nullptr;
-  const FinalGather gather(world, photons_.plan(), photons_.map());
-  const FinalGather twice(world, photons_.plan(), photons_.map(), narrow);
-  for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
-    const TileRays::PixelRay& ray = scratch.rays[i];
-    if (!ray.inside || ray.profile.empty())
-      continue;
-    PixelValue* probe = blur.find(ray.pixel);
-    Rng rng(key, RngStage::final_gather, ray.pixel);
-    const GatheredLight light =
-        (probe ? twice : gather)
-            .gather(ray.camera.ray(), ray.profile, final_gather_walks, rng, scratch.statistics,
-                    DeepRay(world, ray.camera, ray.pixel, image),
-                    VolumeLights(input_.layers, ray.pixel, image));
-    ++scratch.statistics.lookups;
-    image.direct[ray.pixel] += light.direct;
-    image.indirect[ray.pixel] = light.indirect;
-    if (probe)
-      probe->radiance = light.blur;
-  }
 }
 
 /// The same photons once more for each volume, for its layer.

@@ -7,7 +7,6 @@
 
 namespace vdbeam {
 
-class BlurProbe;
 struct TileScratch;
 
 /// The beam radiance estimate (Jarosz, Zwicker, Jensen 2008, eq. 11) for heterogeneous media: per
@@ -24,8 +23,6 @@ public:
   const PhotonPass& photons() const { return photons_; }
 
 private:
-  void gather_finally(TileScratch& scratch, const RngKey& key, BlurProbe& blur,
-                      PassImage& image) const;
   void gather_volumes(TileScratch& scratch, WeightSettings weights, PassImage& image);
 
   EstimatorInput input_;

@@ -154,8 +154,9 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
   const KernelModel model(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
   plan.neighbours = in_kernel_steps(model.best_neighbours());
-  plan.trial = std::make_shared<const KernelTrialResult>(KernelTrialResult{model, errors.pixels});
-  plan.first_final_gather = choose_final_gather(input, plan, narrow, trial_paths / paths);
+  plan.trial = std::make_shared<const KernelTrialResult>(
+      KernelTrialResult{model, errors.pixels, errors.sharing});
+  plan.walks = choose_final_gather(input, plan, narrow, trial_paths / paths);
 }
 
 } // namespace
@@ -178,8 +179,9 @@ PhotonPlan plan_beam_photons(const EstimatorInput& input) {
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
     try_kernels(input, plan);
-  if (input.settings.final_gather == FinalGathering::always && may_gather_finally(input, plan))
-    plan.first_final_gather = 0;
+  if (input.settings.final_gather == FinalGathering::always && !plan.walks &&
+      may_gather_finally(input, plan))
+    plan.walks.emplace();
   return plan;
 }
 

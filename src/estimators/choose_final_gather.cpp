@@ -5,19 +5,16 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace vdbeam {
 
 namespace {
 
-/// Passes before the first that gathers finally, at least and at most. In few passes there is more
-/// noise than bias, and noise is what walks have more of.
-constexpr int fewest_passes_before = 16, most_passes_before = 512;
-/// The two are compared after as many times the passes before. That is late, but the error that is
-/// forecast for walks is rather too large (docs/decisions.md).
+/// Passes before the first that gathers finally, at least and at most, unless it is the very first.
+constexpr int fewest_passes_before = 4, most_passes_before = 512;
+/// The two are compared after as many times the passes before, and after no fewer than so many.
 constexpr int compared_passes = 8;
-/// By which the time of a pass grows, measured on clouds of all depths (docs/decisions.md).
-constexpr double relative_time = 2;
-
 /// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
 struct GatherNoise {
   double walks = 0; ///< of the walks of a ray, among the same photons
@@ -47,7 +44,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
       const FinalGather gather(input.world, plan, map);
       const auto light = [&] {
         const GatheredLight found =
-            gather.gather(ray.camera.ray(), ray.profile, final_gather_walks, rng, uncounted);
+            gather.gather(ray.camera.ray(), ray.profile, WalkPlan::most_walks, rng, uncounted);
         return found.direct + found.indirect;
       };
       const Rgb a = light(), b = light(), d = a - b;
@@ -85,19 +82,26 @@ bool lights_are_easy(const EstimatorInput& input, const PhotonPlan& plan) {
 
 } // namespace
 
-std::optional<int> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
-                                       const KernelTrial& trial, double paths_share) {
+std::optional<WalkPlan> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
+                                            const KernelTrial& trial, double paths_share) {
+  const bool asked_for = input.settings.final_gather == FinalGathering::always;
   if (!plan.trial || plan.trial->pixels.empty() || trial.maps.size() < 2 ||
-      input.settings.final_gather != FinalGathering::automatic ||
-      !may_gather_finally(input, plan) || !lights_are_easy(input, plan))
+      !may_gather_finally(input, plan) || (!asked_for && !lights_are_easy(input, plan)))
     return std::nullopt;
   const GatherNoise noise = measure_noise(input, plan, trial);
-  const double of_photons = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
-  const double error = relative_time * (of_photons + noise.walks);
-  for (int first = fewest_passes_before; first <= most_passes_before; first *= 2) {
-    const int passes = compared_passes * first;
-    if (error > 0 && error / passes < plan.trial->model.error(plan.neighbours, passes))
-      return first;
+  const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
+  const double of_photons =
+      in_trial * trial.neighbours / (final_gather_neighbours * plan.neighbours);
+  WalkPlan walks{0, noise.walks, of_photons, plan.trial->sharing};
+  if (asked_for)
+    return walks;
+  for (int first = 0; first <= most_passes_before;
+       first = std::max(fewest_passes_before, 2 * first)) {
+    const int passes = compared_passes * std::max(1, first);
+    const double error = walks.error_after(passes);
+    walks.first = first;
+    if (error > 0 && error < plan.trial->model.error(plan.neighbours, passes))
+      return walks;
   }
   return std::nullopt;
 }

@@ -1,10 +1,7 @@
 #include "estimators/kernel_pilot.h"
 
-#include "estimators/beam_weights.h"
-#include "estimators/direct_light.h"
-#include "estimators/pixel_tiles.h"
-#include "estimators/profile_shading.h"
-#include "estimators/tile_rays.h"
+#include "estimators/sharing_trial.h"
+#include "estimators/trial_tile.h"
 
 #include <tbb/parallel_for.h>
 
@@ -16,13 +13,9 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int most_tiles = 120;
 /// Of a tile's pixels, one in so many is told to the caller: fewer are passed over where not so
 /// many samples would be left, of which some dark pixel might weigh more than all others.
 constexpr std::size_t pixels_between_samples = 48, fewest_samples = 64;
-/// Added to the brightness in the weights, as 0.01 is in MRSE, but relative to the mean: dimming a
-/// light must not change the kernels.
-constexpr double offset = 0.03;
 /// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
 /// against all that they blur, less where they are as wide (measured, docs/decisions.md).
 constexpr double bias_power = 0.5;
@@ -35,144 +28,41 @@ constexpr int balanced_passes = 32;
 /// Adaptive radii are accurate from 32 neighbours on (docs/performance.md); fewer are never chosen.
 constexpr double fewest_neighbours = 32;
 
-struct Tile {
-  int x0, y0;
-};
-
-/// Tiles spread over the picture; all of them where it is small.
-std::vector<Tile> choose_tiles(const Camera& camera) {
-  const int columns = (camera.width() + tile_width - 1) / tile_width;
-  const int rows = (camera.height() + tile_width - 1) / tile_width;
-  const std::int64_t all = static_cast<std::int64_t>(columns) * rows;
-  const std::int64_t count = std::min<std::int64_t>(all, most_tiles);
-  // Steps along the rows of tiles; the additive recurrence keeps them from lining up in columns.
-  std::vector<Tile> tiles;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const double shift = 0.6180339887498949 * static_cast<double>(i);
-    const double place = (static_cast<double>(i) + shift - std::floor(shift)) *
-                         static_cast<double>(all) / static_cast<double>(count);
-    const auto tile = static_cast<int>(std::min(static_cast<std::int64_t>(place), all - 1));
-    tiles.push_back({tile % columns * tile_width, tile / columns * tile_width});
-  }
-  return tiles;
-}
-
-/// What the tile's rays gather from each map: [map][ray], one channel after another.
-std::vector<std::vector<float>> gather(const std::vector<PhotonMap>& maps, BeamTile& tile) {
-  std::vector<std::vector<float>> pictures;
-  for (const PhotonMap& map : maps) {
-    tile.radiance.assign(static_cast<std::size_t>(map.channels()) * BeamTile::ray_count, 0);
-    map.query(tile);
-    pictures.push_back(tile.radiance);
-  }
-  return pictures;
-}
-
-/// Mean and sum of squared deviations of one value over the maps.
-struct Spread {
-  double mean = 0, squares = 0;
-
-  Spread(const std::vector<std::vector<float>>& pictures, std::size_t i) {
-    const auto count = static_cast<double>(pictures.size());
-    for (const auto& picture : pictures)
-      mean += static_cast<double>(picture[i]) / count;
-    for (const auto& picture : pictures) {
-      const double d = static_cast<double>(picture[i]) - mean;
-      squares += d * d;
-    }
-  }
-};
-
-/// What a tile's rays that meet the medium see.
-struct TileView {
-  std::vector<std::vector<float>> narrow, wide; ///< by map
-  std::vector<std::size_t> pixels;              ///< of the picture
-  std::vector<std::size_t> places;              ///< of a pixel's channel in a map's picture
-  std::vector<double> known;                    ///< its light that does not come from photons
-  double brightness = 0;                        ///< sum over the pixels
-};
-
-TileView view_tile(const EstimatorInput& input, const PhotonPlan& plan, const Tile& place,
-                   const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key) {
-  const World& world = input.world;
-  TileRays rays;
-  rays.prepare(input, key, place.x0, place.y0);
-  WeightSettings weights;
-  weights.store = input.settings.store;
-  weights.albedo_in_power = plan.albedo_in_power;
-  weights.colored = input.photon_channels() > 1;
-  BeamTile tile;
-  fill_beam_tile(world, input.camera, rays, weights, tile);
-  TileView view{gather(narrow.maps, tile), gather(wide.maps, tile), {}, {}, {}, 0};
-  PassImage beside;
-  beside.resize(TileRays::count, 1, !world.medium.emitters.empty());
-  std::uint64_t shadow_rays = 0, emission_rays = 0;
-  const std::size_t channels = view.wide[0].size() / TileRays::count;
-  for (std::size_t i = 0; i < TileRays::count; ++i) {
-    const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
-    if (!ray.inside || ray.profile.empty())
-      continue;
-    shade_profile(input, ray.camera, ray.profile, i, beside, emission_rays);
-    // One sample is enough, since it only enters the pixel's weight.
-    Rng rng(key, RngStage::direct, ray.pixel);
-    const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
-                                                     plan.sampled_lights, 1, rng, shadow_rays);
-    view.pixels.push_back(ray.pixel);
-    for (std::size_t c = 0; c < channels; ++c) {
-      view.places.push_back(c * TileRays::count + i);
-      view.known.push_back(
-          static_cast<double>(channels == 1 ? mean_component(known) : known[static_cast<int>(c)]));
-      view.brightness += view.known.back() + Spread(view.wide, view.places.back()).mean;
-    }
-  }
-  return view;
-}
-
-double weight_of(double brightness, double dark) {
-  const double offset_brightness = std::max(0.0, brightness) + dark;
-  return 1 / (offset_brightness * offset_brightness);
-}
-
 /// Sums over a tile's pixels.
 struct TileSums {
   double narrow = 0, wide = 0, change = 0;
 
-  TileSums(const TileView& view, double dark) {
+  TileSums(const TrialTile& view, double dark) {
     for (std::size_t i = 0; i < view.places.size(); ++i)
       add(view, view.places[i], view.known[i], dark);
   }
 
 private:
-  void add(const TileView& view, std::size_t place, double known, double dark) {
+  void add(const TrialTile& view, std::size_t place, double known, double dark) {
     const auto count = static_cast<double>(view.narrow.size());
     const Spread n(view.narrow, place), w(view.wide, place);
-    const double weight = weight_of(known + w.mean, dark);
+    const double weight = trial_weight(known + w.mean, dark);
     narrow += weight * n.squares / (count - 1);
     wide += weight * w.squares / (count - 1);
-    // The mean over pairs of different maps, of which noise is no part: the square of the sum less
-    // the squares.
-    double sum = 0, squares = 0;
-    for (std::size_t m = 0; m < view.narrow.size(); ++m) {
-      const double d =
-          static_cast<double>(view.wide[m][place]) - static_cast<double>(view.narrow[m][place]);
-      sum += d;
-      squares += d * d;
-    }
-    change += weight * (sum * sum - squares) / (count * (count - 1));
+    PairedSums changes;
+    for (std::size_t m = 0; m < view.narrow.size(); ++m)
+      changes.add(static_cast<double>(view.wide[m][place]) -
+                  static_cast<double>(view.narrow[m][place]));
+    change += weight * changes.common_square();
   }
 };
 
 /// One in so many of the tile's pixels, with their weights.
-void add_pixels(const TileView& view, std::size_t step, double dark,
+void add_pixels(const TrialTile& view, std::size_t step, double dark,
                 std::vector<TrialPixel>& pixels) {
-  const std::size_t channels = view.pixels.empty() ? 1 : view.places.size() / view.pixels.size();
+  const std::size_t channels = view.channels();
   for (std::size_t i = 0; i < view.pixels.size(); i += step) {
     TrialPixel sample{view.pixels[i], {}};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t at = i * channels + std::min(c, channels - 1);
       const double mean = Spread(view.wide, view.places[at]).mean;
       sample.weight[static_cast<int>(c)] =
-          static_cast<float>(weight_of(view.known[at] + mean, dark));
+          static_cast<float>(trial_weight(view.known[at] + mean, dark));
     }
     pixels.push_back(sample);
   }
@@ -183,28 +73,29 @@ void add_pixels(const TileView& view, std::size_t step, double dark,
 KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan,
                              const KernelTrial& narrow, const KernelTrial& wide, const RngKey& key,
                              std::uint64_t& rays) {
-  const std::vector<Tile> tiles = choose_tiles(input.camera);
-  std::vector<TileView> views(tiles.size());
+  const std::vector<TilePlace> tiles = choose_trial_tiles(input.camera);
+  std::vector<TrialTile> views(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
     if (!input.stopped())
-      views[i] = view_tile(input, plan, tiles[i], narrow, wide, key);
+      views[i] = view_trial_tile(input, plan, tiles[i], narrow.maps, wide.maps, key);
   });
   rays += tiles.size() * TileRays::count;
   if (input.stopped())
     return {};
   // In the order of the tiles, so that sums are the same for any number of threads.
   double brightness = 0, pixels = 0;
-  for (const TileView& view : views) {
+  for (const TrialTile& view : views) {
     brightness += view.brightness;
     pixels += static_cast<double>(view.places.size());
   }
   KernelErrors errors;
   if (!(brightness > 0))
     return errors;
+  const double dark = dark_offset * brightness / pixels;
   std::vector<TileSums> sums;
   sums.reserve(views.size());
-  for (const TileView& view : views)
-    sums.emplace_back(view, offset * brightness / pixels);
+  for (const TrialTile& view : views)
+    sums.emplace_back(view, dark);
   for (const TileSums& tile : sums) {
     errors.noise_narrow += tile.narrow;
     errors.noise_wide += tile.wide;
@@ -218,12 +109,13 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
        {&errors.noise_narrow, &errors.noise_wide, &errors.change, &errors.change_error})
     *sum /= pixels;
   std::size_t hits = 0;
-  for (const TileView& view : views)
+  for (const TrialTile& view : views)
     hits += view.pixels.size();
   const std::size_t step =
       std::clamp(hits / fewest_samples, std::size_t{1}, pixels_between_samples);
-  for (const TileView& view : views)
-    add_pixels(view, step, offset * brightness / pixels, errors.pixels);
+  for (const TrialTile& view : views)
+    add_pixels(view, step, dark, errors.pixels);
+  errors.sharing = measure_sharing(input, views, dark);
   return errors;
 }
 

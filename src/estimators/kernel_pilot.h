@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/photon_plan.h"
+#include "estimators/walk_plan.h"
 
 #include <cstdint>
 #include <vector>
@@ -26,6 +27,7 @@ struct KernelErrors {
   double change = 0;       ///< mean square change of the mean picture between the trials, unbiased
   double change_error = 0; ///< its standard error
   std::vector<TrialPixel> pixels; ///< a few of them
+  SharingTrial sharing;           ///< what sharing would do to the pictures in narrow kernels
 };
 
 /// Looks at the trials through some tiles of the camera's picture. Adds to `rays` those that it
@@ -70,6 +72,7 @@ private:
 struct KernelTrialResult {
   KernelModel model;
   std::vector<TrialPixel> pixels;
+  SharingTrial sharing;
 };
 
 } // namespace vdbeam

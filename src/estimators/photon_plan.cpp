@@ -22,16 +22,13 @@ constexpr double most_photons = 4e6;
 /// per camera ray that meets the medium up to which there are.
 constexpr double most_for_hidden_lights = 8;
 constexpr double photons_per_hit = 1;
-/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
-/// out some of its noise (docs/decisions.md).
-constexpr float final_gather_neighbours = 0.5f;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
 /// Shadow rays per camera ray: where the medium is thin, single scattering is most of the light and
 /// its noise most of the error; where it is thick, the photons' noise hides it (docs/decisions.md).
 constexpr double direct_per_collision = 12;
-constexpr int most_samples = 6;
+constexpr int fewest_samples = 2, most_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
 /// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
 constexpr float surface_neighbours = 64;
@@ -79,7 +76,7 @@ bool samples_extended_light(const World& world, const PhotonPlan& plan) {
 /// Shadow rays of a camera ray where light is scattered so many times.
 int samples_for(double collisions) {
   const double samples = std::round(direct_per_collision / (1 + collisions));
-  return static_cast<int>(std::clamp(samples, 1.0, static_cast<double>(most_samples)));
+  return static_cast<int>(std::clamp<double>(samples, fewest_samples, most_samples));
 }
 
 } // namespace
@@ -226,7 +223,7 @@ RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& pl
   radii.fixed_radius = static_cast<float>(settings.radius) * scale;
   radii.neighbours = static_cast<float>(plan.neighbours);
   if (plan.gathers_finally(pass) && settings.neighbours == 0)
-    radii.neighbours *= final_gather_neighbours;
+    radii.neighbours *= static_cast<float>(final_gather_neighbours);
   radii.scale = radius_scale(pass, settings.alpha);
   radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
   // Kernels as wide as the medium would lose most of its light outside.

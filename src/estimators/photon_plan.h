@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "estimators/walk_plan.h"
 #include "photonmap/photon_map.h"
 #include "transport/photon_tracing.h"
 
@@ -44,9 +45,9 @@ struct PhotonPlan {
   /// small and lights have an extent, since what is seen there is mostly scattered once.
   int direct_samples_of(float depth) const;
 
-  /// Pass from which on photons are gathered by walks (FinalGather); none: never.
-  std::optional<int> first_final_gather;
-  bool gathers_finally(int pass) const { return first_final_gather && pass >= *first_final_gather; }
+  /// Passes whose photons are gathered by walks (FinalGather); none: there are no such passes.
+  std::optional<WalkPlan> walks;
+  bool gathers_finally(int pass) const { return walks && pass >= walks->first; }
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
@@ -87,6 +88,9 @@ std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const Photon
 
 /// Collisions of one path that are stored on average: more of them tell little that is new.
 inline constexpr double stored_per_path_aim = 4;
+/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
+/// out some of its noise (docs/decisions.md).
+inline constexpr double final_gather_neighbours = 0.5;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,

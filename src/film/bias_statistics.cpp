@@ -13,9 +13,6 @@ namespace vdbeam {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Bias goes as the width of kernels to this power: 2 where they are small against all that they
-/// blur, less where they are as wide (measured, docs/decisions.md).
-constexpr double blur_power = 1.5;
 
 /// Value and standard error by leaving out each batch in turn (jackknife).
 template <class Value>
@@ -51,18 +48,13 @@ ProbeDifferences compare_probes(const PassHistory& history, std::size_t batch) {
   return result;
 }
 
-/// What the whole blur is to that between the kernels and the narrower ones.
-double whole_blur() {
-  return 1 / (1 - std::pow(static_cast<double>(PassImage::blur_narrowing), blur_power));
-}
-
 Differences compare_kernels(const PassHistory& history, std::size_t batch) {
   Differences result;
   result.weights.assign(history.blurs(batch), history.blurs(batch) + history.pixels().size());
   result.sums.assign(history.blur_sums(batch),
                      history.blur_sums(batch) + 3 * result.weights.size());
   for (double& sum : result.sums)
-    sum *= whole_blur();
+    sum /= PassImage::shown_blur();
   return result;
 }
 

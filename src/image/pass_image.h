@@ -40,9 +40,13 @@ struct PassImage {
   /// Per piece of the layout, the light of the medium (R, G, B) and the opacity that it adds.
   std::vector<float> deep;
   /// At some pixels: what the kernels of the pass gave less what kernels of the same photons give
-  /// that are `blur_narrowing` times as wide.
+  /// that are `blur_narrowing` times as wide; and as large a share of other blur.
   std::vector<PixelValue> blur;
   static constexpr float blur_narrowing = 0.5f;
+  /// The share of the kernels' bias that this is, which goes as their width to the power of 1.5: of
+  /// 2 where they are small against all that they blur, less where they are as wide (measured,
+  /// docs/decisions.md).
+  static double shown_blur() { return 1 - std::pow(static_cast<double>(blur_narrowing), 1.5); }
   /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
   /// which all of them are unless the pass was stopped.
   std::vector<std::uint8_t> finished_tiles;

@@ -281,8 +281,9 @@ void add_render(KeyTable& table) {
       "auto: multiple scattering without the forward peak of the phase function, less of which is "
       "taken out as passes are added; kept: with all of it");
   table.add("final_gather", &R::final_gather,
-            "photons are gathered where walks from the camera ray arrive, not along it: less bias, "
-            "more noise; auto: from the 17th pass on or later, where a pilot tells that it pays");
+            "photons are gathered where walks from the camera ray arrive, not along it, and "
+            "neighbouring pixels share what walks find; auto: from the first pass on or a later "
+            "one, where a pilot tells that it pays");
   table
       .add_auto("keep", &R::keep,
                 "share of a light path's collisions that become photons, the same everywhere")

@@ -28,8 +28,10 @@ MemoryScene lumps(double depth) {
   return scene;
 }
 
+/// So small that the photons of a pass are few; in large pictures `beam` is ahead.
 MemoryScene thin_under_a_sky() {
-  MemoryScene scene = lumps(0.4);
+  MemoryScene scene = lumps(1);
+  scene.scene.image.width = scene.scene.image.height = 32;
   scene.add_light(LightType::environment);
   return scene;
 }

@@ -30,13 +30,15 @@ MemoryScene lumps(double extinction, int width) {
 
 std::optional<int> first_final_gather(const MemoryScene& scene) {
   const TestFrame frame(scene);
-  return BeamEstimator(frame.input()).photons().plan().first_final_gather;
+  const BeamEstimator estimator(frame.input());
+  const std::optional<WalkPlan>& walks = estimator.photons().plan().walks;
+  return walks ? std::optional(walks->first) : std::nullopt;
 }
 
 /// Where the medium is thin kernels blur little, and walks are noisier than kernels.
-TEST(FinalGather, IsUsedInLaterPassesWhereItPays) {
-  EXPECT_EQ(first_final_gather(lumps(10, 160)), std::nullopt);
-  EXPECT_EQ(first_final_gather(lumps(160, 160)), 16);
+TEST(FinalGather, IsUsedWhereItPays) {
+  EXPECT_EQ(first_final_gather(lumps(2, 48)), std::nullopt);
+  EXPECT_EQ(first_final_gather(lumps(160, 48)), 0);
 }
 
 /// Shadow rays to a lamp among the lumps have no bound, which a pilot would miss.

@@ -21,7 +21,7 @@ KernelTrial trial(double neighbours) {
 
 TEST(BestNeighbours, FollowsNoiseAndBias) {
   const auto best = [](double noise, double change, double error) {
-    const KernelErrors errors{noise, noise / 4, change, error, {}};
+    const KernelErrors errors{noise, noise / 4, change, error, {}, {}};
     return KernelModel(trial(100), trial(800), errors, 0.25, 0.6).best_neighbours();
   };
   EXPECT_GT(best(20, 0.1, 0), best(10, 0.1, 0));
@@ -36,7 +36,7 @@ TEST(BestNeighbours, FollowsNoiseAndBias) {
 
 TEST(BestNeighbours, LeansOnTheUsualNumberWhereTheTrialTellsLittle) {
   const auto best = [](double change, double error) {
-    const KernelErrors errors{1, 0.25, change, error, {}};
+    const KernelErrors errors{1, 0.25, change, error, {}, {}};
     return KernelModel(trial(600), trial(2400), errors, 0.25, 0.6).best_neighbours();
   };
   const double sure = best(1, 0), usual = best(0, 1e9);

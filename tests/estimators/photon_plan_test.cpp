@@ -15,10 +15,10 @@ TEST(PhotonPlan, ThinRaysTakeMoreShadowRays) {
   plan.most_direct_samples = 6;
   EXPECT_EQ(plan.direct_samples_of(0), 6);
   EXPECT_EQ(plan.direct_samples_of(3), 3);
-  EXPECT_EQ(plan.direct_samples_of(30), 1);
-  plan.direct_samples = plan.most_direct_samples = 2; // the user's own number
-  EXPECT_EQ(plan.direct_samples_of(0), 2);
   EXPECT_EQ(plan.direct_samples_of(30), 2);
+  plan.direct_samples = plan.most_direct_samples = 1; // the user's own number
+  EXPECT_EQ(plan.direct_samples_of(0), 1);
+  EXPECT_EQ(plan.direct_samples_of(30), 1);
 }
 
 /// Shadow rays per camera ray through a ball of optical depth 60 with thin rims.
@@ -41,10 +41,10 @@ double shadow_rays_per_ray(double angular_radius) {
   return static_cast<double>(counts.shadow_rays) / static_cast<double>(counts.depth_profiles);
 }
 
-TEST(PhotonPlan, ThickMediaTakeOneForLightOfOneDirection) {
-  EXPECT_LE(shadow_rays_per_ray(0), 1);
+TEST(PhotonPlan, ThickMediaTakeTwoForLightOfOneDirection) {
+  EXPECT_LE(shadow_rays_per_ray(0), 2);
   // The phase function seldom finds a disc of 10 degrees, so that there is about a ray per sample.
-  EXPECT_GT(shadow_rays_per_ray(10), 1.5);
+  EXPECT_GT(shadow_rays_per_ray(10), 2.2);
 }
 
 /// A cloud that grows while the shutter is open: render space has another unit from 2 on.

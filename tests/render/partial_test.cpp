@@ -148,9 +148,14 @@ TEST_F(Partial, DamagedAndForeignFilesAreRefusedInOneLine) {
 }
 
 TEST(Region, PixelsAreThoseOfTheWholeImage) {
-  for (const char* estimator : {"beam", "march", "path"}) {
-    const Scene scene =
-        small_cloud({std::string("render.estimator=") + estimator, "render.passes=2"});
+  const std::vector<std::vector<std::string>> ways = {
+      {"render.estimator=beam", "render.final_gather=never"},
+      {"render.estimator=beam", "render.final_gather=always"},
+      {"render.estimator=march"},
+      {"render.estimator=path"}};
+  for (std::vector<std::string> way : ways) {
+    way.push_back("render.passes=2");
+    const Scene scene = small_cloud(way);
     const Image whole = render(scene).image;
     FrameSettings frame;
     frame.region = PixelRegion{9, 5, 31, 19};
@@ -162,7 +167,7 @@ TEST(Region, PixelsAreThoseOfTheWholeImage) {
         for (int x = 0; x < part.width; ++x)
           ASSERT_EQ(part.find(name)->data[static_cast<std::size_t>(y * part.width + x)],
                     whole.find(name)->data[static_cast<std::size_t>((y + 5) * 40 + x + 9)])
-              << estimator << " " << name << " " << x << " " << y;
+              << way[0] << " " << name << " " << x << " " << y;
   }
 }
 
