@@ -58,8 +58,12 @@ WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int p
       narrow_(input.camera, input.world.space.scale, narrower(sharing_.radius())),
       walks_(photons.plan().walks->walks(pass)) {
   wide_.window = widened(window_, sharing_.reach(), input.camera);
-  walked_.resize(input.camera.width(), input.camera.height(), false, nullptr, 0,
-                 input.plane_count());
+  const auto pixels = static_cast<std::size_t>(input.camera.width()) *
+                      static_cast<std::size_t>(input.camera.height());
+  walked_.direct.resize(pixels);
+  walked_.indirect.resize(pixels);
+  if (input.layers && input.layers->tells_volumes())
+    walked_.planes.assign(input.plane_count(), std::vector<float>(pixels));
 }
 
 void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image) {

@@ -28,6 +28,9 @@ public:
   /// around which some were not finished are no longer finished themselves.
   void share(BlurProbe& blur, PassImage& image) const;
 
+  /// What a pass takes beyond its picture; layers of volumes twice.
+  static constexpr std::size_t bytes_per_pixel() { return 2 * sizeof(Rgb); }
+
 private:
   void share_pixel(int x, int y, BlurProbe& blur, PassImage& image) const;
   /// What the walks of the pixel found once it is shared.

@@ -62,6 +62,8 @@ std::span<const WalkSharing::Share> WalkSharing::shares(const SeenMedium& seen, 
     return {shares.data(), 1};
   const float distance = seen.depth[center] / opacity;
   const float deepest = this->deepest(seen, x, y, distance);
+  if (!(deepest > 0)) // a medium at the lens itself
+    return {shares.data(), 1};
   const float widest_squared = (radius_ + 1) * (radius_ + 1);
   std::array<std::array<double, 2>, most_shares> offsets;
   Moments moments;

@@ -3,6 +3,7 @@
 #include "estimators/camera_ray.h"
 #include "estimators/light_groups.h"
 #include "estimators/plane_layers.h"
+#include "estimators/walk_pass.h"
 #include "film/cryptomatte.h"
 #include "film/film.h"
 #include "photonmap/photon_map.h"
@@ -231,6 +232,11 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(),
       light_group_names(scene).size(),
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
+  if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
+      scene.render.final_gather != FinalGathering::never && scene.surfaces.empty())
+    plan.film_bytes += WalkPass::bytes_per_pixel() *
+                       static_cast<std::uint64_t>(scene.image.raster_width()) *
+                       static_cast<std::uint64_t>(scene.image.raster_height());
   return plan;
 }
 

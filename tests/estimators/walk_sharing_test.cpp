@@ -102,6 +102,12 @@ TEST(WalkSharing, LeavesWhatSeesNothing) {
     EXPECT_NE(share.pixel, std::size_t{4 * width + 4});
 }
 
+TEST(WalkSharing, KeepsItsOwnLightAtTheLens) {
+  Square square;
+  square.distance.assign(square.distance.size(), 0);
+  EXPECT_EQ(square.shared(2, 4, 4, [](int px, int) { return px; }), 4);
+}
+
 TEST(WalkPlan, SharesLessFromPassToPass) {
   WalkPlan plan{3, 1, 0, {{1, 0.4, 0.3, 0.2, 0.1, 0.07, 0.04}, 0.05}};
   float before = plan.sharing_radius(3);
