@@ -61,6 +61,7 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
   if (walks)
     walks->share(blur, image);
   image.blur = blur.take();
+  image.truncation = truncation(world.medium);
   photons_.release();
 }
 

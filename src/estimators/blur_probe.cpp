@@ -5,7 +5,7 @@
 namespace vdbeam {
 
 BlurProbe::BlurProbe(const EstimatorInput& input, const PhotonPass& photons)
-    : map_(photons.narrow_map()) {
+    : map_(photons.compared_map()) {
   for (std::size_t i = 0; input.blur_pixels && i < input.blur_pixels->size(); ++i)
     values_.push_back({(*input.blur_pixels)[i], {}});
 }
@@ -17,7 +17,7 @@ PixelValue* BlurProbe::find(std::size_t pixel) {
   return found != values_.end() && found->pixel == pixel ? &*found : nullptr;
 }
 
-Rgb BlurProbe::narrow(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const {
+Rgb BlurProbe::compared(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const {
   const BeamTile::Profile& knots = tile.profiles[index / BeamTile::rays_per_subtile];
   if (knots.knots == 0 || ray.profile.empty())
     return {};

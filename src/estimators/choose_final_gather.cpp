@@ -15,6 +15,7 @@ namespace {
 constexpr int fewest_passes_before = 4, most_passes_before = 512;
 /// The two are compared after as many times the passes before, and after no fewer than so many.
 constexpr int compared_passes = 8;
+
 /// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
 struct GatherNoise {
   double walks = 0; ///< of the walks of a ray, among the same photons

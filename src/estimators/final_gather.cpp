@@ -55,8 +55,8 @@ struct FinalGather::Walk {
 };
 
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-                         const PhotonMap* narrow)
-    : world_(world), plan_(plan), map_(map), narrow_(narrow), far_enough_(map.mean_radius()),
+                         const PhotonMap* compared)
+    : world_(world), plan_(plan), map_(map), compared_(compared), far_enough_(map.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks, Rng& rng,
@@ -181,8 +181,8 @@ void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
   };
   const Rgb light = radiance(map_);
   walk.found.indirect += light;
-  if (narrow_)
-    walk.found.blur = light - radiance(*narrow_);
+  if (compared_)
+    walk.found.blur = light - radiance(*compared_);
 }
 
 bool may_gather_finally(const EstimatorInput& input, const PhotonPlan& plan) {

@@ -10,7 +10,7 @@ namespace vdbeam {
 struct GatheredLight {
   Rgb direct;   ///< scattered once, of lights for which there are no shadow rays
   Rgb indirect; ///< scattered more often
-  Rgb blur;     ///< by how much `indirect` exceeds what the same walks gather in narrower kernels
+  Rgb blur;     ///< by how much `indirect` exceeds what the same walks gather in other kernels
 };
 
 /// Final gathering (Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001) in a medium:
@@ -21,10 +21,10 @@ struct GatheredLight {
 /// noise of the walks' own (docs/physics.md, "Final gathering").
 class FinalGather {
 public:
-  /// `map`: of the world's photons, as the plan has them; `narrow`: the same in narrower kernels,
-  /// null where the blur is not asked for. All must outlive this.
+  /// `map`: of the world's photons, as the plan has them; `compared`: the same in kernels of
+  /// another width, null where the blur is not asked for. All must outlive this.
   FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-              const PhotonMap* narrow = nullptr);
+              const PhotonMap* compared = nullptr);
 
   /// So many walks from the ray, whose profile is not empty, their distances stratified.
   GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, Rng& rng,
@@ -43,7 +43,7 @@ private:
   const World& world_;
   const PhotonPlan& plan_;
   const PhotonMap& map_;
-  const PhotonMap* narrow_;
+  const PhotonMap* compared_;
   float far_enough_; ///< distance from its beginning at which a walk ends
   bool meets_light_; ///< flights may meet light before they end
 };

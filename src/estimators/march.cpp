@@ -133,6 +133,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
     return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
   };
   shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
+  image.truncation = truncation(photons_.world().medium);
   photons_.release();
 }
 

@@ -1,5 +1,6 @@
 #include "estimators/photon_pass.h"
 
+#include "estimators/blur_probe.h"
 #include "estimators/photon_cache.h"
 #include "machine/stopwatch.h"
 
@@ -35,8 +36,9 @@ void PhotonPass::count_pilot(RenderStatistics& statistics) {
 }
 
 void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
-  world_ = &worlds_.of(pass, plan_.gathers_finally(pass));
-  narrow_map_ = {};
+  const bool walks = plan_.gathers_finally(pass);
+  world_ = &worlds_.of(pass, walks);
+  compared_map_ = {};
   const World& world = *world_;
   const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
   if (!input_.plan.needs(Stage::photons) && !input_.plan.needs(Stage::surface_photons)) {
@@ -48,9 +50,10 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   make_maps(pass, radii, statistics);
   const Stopwatch watch;
   clear_of_surfaces(world, maps_.medium);
-  const KernelShare& share = plan_.gathers_finally(pass) ? final_share_ : boundary_share_;
+  const KernelShare& share = walks ? final_share_ : boundary_share_;
   if (input_.blur_pixels)
-    narrow_map_ = maps_.medium.divide_power(share, PassImage::blur_narrowing);
+    compared_map_ = maps_.medium.divide_power(share, walks ? BlurProbe::width_of_walks
+                                                           : BlurProbe::width_along_rays);
   else
     maps_.medium.divide_power(share);
   statistics.radii += watch.seconds();

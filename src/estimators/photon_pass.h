@@ -23,15 +23,16 @@ public:
   /// Drops the map until the next pass: where passes see different worlds, each has its own.
   void release() {
     maps_ = {};
-    narrow_map_ = {};
+    compared_map_ = {};
   }
 
   const PhotonPlan& plan() const { return plan_; }
   /// Tell where direct light is to be looked for; empty where they cannot.
   const ShadowLattices& shadows() const { return shadows_; }
   const PhotonMap& map() const { return maps_.medium; }
-  /// The same photons in narrower kernels; empty where nobody asked for the blur.
-  const PhotonMap& narrow_map() const { return narrow_map_; }
+  /// The same photons in kernels of another width (BlurProbe); empty where nobody asked for the
+  /// blur.
+  const PhotonMap& compared_map() const { return compared_map_; }
   /// Photons on surfaces: what mirrors, glass and the medium send on to them.
   const PhotonMap& surface_map() const { return maps_.surfaces; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
@@ -49,7 +50,7 @@ private:
   KernelShare boundary_share_, final_share_; ///< of the estimator's kernels, and of walks'
   bool pilot_counted_ = false;
   PhotonMaps maps_;
-  PhotonMap narrow_map_;
+  PhotonMap compared_map_;
 };
 
 } // namespace vdbeam

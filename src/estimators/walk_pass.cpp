@@ -43,11 +43,10 @@ float narrower(float radius) {
   return radius < 1 ? 0 : radius / 2;
 }
 
-/// Of what sharing blurs beyond narrower sharing, all is made that it blurs, and of that what
-/// kernels of half the width would show of it: so probes of kernels and of sharing add up.
-float blur_as_of_kernels(float narrow_over_wide) {
-  const double shown = 1 - std::pow(static_cast<double>(narrow_over_wide), sharing_blur_power);
-  return static_cast<float>(PassImage::shown_blur() / shown);
+/// All that sharing blurs over what it blurs beyond narrower sharing.
+float blur_over_difference(float narrow_over_wide) {
+  return static_cast<float>(
+      1 / (1 - std::pow(static_cast<double>(narrow_over_wide), sharing_blur_power)));
 }
 
 } // namespace
@@ -68,9 +67,9 @@ WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int p
 
 void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image) {
   const World& world = photons_.world();
-  const PhotonMap* narrow = wide_.blur_pixels ? &photons_.narrow_map() : nullptr;
+  const PhotonMap* compared = wide_.blur_pixels ? &photons_.compared_map() : nullptr;
   const FinalGather gather(world, photons_.plan(), photons_.map());
-  const FinalGather twice(world, photons_.plan(), photons_.map(), narrow);
+  const FinalGather twice(world, photons_.plan(), photons_.map(), compared);
   for (int i = 0; i < TileRays::count && !wide_.stopped(); ++i) {
     const TileRays::PixelRay& ray = scratch.rays[i];
     if (!ray.inside || ray.profile.empty())
@@ -86,7 +85,7 @@ void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, 
     walked_.direct[ray.pixel] = light.direct;
     walked_.indirect[ray.pixel] = light.indirect;
     if (probe)
-      probe->radiance = light.blur;
+      probe->radiance = light.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
   }
 }
 
@@ -139,7 +138,7 @@ void WalkPass::share_pixel(int x, int y, BlurProbe& blur, PassImage& image) cons
     const GatheredLight narrow = shared(narrow_.shares(seen, x, y, buffer));
     if (sharing_.radius() > 0)
       probe->radiance += (wide.direct + wide.indirect - narrow.direct - narrow.indirect) *
-                         blur_as_of_kernels(narrow_.radius() / sharing_.radius());
+                         blur_over_difference(narrow_.radius() / sharing_.radius());
   }
   const std::span<const WalkSharing::Share> shares = sharing_.shares(seen, x, y, buffer);
   const GatheredLight light = shared(shares);

@@ -22,10 +22,10 @@ constexpr double least_spread = 0.03;
 /// much of it, as a fraction of the noise, they may not show at all.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 /// The positive part of a noisy square is too large on average. It is shrunk by this many times its
-/// squared error over itself, between none and the 1 of James and Stein. What only path-traced rays
-/// tell counts where it stands out.
-constexpr double blur_shrinkage = 0.75, probe_shrinkage = 2;
-constexpr std::size_t batches_of_interval = 4;
+/// squared error over itself: 1 as James and Stein do. What only path-traced rays tell, or the
+/// truncation, counts where it stands out.
+constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
+constexpr std::size_t batches_of_interval = fewest_batches;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
 double student(double degrees) {
@@ -169,6 +169,20 @@ double positive_part(double square, double error, double shrinkage) {
   return square > 0 ? std::max(0.0, square - shrinkage * error * error / square) : 0;
 }
 
+/// The mean of two, each weighted by how well it is known; the first where the second is not.
+SquaredBias average(const SquaredBias& first, const SquaredBias& second) {
+  const auto weight = [](const SquaredBias& one) {
+    const bool known = std::isfinite(one.value) && std::isfinite(one.error) && one.error > 0;
+    return known ? 1 / (one.error * one.error) : 0;
+  };
+  const double a = weight(first), b = weight(second);
+  if (b == 0 || first.error == 0)
+    return first;
+  if (a == 0)
+    return second;
+  return {(a * first.value + b * second.value) / (a + b), 1 / std::sqrt(a + b)};
+}
+
 /// What the widths of kernels and the probes tell together, each weighted by how well it knows.
 /// Where only probes are, small values are noise more likely than bias.
 SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
@@ -181,16 +195,15 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
   SquaredBias result;
   result.value = positive_part(bias.blur, bias.blur_error, blur_shrinkage);
   result.error = std::hypot(bias.blur_error, blur_uncertainty * result.value, unseen_bias * noise);
-  if (probed && result.error > 0 && bias.mrse_error > 0) {
-    const double a = 1 / (result.error * result.error), b = 1 / (bias.mrse_error * bias.mrse_error);
-    result.value = std::max(0.0, (a * result.value + b * bias.mrse) / (a + b));
-    result.error = 1 / std::sqrt(a + b);
-  }
+  result = average(result, {bias.mrse, bias.mrse_error});
+  result.value = std::max(0.0, result.value);
   // What nobody has seen yet widens the interval; it must not let rays that are too few to see it
   // outvote the kernels.
-  if (std::isfinite(bias.hidden) && std::isfinite(bias.hidden_error)) {
-    result.value += positive_part(bias.hidden, bias.hidden_error, probe_shrinkage);
-    result.error = std::hypot(result.error, bias.hidden_error);
+  const SquaredBias rest =
+      average({bias.hidden, bias.hidden_error}, {bias.truncation, bias.truncation_error});
+  if (std::isfinite(rest.value)) {
+    result.value += positive_part(rest.value, rest.error, probe_shrinkage);
+    result.error = std::hypot(result.error, rest.error);
   }
   return result;
 }

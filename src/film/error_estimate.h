@@ -2,6 +2,8 @@
 
 #include "film/pass_history.h"
 
+#include <limits>
+
 namespace vdbeam {
 
 /// Estimate of the error of the mean of the passes (docs/physics.md, "Errors").
@@ -25,18 +27,21 @@ struct NoiseStatistics {
 /// Correction and spread of the noise. `batches` 0 where there are fewer than 3.
 NoiseStatistics noise_statistics(const PassHistory& history);
 
-/// Statistics of the bias; NaN where there are too few probes.
+/// Statistics of the bias, as MRSE but for `bias`; NaN where there is too little to tell. Each has
+/// its standard error.
 struct BiasStatistics {
-  double mrse, mrse_error; ///< squared bias as MRSE, and its standard error
-  double bias, bias_error; ///< of the mean brightness, relative to it
-  double blur,
-      blur_error; ///< what of `mrse` comes from the width of kernels, and its standard error
-  /// What of `mrse` whole regions have in common and the width of kernels does not explain, as the
-  /// forward peak that is taken out; and its standard error.
-  double hidden, hidden_error;
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double mrse = unknown, mrse_error = unknown; ///< all of it, squared
+  double bias = unknown, bias_error = unknown; ///< of the mean brightness, relative to it
+  double blur = unknown, blur_error = unknown; ///< what of `mrse` comes from the width of kernels
+  /// What of `mrse` whole regions have in common and the width of kernels does not explain.
+  double hidden = unknown, hidden_error = unknown;
+  /// What the truncation of the forward peak adds to `blur`.
+  double truncation = unknown, truncation_error = unknown;
 };
 
-/// Bias of the picture, from its differences to the probes and to narrower kernels.
+/// Bias of the picture, from its differences to the probes, to other kernels and between passes
+/// that take more and less of the forward peak out.
 BiasStatistics bias_statistics(const PassHistory& history);
 
 /// Combines noise and bias. `noise` is the MRSE from the variance of all pixels over all passes; an

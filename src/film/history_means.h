@@ -11,9 +11,6 @@ inline constexpr double mrse_offset = 0.01;
 /// Weight of a pixel's neighbours beside its own batches, in batches.
 inline constexpr double neighbour_weight = 0.5;
 
-/// Without so many batches nothing can be told of their spread.
-inline constexpr std::size_t fewest_batches = 3;
-
 /// Passes of all complete batches.
 double total_passes(const PassHistory& history);
 /// The mean of all complete batches, R, G, B of each followed pixel.

@@ -105,15 +105,35 @@ void PassHistory::add(const PassImage& pass, const std::vector<PixelValue>& prob
   float* sums = &values_[batch * stride()];
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t pixel = pixels_[i];
-    for (std::size_t c = 0; c < 3 && !pass.emission.empty(); ++c)
-      sums[3 * i + c] += finite_or_zero(pass.emission[pixel][static_cast<int>(c)]);
-    for (std::size_t c = 0; c < 3; ++c)
-      sums[3 * i + c] += finite_or_zero(pass.direct[pixel][static_cast<int>(c)]) +
-                         finite_or_zero(pass.indirect[pixel][static_cast<int>(c)]) +
-                         finite_or_zero(pass.background[pixel][static_cast<int>(c)]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto part = [&](const std::vector<Rgb>& light) {
+        return light.empty() ? 0.0f : finite_or_zero(light[pixel][static_cast<int>(c)]);
+      };
+      const float value =
+          part(pass.direct) + part(pass.indirect) + part(pass.background) + part(pass.emission);
+      sums[3 * i + c] += value;
+      sums[11 * samples + 3 * i + c] += value * pass.truncation;
+    }
   }
+  sums[14 * samples] += pass.truncation;
+  sums[14 * samples + 1] += pass.truncation * pass.truncation;
   add_values(probes, 3, sums);
   add_values(pass.blur, 7, sums);
+}
+
+PassHistory PassHistory::with_several_passes_per_batch() const {
+  PassHistory longer = *this;
+  const std::size_t count = used();
+  const bool single =
+      std::all_of(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](std::uint32_t passes) { return passes == 1; });
+  if (!single || count < 2 * fewest_batches)
+    return longer;
+  for (std::size_t batch = 0; batch < count / 2; ++batch)
+    longer.join(batch);
+  if (count % 2 == 1)
+    longer.join(count / 2 - 1);
+  return longer;
 }
 
 void PassHistory::merge(const PassHistory& other) {

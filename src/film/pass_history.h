@@ -7,10 +7,13 @@
 
 namespace vdbeam {
 
+/// Without so many batches nothing can be told of their spread.
+inline constexpr std::size_t fewest_batches = 3;
+
 /// History of the passes at some of the pixels: sums over up to 16 batches of successive passes.
 /// They show which noise the pixels share, how a biased picture differs from unbiased probes and
 /// how much its kernels blur. Batches double in length whenever 16 are full, so memory stays below
-/// 3 MB.
+/// 4 MB.
 class PassHistory {
 public:
   static constexpr std::size_t most_batches = 16;
@@ -43,13 +46,25 @@ public:
   /// Likewise of the passes' blur.
   const float* blur_sums(std::size_t batch) const { return sums(batch) + 7 * pixels_.size(); }
   const float* blurs(std::size_t batch) const { return sums(batch) + 10 * pixels_.size(); }
+  /// Sums over the batch's passes of what each shows times its truncation (PassImage).
+  const float* truncated_sums(std::size_t batch) const { return sums(batch) + 11 * pixels_.size(); }
+  /// Sums of the passes' truncation and of its square.
+  double truncation(std::size_t batch) const { return sums(batch)[14 * pixels_.size()]; }
+  double truncation_squares(std::size_t batch) const {
+    return sums(batch)[14 * pixels_.size() + 1];
+  }
+
+  /// The same passes in half as many batches of two or three, where batches are single passes: from
+  /// one pass alone nobody can tell what its truncation does. Otherwise, and where the batches
+  /// would be too few, the history as it is.
+  PassHistory with_several_passes_per_batch() const;
 
   /// Everything above, for storing: both as long as a multiple of the film's pixels.
   std::vector<float>& values() { return values_; }
   std::vector<std::uint32_t>& counts() { return counts_; }
 
 private:
-  std::size_t stride() const { return 11 * pixels_.size(); }
+  std::size_t stride() const { return 14 * pixels_.size() + 2; }
   /// Adds values to sums of R, G, B that begin at `first` values per pixel, and counts them behind.
   void add_values(const std::vector<PixelValue>& values, std::size_t first, float* sums) const;
   std::size_t used() const;

@@ -39,14 +39,12 @@ struct PassImage {
   const DeepLayout* deep_layout = nullptr;
   /// Per piece of the layout, the light of the medium (R, G, B) and the opacity that it adds.
   std::vector<float> deep;
-  /// At some pixels: what the kernels of the pass gave less what kernels of the same photons give
-  /// that are `blur_narrowing` times as wide; and as large a share of other blur.
+  /// At some pixels: the bias of the pass by the width of its kernels and by other blur, as it
+  /// follows from what kernels of another width give of the same photons.
   std::vector<PixelValue> blur;
-  static constexpr float blur_narrowing = 0.5f;
-  /// The share of the kernels' bias that this is, which goes as their width to the power of 1.5: of
-  /// 2 where they are small against all that they blur, less where they are as wide (measured,
-  /// docs/decisions.md).
-  static double shown_blur() { return 1 - std::pow(static_cast<double>(blur_narrowing), 1.5); }
+  /// The bias by the forward peak that the pass took out of scattering (similar_medium.h) is
+  /// proportional to this; 0: nothing was taken out.
+  float truncation = 0;
   /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
   /// which all of them are unless the pass was stopped.
   std::vector<std::uint8_t> finished_tiles;
@@ -67,6 +65,7 @@ struct PassImage {
     planes.assign(plane_count, std::vector<float>(n));
     opacity.assign(n, 0);
     depth.assign(n, 0);
+    truncation = 0;
     deep_layout = layout;
     deep.assign(layout ? layout->pieces() * DeepLayout::values_per_piece : 0, 0);
     finished_tiles.assign(static_cast<std::size_t>(tile_columns()) *

@@ -210,25 +210,28 @@ void PhotonMap::divide_power(const KernelShare& share) {
   });
 }
 
-PhotonMap PhotonMap::divide_power(const KernelShare& share, float narrowing) {
-  PhotonMap narrow = copy();
-  PhotonBlocks &wide_blocks = data_->blocks, &blocks = narrow.data_->blocks;
+PhotonMap PhotonMap::divide_power(const KernelShare& share, float factor) {
+  PhotonMap resized = copy();
+  PhotonBlocks &own_blocks = data_->blocks, &blocks = resized.data_->blocks;
   tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
     const Vec3f position = blocks.position(i);
     float& radius = blocks.at(i, PhotonBlocks::radius);
-    const float share_of_wide = share ? share(position, radius) : 1;
-    radius *= narrowing;
-    if (share_of_wide < 1) {
-      divide_photon(wide_blocks, i, share_of_wide);
+    const float own_share = share ? share(position, radius) : 1;
+    radius *= factor;
+    if (own_share < 1)
+      divide_photon(own_blocks, i, own_share);
+    if (share && (own_share < 1 || factor > 1))
       divide_photon(blocks, i, share(position, radius));
-    }
   });
-  for (auto& level : narrow.data_->tree.levels)
+  for (auto& level : resized.data_->tree.levels)
     for (BoxGroup& group : level)
       for (float& radius : group.radius)
-        radius *= narrowing;
-  narrow.data_->mean_radius *= narrowing;
-  return narrow;
+        radius *= factor;
+  const Boxf bounds = resized.data_->tree.bounds;
+  resized.data_->tree.bounds.lower -= bounds.size() * std::max(0.0f, factor - 1);
+  resized.data_->tree.bounds.upper += bounds.size() * std::max(0.0f, factor - 1);
+  resized.data_->mean_radius *= factor;
+  return resized;
 }
 
 std::size_t PhotonMap::size() const {

@@ -5,21 +5,26 @@
 #include "transport/optical_depth.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
 
-/// Passes of the first order. Measured on backlit and on Mie clouds: the bias of order 4 is under
-/// the noise of as many passes (docs/decisions.md).
-constexpr int passes_of_first_order = 64;
+/// Passes of the first order, along rays and of walks. Measured on backlit and on Mie clouds: the
+/// bias of order 4 is under the noise of as many passes (docs/decisions.md).
+constexpr int passes_of_first_order = 64, passes_of_first_order_of_walks = 32;
 
 /// The first order takes no larger share than this for a peak. With more, light that is scattered
 /// twice by small angles, towards which one looks at a sun through the medium, is too dark.
 constexpr float largest_first_peak = 0.6f;
 /// The same of passes that gather photons by walks (docs/decisions.md).
-constexpr float largest_peak_of_walks = 0.45f;
+constexpr float largest_peak_of_walks = 0.55f;
+
+/// The order of one pass of two is so much higher. A greater step would tell the bias of
+/// truncation with less noise, and cost more noise of the picture.
+constexpr int order_step = 2;
 
 /// In media of this typical depth without the peak or more, the first order is the lowest; in
 /// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
@@ -98,6 +103,20 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order) {
   return similar;
 }
 
+float truncation(const Medium& medium) {
+  float most = 0;
+  for (std::size_t i = 0; medium.peak && i < medium.peak->original.size(); ++i) {
+    if (!(medium.peak->forward[i] > 0))
+      continue;
+    const auto order = static_cast<std::size_t>(medium.peak->order);
+    const std::vector<double> moments =
+        legendre_moments(medium.peak->original[i], medium.peak->order + 3);
+    const double widened = std::max(0.0, moments[order] - moments[order + 2]);
+    most = std::max(most, static_cast<float>(widened * widened));
+  }
+  return most;
+}
+
 double typical_depth(const Medium& medium) {
   constexpr std::uint64_t lines = 512;
   if (medium.empty())
@@ -132,12 +151,17 @@ PassWorlds::PassWorlds(const World& world, bool take_out)
           take_out ? lowest_order(world.medium, largest_peak_of_walks) : least_truncation_order)) {}
 
 int PassWorlds::order(int pass, bool walks) const {
-  // Multiples of the golden ratio spread the passes of one more evenly.
-  const double spread = std::fmod(0.5 + 0.61803398875 * pass, 1.0);
+  // Multiples of the golden ratio spread the pairs of passes of one more evenly.
+  const double spread = std::fmod(0.5 + 0.61803398875 * (pass / 2), 1.0);
   int result = static_cast<int>((walks ? first_order_of_walks_ : first_order_) + spread);
-  for (std::int64_t until = passes_of_first_order; pass >= until; until *= 3)
+  for (std::int64_t until = walks ? passes_of_first_order_of_walks : passes_of_first_order;
+       pass >= until; until *= 3)
     ++result;
-  return std::min(result, most_truncation_order);
+  // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
+  // first as often as the second (Thue-Morse sequence): the moments of the shutter take turns too.
+  result = std::min(result, most_truncation_order - order_step);
+  const bool higher = std::popcount(static_cast<unsigned>(pass)) % 2 == 1;
+  return higher ? result + order_step : result;
 }
 
 const World& PassWorlds::of(int pass, bool walks) {

@@ -14,6 +14,12 @@ namespace vdbeam {
 /// `medium.peak` of the result says what was taken out. Null where no phase function has a peak.
 std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
 
+/// How much bias the truncation of such a medium makes, in units of which only ratios count. That
+/// the peak has no width is wrong by (chi_M - chi_l) in the moments l > M of the phase function;
+/// the bias goes about as the square of this for l = M + 2 (measured, docs/decisions.md). 0 where
+/// nothing was taken out.
+float truncation(const Medium& medium);
+
 /// The worlds in which the photons of each pass live: with the peak taken out by a truncation that
 /// falls from pass to pass, so that the estimate stays consistent (docs/physics.md, "Forward
 /// peaks"), or the scene's own world.
@@ -27,7 +33,8 @@ public:
 
   /// The truncation order of a pass: at first one that leaves enough of each phase function, higher
   /// where the medium is thin or where walks gather, whose kernels blur so little that truncation
-  /// would be most of the bias; then one more whenever the number of passes has tripled.
+  /// would be most of the bias; then one more whenever the number of passes has tripled. One
+  /// pass of two takes less out, so that the difference tells the bias that is left.
   int order(int pass, bool walks = false) const;
 
 private:

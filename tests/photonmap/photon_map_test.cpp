@@ -68,8 +68,7 @@ TEST(PhotonMap, UniformPhotonsGiveTheirDensity) {
 }
 
 /// Every other photon keeps half of its kernel, the rest all of it.
-TEST(PhotonMap, NarrowKernelsHaveTheirOwnShares) {
-  const PhotonList photons = cube_photons(2000);
+void check_resized(const PhotonList& photons, float factor) {
   const auto share = [](const Vec3f& photon, float radius) {
     return photon.x > 0 ? 1 : 1 - radius;
   };
@@ -79,11 +78,11 @@ TEST(PhotonMap, NarrowKernelsHaveTheirOwnShares) {
     radii.fixed_radius = radius;
     return PhotonMap::build(photons, 1, radii, KernelShape::biweight);
   };
-  PhotonMap wide = build(0.5f), wide_alone = build(0.5f), narrow_alone = build(0.25f);
-  const PhotonMap narrow = wide.divide_power(share, 0.5f);
-  wide_alone.divide_power(share);
-  narrow_alone.divide_power(share);
-  EXPECT_FLOAT_EQ(narrow.mean_radius(), narrow_alone.mean_radius());
+  PhotonMap own = build(0.5f), own_alone = build(0.5f), resized_alone = build(0.5f * factor);
+  const PhotonMap resized = own.divide_power(share, factor);
+  own_alone.divide_power(share);
+  resized_alone.divide_power(share);
+  EXPECT_FLOAT_EQ(resized.mean_radius(), resized_alone.mean_radius());
   const std::vector<float> weights(2, 1);
   PhotonMap::RayProfile profile;
   profile.step = 4;
@@ -97,9 +96,15 @@ TEST(PhotonMap, NarrowKernelsHaveTheirOwnShares) {
       map.query_ray(profile, radiance);
       return radiance.x;
     };
-    EXPECT_EQ(query(wide), query(wide_alone));
-    EXPECT_NEAR(query(narrow), query(narrow_alone), 1e-5f * query(narrow_alone));
+    EXPECT_EQ(query(own), query(own_alone));
+    EXPECT_NEAR(query(resized), query(resized_alone), 1e-5f * query(resized_alone));
   }
+}
+
+TEST(PhotonMap, ResizedKernelsHaveTheirOwnShares) {
+  const PhotonList photons = cube_photons(2000);
+  check_resized(photons, 0.5f);
+  check_resized(photons, 1.4f);
 }
 
 /// One photon's kernel, scanned by parallel rays, integrates to its power times weight and phase.
