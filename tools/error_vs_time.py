@@ -74,7 +74,8 @@ def parse_arguments(arguments):
     parser.add_argument("--seeds", type=parse_seeds, default="1-3",
                         help="such as 1-3,7 (default: %(default)s)")
     parser.add_argument("--reference", action="append", default=[], metavar="SCENE=FILE.exr",
-                        help="true image of a scene, by its file's stem; may be repeated")
+                        help="true image of a scene, by its file's stem, or two independent ones, A.exr,B.exr; may be "
+                             "repeated")
     parser.add_argument("--reference-time", type=float, default=300, metavar="SECONDS",
                         help="for a reference that is not given (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=ROOT / "out/error_vs_time", metavar="FOLDER")
@@ -103,25 +104,29 @@ def parse_arguments(arguments):
     if len(set(stems)) < len(stems):
         parser.error("two scenes have the same file name; the results are named by it")
     options.option = [f"--threads={options.threads}", *options.option] if options.threads else options.option
-    options.references = dict(pair.partition("=")[::2] for pair in options.reference)
+    pairs = [pair.partition("=")[::2] for pair in options.reference]
+    options.references = {stem: tuple(Path(file) for file in files.split(",")) for stem, files in pairs}
     unknown = set(options.references) - set(stems)
     if unknown:
         parser.error(f"--reference {sorted(unknown)[0]}: no such scene; there are {', '.join(stems)}")
+    if any(len(files) > 2 for files in options.references.values()):
+        parser.error("--reference: a scene has one reference or two")
     if options.time <= 0 or options.reference_time <= 0:
         parser.error("times must be positive")
     return options
 
 
 def find_references(options):
-    """The reference of every scene by its stem, and the noise of those rendered here."""
+    """One reference or two of every scene by its stem, and the noise of those rendered here."""
     images, noise = {}, {}
     for scene in options.scenes:
         if scene.stem in options.references:
-            images[scene.stem] = Path(options.references[scene.stem])
+            images[scene.stem] = options.references[scene.stem]
         else:
-            images[scene.stem], report = runner.cached_reference(
+            image, report = runner.cached_reference(
                 options.binary, scene, options.output / "references", options.reference_time,
                 options.option)
+            images[scene.stem] = (image,)
             noise[scene.stem] = runner.reference_noise(report)
     return images, noise
 

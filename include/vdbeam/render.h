@@ -52,6 +52,8 @@ struct FrameSettings {
   CheckpointSettings checkpoint;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
+  /// A second one, of noise that is independent of the first's: errors are then free of both.
+  const Image* second_reference = nullptr;
 };
 
 /// By which the caller follows a render and ends it; all optional. They are called on the rendering

@@ -26,19 +26,23 @@
 namespace vdbeam::cli {
 namespace {
 
-/// The reference, which must have the picture's size, before any time goes into rendering.
-Image read_reference(const std::string& path, const ImageSettings& size) {
+/// The reference that an option names, which must have the picture's size, before any time goes
+/// into rendering; none where `path` is empty.
+std::optional<Image> read_reference(const char* option, const std::string& path,
+                                    const ImageSettings& size) {
+  if (path.empty())
+    return std::nullopt;
   if (size.overscan > 0)
-    throw InputError("--reference: excludes image.overscan");
+    throw InputError(fmt::format("{}: excludes image.overscan", option));
   Image reference = read_image(path);
   if (reference.width != size.width || reference.height != size.height)
-    throw InputError(fmt::format("--reference {}: is {}x{}, but the picture is {}x{}; use "
+    throw InputError(fmt::format("{} {}: is {}x{}, but the picture is {}x{}; use "
                                  "--resolution {}x{}",
-                                 path, reference.width, reference.height, size.width, size.height,
-                                 reference.width, reference.height));
+                                 option, path, reference.width, reference.height, size.width,
+                                 size.height, reference.width, reference.height));
   for (const char* channel : {"R", "G", "B"})
     if (!reference.find(channel))
-      throw InputError(fmt::format("--reference {}: has no channel {}", path, channel));
+      throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
   convert_colors(reference, chromaticities_of(size.working_space));
   return reference;
 }
@@ -216,6 +220,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   context.scene_hash = loaded.hash;
   context.output = output(loaded.frame());
   context.reference = substitute_frame(files.reference, loaded.frame());
+  context.second_reference = substitute_frame(files.second_reference, loaded.frame());
   const bool complete = result.stopped_by != "stop";
   std::optional<FrameError> lost_preview;
   if (complete) {
@@ -276,10 +281,11 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   const Scene& scene = loaded.scene;
   const RenderSettings settings = progress_settings(scene, options_.pass_range);
   Progress progress(title, settings, options_.quiet);
-  std::optional<Image> reference;
-  if (!options_.files.reference.empty())
-    reference =
-        read_reference(substitute_frame(options_.files.reference, loaded.frame()), scene.image);
+  const auto read = [&](const char* option, const std::string& path) {
+    return read_reference(option, substitute_frame(path, loaded.frame()), scene.image);
+  };
+  const std::optional<Image> reference = read("--reference", options_.files.reference),
+                             second = read("--second-reference", options_.files.second_reference);
   progress.start(start_text(scene));
   for (const std::string& note : scene.notes)
     progress.note(note);
@@ -291,6 +297,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   frame.checkpoint = options_.checkpoint;
   frame.checkpoint.path = checkpoint_path(loaded.frame());
   frame.reference = reference ? &*reference : nullptr;
+  frame.second_reference = second ? &*second : nullptr;
   RenderHooks hooks;
   hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
     progress.pass(record);

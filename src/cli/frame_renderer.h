@@ -13,7 +13,7 @@ namespace vdbeam::cli {
 /// Where a frame's results go; each may hold a frame number's place, and all but the first be
 /// empty.
 struct FrameFiles {
-  std::string output, preview, report, reference;
+  std::string output, preview, report, reference, second_reference;
 };
 
 /// How frames are rendered and written.

@@ -88,6 +88,8 @@ void check_options(const RenderOptions& options) {
     throw InputError("--skip-merged: belongs to --pass-range and --skip-existing");
   if (frame.region && !frame.files.reference.empty())
     throw InputError("--reference: excludes --region");
+  if (frame.files.reference.empty() && !frame.files.second_reference.empty())
+    throw InputError("--second-reference: belongs to --reference; give both");
   if (frame.pass_range && options.batch.missing == MissingFile::black)
     throw InputError("--missing black: excludes --pass-range");
 }
@@ -99,6 +101,7 @@ void check_clashes(const RenderOptions& options, const SceneDocument& document,
   FileClaims claims;
   claims.scene(document, options.scene.path(), frames);
   claims.inputs("--reference", files.reference, frames);
+  claims.inputs("--second-reference", files.second_reference, frames);
   claims.inputs("--skip-merged", options.batch.frame.merged, frames);
   for (const std::string& part : options.batch.frame.parts)
     claims.inputs("--from-parts", part, frames);
@@ -247,12 +250,16 @@ CommandRun add_render(CLI::App& app) {
   app.add_option("--reference", options->batch.frame.files.reference,
                  "The true image: errors against it go to the report")
       ->option_text("FILE.exr");
+  app.add_option("--second-reference", options->batch.frame.files.second_reference,
+                 "Another, of other noise: errors free of both")
+      ->option_text("FILE.exr");
   app.add_option("--report", options->batch.frame.files.report, "Write a JSON report; - is stdout")
       ->option_text("FILE.json");
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Say nothing but errors");
   add_batch_options(app, *options);
   group_options(app, "Output",
-                {"-o", "--preview", "--exposure", "--region", "--reference", "--report"});
+                {"-o", "--preview", "--exposure", "--region", "--reference", "--second-reference",
+                 "--report"});
   group_options(app, "Sequences and farms",
                 {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
                  "--no-resume", "--pass-range", "--summary", "--progress"});

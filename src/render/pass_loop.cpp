@@ -285,7 +285,10 @@ void PassLoop::record() {
 }
 
 void PassLoop::compare(PassRecord& record) {
-  const ImageError error = image_error(film_.develop(), *frame_.reference);
+  const Image image = film_.develop();
+  const ImageError error = frame_.second_reference
+                               ? image_error(image, *frame_.reference, *frame_.second_reference)
+                               : image_error(image, *frame_.reference);
   record.has_reference = true;
   record.rmse = error.rmse;
   record.mrse = error.mrse;

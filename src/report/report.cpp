@@ -131,6 +131,8 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   report["output"] = context.output;
   if (!context.reference.empty())
     report["reference"] = context.reference;
+  if (!context.second_reference.empty())
+    report["second_reference"] = context.second_reference;
   report["machine"] = machine_json(scene);
   report["settings"] = settings_json(scene);
   report["notes"] = scene.notes;

@@ -12,6 +12,7 @@ struct ReportContext {
   std::string scene_hash;
   std::string output;           ///< path of the image
   std::string reference;        ///< path of the reference, or empty
+  std::string second_reference; ///< likewise
   std::uint64_t deep_bytes = 0; ///< size of the deep picture's file
 };
 

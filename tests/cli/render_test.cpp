@@ -69,6 +69,29 @@ TEST_F(RenderCommand, ReferenceGivesErrorsOfEveryPass) {
   EXPECT_NE(run({"compare", "a.exr", "ref.exr"}).out.find("relMSE"), std::string::npos);
 }
 
+TEST_F(RenderCommand, TwoReferencesGiveErrorsFreeOfTheirNoise) {
+  const auto path = [&](const char* name, const char* passes, const char* seed) {
+    return std::vector<std::string>{cloud,    "-o", name,          "--passes", passes,
+                                    "--seed", seed, "--estimator", "path"};
+  };
+  ASSERT_EQ(render(path("a.exr", "2", "11")).code, 0);
+  ASSERT_EQ(render(path("b.exr", "2", "12")).code, 0);
+  std::vector<std::string> arguments = path("v.exr", "64", "13");
+  arguments.insert(arguments.end(), {"--second-reference", "b.exr", "--report", "r.json"});
+  EXPECT_EQ(render(arguments).error, "--second-reference: belongs to --reference; give both\n");
+  arguments.insert(arguments.end(), {"--reference", "a.exr"});
+  ASSERT_EQ(render(arguments).code, 0);
+  const Json report = Json::parse(read("r.json"));
+  EXPECT_EQ(report["second_reference"], "b.exr");
+  const double told = report["passes"].back()["mrse"].get<double>();
+  const Json two =
+                 Json::parse(run({"compare", "v.exr", "a.exr", "--second", "b.exr", "--json"}).out),
+             one = Json::parse(run({"compare", "v.exr", "a.exr", "--json"}).out);
+  EXPECT_NEAR(told, two["mrse"].get<double>(), 0.01 * one["mrse"].get<double>());
+  // The picture has 64 passes, the references 2 each: alone they would count 33 times as much.
+  EXPECT_LT(std::abs(told), 0.5 * one["mrse"].get<double>());
+}
+
 TEST_F(RenderCommand, WrongReferenceSizeIsRefusedBeforeRendering) {
   ASSERT_EQ(render({cloud, "-o", "ref.exr", "--passes", "1"}).code, 0);
   const auto result =

@@ -98,6 +98,13 @@ class ErrorVsTime(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.calls(), [["beam", str(s), "/r/true.exr"] for s in (1, 2, 3)])
 
+    def test_two_references_are_passed_on(self):
+        result = self.run_tool("--reference", "cloud=/r/a.exr,/r/b.exr", "--estimators", "beam", "--seeds", "1",
+                               scenes=("cloud",))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.calls(), [["beam", "1", "/r/a.exr", "/r/b.exr"]])
+        self.assertEqual(self.run_tool("--reference", "cloud=a.exr,b.exr,c.exr").returncode, 2)
+
     def test_variants_are_estimators_with_other_settings(self):
         result = self.run_tool("--estimators", "beam", "--seeds", "1",
                                "--variant", "quick: --estimator path --threads 1",

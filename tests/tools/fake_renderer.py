@@ -9,13 +9,15 @@ import argparse, json, shutil, sys
 parser = argparse.ArgumentParser()
 parser.add_argument("command", choices=["render"])
 parser.add_argument("scene")
-for name in ("-o", "--report", "--estimator", "--time", "--reference"):
+for name in ("-o", "--report", "--estimator", "--time", "--reference",
+             "--second-reference"):
     parser.add_argument(name)
 for name in ("--seed", "--passes", "--threads"):
     parser.add_argument(name, type=int)
 options = parser.parse_args()
 with open(__file__ + ".log", "a") as log:
-    print(options.scene, options.estimator, options.seed, options.reference, file=log)
+    print(options.scene, options.estimator, options.seed, options.reference,
+          *([options.second_reference] if options.second_reference else []), file=log)
 if "broken" in options.scene:
     print("broken.toml:3: medium.g must lie in (-1, 1), got 1.2", file=sys.stderr)
     sys.exit(2)

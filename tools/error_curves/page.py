@@ -75,22 +75,23 @@ def _conditions(folder, runs):
     return html.escape("Measured " + "; ".join(parts) + ".")
 
 
-def _scene_data(scene, runs, folder, reference_path):
+def _scene_data(scene, runs, folder, reference_paths):
     """What the page shows of one scene: the run with the first seed of each estimator."""
     firsts = [group[0] for name, _, group in group_runs(runs) if name == scene]
-    reference = exr.read_rgb(reference_path)
+    pictures = [exr.read_rgb(path) for path in reference_paths]
+    reference = sum(pictures) / len(pictures)
     images, errors, settings = [], [], []
     for run in firsts:
         stem = folder / "runs" / f"{scene}.{run.estimator}.{run.seed}"
         rgb = exr.read_rgb(f"{stem}.exr")
         if rgb.shape != reference.shape:
-            raise ReportError(f"{stem}.exr: its size is not that of {reference_path}")
+            raise ReportError(f"{stem}.exr: its size is not that of {reference_paths[0]}")
         images.append({"name": run.estimator, "caption": _caption(run),
                        "url": _png_url(display_image(rgb))})
         errors.append({"caption": _caption(run), "url": _png_url(error_image(rgb, reference))})
         settings.append({"name": f"{run.estimator}, seed {run.seed}",
                          "text": _settings(f"{stem}.json")})
-    images.append({"name": "reference", "caption": f"reference: {Path(reference_path).name}",
+    images.append({"name": "reference", "caption": "reference: " + ", ".join(Path(path).name for path in reference_paths),
                    "url": _png_url(display_image(reference))})
     curves, dark = (_data_url((folder / f"{scene}{ending}.svg").read_bytes(), "image/svg+xml")
                     for ending in ("", ".dark"))
@@ -109,7 +110,7 @@ def _html_table(markdown):
 
 
 def write_page(runs, folder, references):
-    """Writes FOLDER/index.html from the runs' images and reports. `references`: scene -> EXR."""
+    """Writes FOLDER/index.html from the runs' images and reports. `references`: scene -> one or two EXRs."""
     scenes = [_scene_data(scene, runs, folder, references[scene])
               for scene in dict.fromkeys(run.scene for run in runs)]
     # "</" would end the script element.

@@ -37,13 +37,13 @@ def parse_variant(text):
     return Variant(name, tuple(shlex.split(options)) if colon else ("--estimator", name))
 
 
-def render(binary, scene, output, report, variant, seed, seconds, reference=None, extra=()):
-    """Renders for a number of seconds; the report goes to `report`."""
+def render(binary, scene, output, report, variant, seed, seconds, references=(), extra=()):
+    """Renders for a number of seconds; the report goes to `report`, and errors against one or two references."""
     command = [str(binary), "render", str(scene), "-o", str(output), "--report", str(report),
                "--seed", str(seed), "--time", f"{seconds:g}s", "--passes", str(MANY_PASSES),
                *variant.options, *extra]
-    if reference is not None:
-        command += ["--reference", str(reference)]
+    for option, reference in zip(("--reference", "--second-reference"), references):
+        command += [option, str(reference)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines() or ["no message"]

@@ -91,7 +91,7 @@ def version():
     return found.group() if found else "of unknown version"
 
 
-def run_vdb_render(binary, scene, settings, reference, _, seconds, threads, folder):
+def run_vdb_render(binary, scene, settings, references, _, seconds, threads, folder):
     """A run per pair of steps, whose `passes` are pictures with more and more samples per pixel, as many as
     fit in the time by what the one before took. It draws no random numbers: one run stands for all seeds.
     Raises NotWithinMeans."""
@@ -101,7 +101,7 @@ def run_vdb_render(binary, scene, settings, reference, _, seconds, threads, fold
     halves = half_voxels(binary, settings["volume"][0])
     if max(halves) - min(halves) > 1e-6 * max(halves):
         raise NotWithinMeans("voxels that are no cubes")
-    truth = exr.read_rgb(reference)
+    truth = [exr.read_rgb(reference) for reference in references]
     runs = []
     for steps in STEPS:
         name = f"vdb_render_step{steps[0]:g}_{steps[1]:g}".replace(".", "_")
