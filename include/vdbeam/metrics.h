@@ -13,6 +13,7 @@ struct ImageError {
   double bias = 0;   ///< mean(v) / mean(r) - 1
   double flip =
       0; ///< mean FLIP (Andersson et al. 2020) at 67 pixels per degree; only compare_images
+  double mrse_error = 0; ///< standard error of mrse; only with two references
 };
 
 /// rmse, mrse, relmse, bias. Throws InputError where sizes differ or R, G, B are missing.
@@ -25,7 +26,8 @@ ImageError compare_images(const Image& image, const Image& reference);
 ///   bias = mean(v) / mean(m) - 1.
 /// m is the mean of a and b, over 5 x 5 pixels where their noise is more than 0.01 as an MRSE, so
 /// that it does not weigh itself. No pixel is left out of relmse. Where v is nearly exact mrse may
-/// come out negative; rmse is then 0. flip is not set. Throws InputError like the above.
+/// come out negative; rmse is then 0. mrse_error follows from how much the mean product differs
+/// between blocks of 4 x 4 pixels. flip is not set. Throws InputError like the above.
 ImageError image_error(const Image& image, const Image& a, const Image& b);
 /// Temporal error of two successive frames: the error of their difference, which is visible as
 /// flicker, mean((dv - dr)^2 / (r + 0.01)^2) with dv = after - before, dr the references'

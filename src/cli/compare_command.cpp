@@ -67,12 +67,13 @@ int compare_with_two(const CompareOptions& options) {
                                   [&] { return image_error(image, reference, second); });
   const std::string text =
       fmt::format("free of the references' noise:\n"
-                  "RMSE    {:.6g}\nMRSE    {:.6g}\nrelMSE  {:.6g}\nbias    {:+.4f} %\n",
-                  error.rmse, error.mrse, error.relmse, 100 * error.bias);
+                  "RMSE    {:.6g}\nMRSE    {:.6g}, standard error {:.2g}\nrelMSE  {:.6g}\n"
+                  "bias    {:+.4f} %\n",
+                  error.rmse, error.mrse, error.mrse_error, error.relmse, 100 * error.bias);
   const Json json{{"image", options.image},   {"reference", options.reference},
                   {"second", options.second}, {"rmse", error.rmse},
-                  {"mrse", error.mrse},       {"relmse", error.relmse},
-                  {"bias", error.bias}};
+                  {"mrse", error.mrse},       {"mrse_error", error.mrse_error},
+                  {"relmse", error.relmse},   {"bias", error.bias}};
   print_output(options.json ? json_text(json) : text);
   return 0;
 }
@@ -188,6 +189,7 @@ CommandRun add_compare(CLI::App& app) {
   FLIP    mean FLIP difference at 67 pixels per degree
 With a second reference, independent of the first and unbiased like it (two renders by path with
 other seeds), products (v - a)(v - b) take the place of squares, so that their noise does not count.
+The standard error tells how far to trust the MRSE: references with fireflies leave it uncertain.
 Of a sequence the means over its frames, and its temporal error, what one sees as flicker:
   mean((dv - dr)^2 / (r + 0.01)^2), dv and dr the change from one frame to the next, r the mean of
   both references. Frames whose noise is independent have twice their MRSE.

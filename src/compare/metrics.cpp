@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace vdbeam {
 namespace {
@@ -74,6 +75,24 @@ std::vector<double> box_mean(const std::vector<double>& plane, int width, int he
       result[static_cast<std::size_t>(y) * width + x] = sum / 25;
     }
   return result;
+}
+
+/// Standard error of the mean of a plane: its blocks are wide enough to be nearly independent where
+/// neighbouring pixels are not.
+double standard_error(const std::vector<double>& plane, int width, int height) {
+  constexpr int block = 4;
+  const double pixels = static_cast<double>(plane.size());
+  const double mean = std::accumulate(plane.begin(), plane.end(), 0.0) / pixels;
+  double squares = 0;
+  for (int y0 = 0; y0 < height; y0 += block)
+    for (int x0 = 0; x0 < width; x0 += block) {
+      double deviation = 0;
+      for (int y = y0; y < std::min(y0 + block, height); ++y)
+        for (int x = x0; x < std::min(x0 + block, width); ++x)
+          deviation += plane[static_cast<std::size_t>(y) * width + x] - mean;
+      squares += deviation * deviation;
+    }
+  return std::sqrt(squares) / pixels;
 }
 
 /// v / r - 1, where both may be 0.
@@ -156,16 +175,19 @@ ImageError image_error(const Image& image, const Image& a, const Image& b) {
       plane = box_mean(plane, image.width, image.height);
   ImageError error;
   double squares = 0, sum_v = 0, sum_m = 0;
+  std::vector<double> relative(pixels);
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pixels; ++i) {
       const double value = v[c][i], m = truth[c][i];
       const double product = (value - first[c][i]) * (value - second[c][i]);
       squares += product / count;
-      error.mrse += product / ((m + mrse_offset) * (m + mrse_offset)) / count;
+      relative[i] += product / ((m + mrse_offset) * (m + mrse_offset)) / 3;
       error.relmse += product / (m * m + mrse_offset) / count;
       sum_v += value;
       sum_m += m;
     }
+  error.mrse = std::accumulate(relative.begin(), relative.end(), 0.0) / static_cast<double>(pixels);
+  error.mrse_error = standard_error(relative, image.width, image.height);
   error.rmse = std::sqrt(std::max(0.0, squares));
   error.bias = relative_difference(sum_v, sum_m);
   return error;

@@ -68,6 +68,31 @@ TEST(ImageError, TwoReferencesTakeTheirNoiseOut) {
   }
 }
 
+TEST(ImageError, TwoReferencesTellHowCertainTheErrorIs) {
+  // The noise of pixels side by side is the same, in pairs.
+  std::mt19937 random(4);
+  std::normal_distribution<float> spread(0, 0.2f);
+  const auto draw = [&] {
+    Colour last{};
+    return make_image(33, 30, [&](int x, int) {
+      if (x % 2 == 0)
+        last = Colour{1 + spread(random), 1 + spread(random), 1 + spread(random)};
+      return last;
+    });
+  };
+  constexpr int draws = 400;
+  double sum = 0, squares = 0, told = 0;
+  for (int i = 0; i < draws; ++i) {
+    const Image image = draw(), a = draw(), b = draw();
+    const ImageError error = image_error(image, a, b);
+    sum += error.mrse / draws;
+    squares += error.mrse * error.mrse / draws;
+    told += error.mrse_error * error.mrse_error / draws;
+  }
+  // 4 standard errors of a variance from so many draws.
+  EXPECT_NEAR(told / (squares - sum * sum), 1, 4 * std::sqrt(2.0 / draws));
+}
+
 TEST(TemporalError, MatchesItsDefinitionByHand) {
   const Image r0 = constant({1, 0, 0.5f}, 2, 1), r1 = constant({3, 0, 0.5f}, 2, 1);
   const Image v0 = constant({1.5f, 0, 0.5f}, 2, 1), v1 = constant({3.1f, 0.1f, 0.5f}, 2, 1);
