@@ -91,7 +91,8 @@ def _scene_data(scene, runs, folder, reference_paths):
         errors.append({"caption": _caption(run), "url": _png_url(error_image(rgb, reference))})
         settings.append({"name": f"{run.estimator}, seed {run.seed}",
                          "text": _settings(f"{stem}.json")})
-    images.append({"name": "reference", "caption": "reference: " + ", ".join(Path(path).name for path in reference_paths),
+    names = ", ".join(Path(path).name for path in reference_paths)
+    images.append({"name": "reference", "caption": f"reference: {names}",
                    "url": _png_url(display_image(reference))})
     curves, dark = (_data_url((folder / f"{scene}{ending}.svg").read_bytes(), "image/svg+xml")
                     for ending in ("", ".dark"))
