@@ -12,9 +12,15 @@ namespace vdbeam {
 
 namespace {
 
-/// Passes of the first order, along rays and of walks. Measured on backlit and on Mie clouds: the
-/// bias of order 4 is under the noise of as many passes (docs/decisions.md).
-constexpr int passes_of_first_order = 64, passes_of_first_order_of_walks = 32;
+/// How truncation shrinks from pass to pass.
+struct OrderGrowth {
+  int passes_of_first_order;
+  int factor; ///< the order grows by one when the number of passes has grown by this factor
+};
+/// Measured on backlit and on Mie clouds (docs/decisions.md): the bias of order 4 along rays is
+/// under the noise of 64 passes; of walks one order more halves the squared bias, so that it falls
+/// as fast as the noise.
+constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_walks{16, 2};
 
 /// The first order takes no larger share than this for a peak. With more, light that is scattered
 /// twice by small angles, towards which one looks at a sun through the medium, is too dark.
@@ -154,8 +160,8 @@ int PassWorlds::order(int pass, bool walks) const {
   // Multiples of the golden ratio spread the pairs of passes of one more evenly.
   const double spread = std::fmod(0.5 + 0.61803398875 * (pass / 2), 1.0);
   int result = static_cast<int>((walks ? first_order_of_walks_ : first_order_) + spread);
-  for (std::int64_t until = walks ? passes_of_first_order_of_walks : passes_of_first_order;
-       pass >= until; until *= 3)
+  const OrderGrowth growth = walks ? growth_of_walks : growth_along_rays;
+  for (std::int64_t until = growth.passes_of_first_order; pass >= until; until *= growth.factor)
     ++result;
   // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
   // first as often as the second (Thue-Morse sequence): the moments of the shutter take turns too.

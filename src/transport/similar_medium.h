@@ -33,8 +33,9 @@ public:
 
   /// The truncation order of a pass: at first one that leaves enough of each phase function, higher
   /// where the medium is thin or where walks gather, whose kernels blur so little that truncation
-  /// would be most of the bias; then one more whenever the number of passes has tripled. One
-  /// pass of two takes less out, so that the difference tells the bias that is left.
+  /// would be most of the bias; then one more whenever the number of passes has tripled, or doubled
+  /// where walks gather. One pass of two takes less out, so that the difference tells the bias that
+  /// is left.
   int order(int pass, bool walks = false) const;
 
 private:

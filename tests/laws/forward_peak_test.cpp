@@ -280,7 +280,23 @@ TEST(PassWorlds, TakeOutLessWhereWalksGather) {
   const MemoryScene scene = lumps(1000, henyey_greenstein(0.88));
   const World world = scene.world();
   const PassWorlds worlds(world, true);
-  EXPECT_GT(worlds.order(16, true), worlds.order(16));
+  EXPECT_GT(worlds.order(8, true), worlds.order(8));
+}
+
+/// The squared bias halves with each order, the noise with each doubling of the passes.
+TEST(PassWorlds, TakeOutLessWithEachDoublingWhereWalksGather) {
+  const MemoryScene scene = lumps(1000, henyey_greenstein(0.85));
+  const World world = scene.world();
+  const PassWorlds worlds(world, true);
+  const auto mean_order = [&](int first, int passes) {
+    double sum = 0;
+    for (int pass = first; pass < first + passes; ++pass)
+      sum += worlds.order(pass, true);
+    return sum / passes;
+  };
+  const double at_first = mean_order(0, 16);
+  for (int doublings = 0; doublings < 3; ++doublings)
+    EXPECT_NEAR(mean_order(16 << doublings, 16 << doublings), at_first + 1 + doublings, 0.35);
 }
 
 } // namespace
