@@ -56,8 +56,8 @@ void BeamEstimator::render_pass(int pass, PassImage& image, RenderStatistics& st
     photons_.map().query_ray(ray_weights(world, ray, profile, weights, table), sum);
     return sum;
   };
-  shade_tiles(walks ? walks->input() : input_, photons_, pass, image, statistics, gather,
-              gather_along);
+  shade_tiles(walks ? walks->input() : input_, photons_, pass, walks.has_value(), image, statistics,
+              gather, gather_along);
   if (walks)
     walks->share(blur, image);
   image.blur = blur.take();

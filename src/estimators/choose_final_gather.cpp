@@ -45,7 +45,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
       const FinalGather gather(input.world, plan, map);
       const auto light = [&] {
         const GatheredLight found =
-            gather.gather(ray.camera.ray(), ray.profile, WalkPlan::most_walks, rng, uncounted);
+            gather.gather(ray.camera.ray(), ray.profile, WalkPlan::most_walks, 1, rng, uncounted);
         return found.direct + found.indirect;
       };
       const Rgb a = light(), b = light(), d = a - b;

@@ -59,15 +59,15 @@ FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Photo
     : world_(world), plan_(plan), map_(map), compared_(compared), far_enough_(map.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
-GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks, Rng& rng,
-                                  RenderStatistics& counts, const DeepRay& deep,
-                                  const VolumeLights& of_volumes) const {
+GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
+                                  float weight_of_ray, Rng& rng, RenderStatistics& counts,
+                                  const DeepRay& deep, const VolumeLights& of_volumes) const {
   const Medium& medium = world_.medium;
   DistanceSampler distances(medium, ray, profile);
-  const float share = 1 / static_cast<float>(walks);
+  const float stratum = 1 / static_cast<float>(walks);
   GatheredLight sum;
   for (int i = 0; i < walks; ++i) {
-    const float u = std::min(1.0f, (static_cast<float>(i) + rng.uniform()) * share);
+    const float u = std::min(1.0f, (static_cast<float>(i) + rng.uniform()) * stratum);
     const int c = medium.chromatic ? std::min(2, static_cast<int>(rng.uniform() * 3)) : 0;
     if (!(distances.opacity(c) > 0))
       continue;
@@ -86,7 +86,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
               chosen->weight * std::abs(weight)};
     follow(walk);
     ++counts.gather_walks;
-    const float counted = std::copysign(share, weight);
+    const float counted = std::copysign(stratum * weight_of_ray, weight);
     const Rgb light = (walk.found.direct + walk.found.indirect) * counted;
     deep.add_light_at(point.t, light);
     of_volumes.add(volume.setting, light);

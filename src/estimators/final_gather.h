@@ -26,9 +26,10 @@ public:
   FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
               const PhotonMap* compared = nullptr);
 
-  /// So many walks from the ray, whose profile is not empty, their distances stratified.
-  GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, Rng& rng,
-                       RenderStatistics& counts, const DeepRay& deep = {},
+  /// So many walks from the ray, whose profile is not empty, their distances stratified. `weight`:
+  /// of the ray in its pixel.
+  GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float weight,
+                       Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
                        const VolumeLights& of_volumes = {}) const;
 
 private:

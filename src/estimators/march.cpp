@@ -132,7 +132,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
     Rgb straight;
     return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
   };
-  shade_tiles(input_, photons_, pass, image, statistics, gather, gather_along);
+  shade_tiles(input_, photons_, pass, false, image, statistics, gather, gather_along);
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
 }

@@ -2,13 +2,24 @@
 
 namespace vdbeam {
 
-TileRays::PixelRay TileRays::pixel_ray(const EstimatorInput& input, const RngKey& key, int x,
-                                       int y) {
+namespace {
+
+/// Where the rays of a pixel lie, relative to its own.
+constexpr std::array<double, 2> lattice[TileRays::most_per_pixel] = {
+    {0, 0}, {0.5, 0.5}, {0.5, 0}, {0, 0.5}};
+
+} // namespace
+
+TileRays::PixelRay TileRays::pixel_ray(const EstimatorInput& input, const RngKey& key, int x, int y,
+                                       int number) {
   PixelRay ray;
   ray.inside = true;
+  const std::size_t pixels =
+      static_cast<std::size_t>(input.camera.width()) * input.camera.height();
   ray.pixel = static_cast<std::size_t>(y) * input.camera.width() + x;
-  Rng rng(key, RngStage::camera, ray.pixel);
-  ray.eye = input.camera.sample(x, y, rng);
+  ray.stream = ray.pixel + static_cast<std::size_t>(number) * pixels;
+  Rng rng(key, RngStage::camera, ray.pixel); // the same numbers for all of its rays
+  ray.eye = input.camera.sample(x, y, rng, lattice[number]);
   ray.camera = camera_ray(input.world, input.camera, ray.eye);
   return ray;
 }
@@ -17,6 +28,8 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
   const Camera& camera = input.camera;
   x0_ = x0;
   y0_ = y0;
+  used_ = 0;
+  first_more_.fill(-1);
   for (int i = 0; i < count; ++i) {
     const int subtile = i / 16, ray = i % 16;
     const int x = x0 + subtile % 4 * 4 + ray % 4, y = y0 + subtile / 4 * 4 + ray / 4;
@@ -30,6 +43,30 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
       segment.t_end = segment.t_begin;
     out.profile.build(input.world.medium, segment, static_cast<float>(input.settings.cutoff));
   }
+}
+
+void TileRays::refine(const EstimatorInput& input, const RngKey& key, int ray) {
+  const auto width = static_cast<std::size_t>(input.camera.width());
+  const int x = static_cast<int>(rays_[ray].pixel % width);
+  const int y = static_cast<int>(rays_[ray].pixel / width);
+  first_more_[ray] = static_cast<int>(used_);
+  for (int number = 1; number < most_per_pixel; ++number) {
+    if (used_ == more_.size())
+      more_.emplace_back();
+    PixelRay& out = more_[used_++];
+    DepthProfile profile = std::move(out.profile);
+    out = pixel_ray(input, key, x, y, number);
+    out.profile = std::move(profile);
+    out.profile.build(input.world.medium, out.camera.segment,
+                      static_cast<float>(input.settings.cutoff));
+  }
+}
+
+std::span<const TileRays::PixelRay> TileRays::more(int ray) const {
+  const int first = first_more_[ray];
+  if (first < 0)
+    return {};
+  return {more_.data() + first, static_cast<std::size_t>(most_per_pixel - 1)};
 }
 
 } // namespace vdbeam

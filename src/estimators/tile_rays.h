@@ -6,6 +6,8 @@
 #include "transport/depth_profile.h"
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace vdbeam {
 
@@ -24,17 +26,30 @@ public:
     EyeRay eye; ///< the ray in double precision
     DepthProfile profile;
     std::size_t pixel = 0;
-    bool inside = false; ///< the pixel exists
+    std::size_t stream = 0; ///< of the ray's random numbers
+    bool inside = false;    ///< the pixel exists
   };
-  /// One pixel's ray, jittered, without its profile.
-  static PixelRay pixel_ray(const EstimatorInput& input, const RngKey& key, int x, int y);
+  /// Rays of a pixel once it has been refined.
+  static constexpr int most_per_pixel = 4;
+  /// One pixel's ray, jittered, without its profile; `number`: which of its rays. Together they lie
+  /// on a lattice in the pixel, and each is distributed as if it were alone.
+  static PixelRay pixel_ray(const EstimatorInput& input, const RngKey& key, int x, int y,
+                            int number = 0);
 
   const PixelRay& operator[](int ray) const { return rays_[ray]; }
+
+  /// Adds rays to the pixel of a ray.
+  void refine(const EstimatorInput& input, const RngKey& key, int ray);
+  /// What refining added to the pixel of a ray; nothing where it was not refined.
+  std::span<const PixelRay> more(int ray) const;
   int x0() const { return x0_; }
   int y0() const { return y0_; }
 
 private:
   std::array<PixelRay, count> rays_;
+  std::vector<PixelRay> more_; ///< kept from tile to tile for the memory of their profiles
+  std::size_t used_ = 0;       ///< of them, in this tile
+  std::array<int, count> first_more_{}; ///< of each ray; -1: none
   int x0_ = 0, y0_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "estimators/direct_light.h"
 #include "estimators/pixel_tiles.h"
 #include "estimators/profile_shading.h"
+#include "estimators/uneven_pixels.h"
 #include "machine/stopwatch.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -80,6 +81,58 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   return radiance;
 }
 
+/// What one ray gives to a pixel where later ones would overwrite it.
+struct OneRay {
+  Rgb direct, background, emission;
+  float opacity, depth;
+};
+
+/// Leaves nothing of it in the image.
+OneRay take(std::size_t pixel, PassImage& image) {
+  const OneRay ray{std::exchange(image.direct[pixel], {}), std::exchange(image.background[pixel], {}),
+                   image.emission.empty() ? Rgb() : std::exchange(image.emission[pixel], {}),
+                   std::exchange(image.opacity[pixel], 0.0f),
+                   std::exchange(image.depth[pixel], 0.0f)};
+  return ray;
+}
+
+void add(const OneRay& ray, std::size_t pixel, PassImage& image) {
+  image.direct[pixel] += ray.direct;
+  image.background[pixel] += ray.background;
+  if (!image.emission.empty())
+    image.emission[pixel] += ray.emission;
+  image.opacity[pixel] += ray.opacity;
+  image.depth[pixel] += ray.depth;
+}
+
+/// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
+void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const RngKey& key,
+                  TileScratch& scratch, PassImage& image) {
+  const World& world = photons.world();
+  std::array<bool, TileRays::count> uneven;
+  for (int i = 0; i < TileRays::count; ++i) {
+    const TileRays::PixelRay& ray = scratch.rays[i];
+    const auto width = static_cast<std::size_t>(image.width);
+    uneven[static_cast<std::size_t>(i)] =
+        ray.inside && is_uneven(image, input.camera, world.space.scale,
+                                static_cast<int>(ray.pixel % width),
+                                static_cast<int>(ray.pixel / width));
+  }
+  for (int i = 0; i < TileRays::count && !input.stopped(); ++i) {
+    if (!uneven[static_cast<std::size_t>(i)])
+      continue;
+    const std::size_t pixel = scratch.rays[i].pixel;
+    scratch.rays.refine(input.in(world), key, i);
+    for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
+      const OneRay before = take(pixel, image);
+      shade_ray(input, photons, ray, {}, key, pixel, image, scratch.statistics);
+      add(before, pixel, image);
+    }
+    image.scale_pixel(pixel, 1.0f / TileRays::most_per_pixel);
+    scratch.statistics.camera_rays += TileRays::most_per_pixel - 1;
+  }
+}
+
 } // namespace
 
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
@@ -92,7 +145,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                   counts.emission_rays);
   else
     shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
-  Rng rng(key, RngStage::direct, ray.pixel);
+  Rng rng(key, RngStage::direct, ray.stream);
   const int samples = photons.plan().direct_samples_of(
       ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
   const DeepRay deep(world, ray.camera, target, image);
@@ -103,8 +156,8 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                    rng, counts.shadow_rays, photons.shadows(), deep, volumes);
 }
 
-void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
-                 RenderStatistics& statistics,
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, bool refine,
+                 PassImage& image, RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
                  const GatherAlong& gather_along) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
@@ -128,6 +181,8 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
                      : SeenSurface();
         shade_ray(input, photons, ray, surface, key, ray.pixel, image, scratch.statistics);
       }
+    if (refine)
+      refine_edges(input, photons, key, scratch, image);
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       gather(scratch, key);

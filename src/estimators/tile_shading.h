@@ -21,11 +21,12 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                std::size_t target, PassImage& image, RenderStatistics& counts);
 
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
-/// direct light, what is seen through the medium, and the stage times. `gather` adds what the
+/// direct light, what is seen through the medium, and the stage times. `refine`: edges are seen by
+/// several rays (is_uneven). `gather` adds what the
 /// photon map gives to image.indirect for the tile's rays, and its counts to scratch.statistics;
 /// `gather_along` gives the same for the rays that go on behind mirrors and glass.
-void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, PassImage& image,
-                 RenderStatistics& statistics,
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, bool refine,
+                 PassImage& image, RenderStatistics& statistics,
                  const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
                  const GatherAlong& gather_along);
 

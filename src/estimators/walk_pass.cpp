@@ -72,20 +72,35 @@ void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, 
   const FinalGather twice(world, photons_.plan(), photons_.map(), compared);
   for (int i = 0; i < TileRays::count && !wide_.stopped(); ++i) {
     const TileRays::PixelRay& ray = scratch.rays[i];
-    if (!ray.inside || ray.profile.empty())
+    if (!ray.inside)
       continue;
     PixelValue* probe = blur.find(ray.pixel);
-    Rng rng(key, RngStage::final_gather, ray.pixel);
-    const GatheredLight light =
-        (probe ? twice : gather)
-            .gather(ray.camera.ray(), ray.profile, walks_, rng, scratch.statistics,
-                    DeepRay(world, ray.camera, ray.pixel, image),
-                    VolumeLights(wide_.layers, ray.pixel, walked_));
-    ++scratch.statistics.lookups;
-    walked_.direct[ray.pixel] = light.direct;
-    walked_.indirect[ray.pixel] = light.indirect;
+    const std::span<const TileRays::PixelRay> more = scratch.rays.more(i);
+    const int rays = 1 + static_cast<int>(more.size());
+    // A ray that is one of several needs two walks at least, or its noise would be that of one.
+    const int walks = more.empty() ? walks_ : std::max(2, walks_ / rays);
+    GatheredLight sum;
+    const auto send = [&](const TileRays::PixelRay& from) {
+      if (from.profile.empty())
+        return;
+      Rng rng(key, RngStage::final_gather, from.stream);
+      const GatheredLight light =
+          (probe ? twice : gather)
+              .gather(from.camera.ray(), from.profile, walks, 1 / static_cast<float>(rays), rng,
+                      scratch.statistics, DeepRay(world, from.camera, from.pixel, image),
+                      VolumeLights(wide_.layers, from.pixel, walked_));
+      sum.direct += light.direct;
+      sum.indirect += light.indirect;
+      sum.blur += light.blur;
+      ++scratch.statistics.lookups;
+    };
+    send(ray);
+    for (const TileRays::PixelRay& one : more)
+      send(one);
+    walked_.direct[ray.pixel] = sum.direct;
+    walked_.indirect[ray.pixel] = sum.indirect;
     if (probe)
-      probe->radiance = light.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
+      probe->radiance = sum.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
   }
 }
 

@@ -41,11 +41,8 @@ WalkSharing::WalkSharing(const Camera& camera, double world_scale, float radius)
       reach_(radius > 0 ? static_cast<int>(std::ceil(radius)) : 0) {}
 
 float WalkSharing::deepest(const SeenMedium& seen, int x, int y, float distance) const {
-  const double px = seen.x0 + x + 0.5, py = seen.y0 + y + 0.5;
-  const EyeRay here = camera_.ray(px, py), beside = camera_.ray(px + 1, py);
-  const double t = static_cast<double>(distance) * world_scale_;
-  const double pixel =
-      length(here.origin + here.direction * t - beside.origin - beside.direction * t);
+  const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
+                                           static_cast<double>(distance) * world_scale_);
   return deepest_over_width * (radius_ + 0.5f) * static_cast<float>(pixel / world_scale_);
 }
 

@@ -3,6 +3,7 @@
 #include "image/deep_layout.h"
 #include "vdbeam/vec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -84,6 +85,24 @@ struct PassImage {
     for (int c = 0; c < 3; ++c) {
       const float whole = indirect[pixel][c], rest = whole - light[c];
       indirect[pixel][c] = std::abs(rest) < 1e-6f * std::abs(whole) ? 0 : rest;
+    }
+  }
+  /// Takes all that rays have given to the pixel so often.
+  void scale_pixel(std::size_t pixel, float factor) {
+    for (std::vector<Rgb>* light : {&direct, &indirect, &background, &emission})
+      if (!light->empty())
+        (*light)[pixel] *= factor;
+    opacity[pixel] *= factor;
+    depth[pixel] *= factor;
+    for (std::vector<float>& object : coverage)
+      object[pixel] *= factor;
+    for (std::vector<float>& plane : planes)
+      plane[pixel] *= factor;
+    if (deep_layout) {
+      constexpr std::size_t values = DeepLayout::values_per_piece;
+      float* first = deep.data() + deep_layout->first[pixel] * values;
+      std::transform(first, first + deep_layout->count(pixel) * values, first,
+                     [&](float value) { return value * factor; });
     }
   }
   /// What a pass takes.

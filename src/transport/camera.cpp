@@ -83,17 +83,26 @@ EyeRay Camera::ray(double px, double py) const {
   return {origin_, normalize(forward_ + right_ * x + up_ * y)};
 }
 
-EyeRay Camera::sample(int x, int y, Rng& rng) const {
-  const double px = x + filter_.offset(static_cast<double>(rng.uniform()));
-  const double py = y + filter_.offset(static_cast<double>(rng.uniform()));
+EyeRay Camera::sample(int x, int y, Rng& rng, const std::array<double, 2>& shift) const {
+  const auto draw = [&](std::size_t axis) {
+    const double u = static_cast<double>(rng.uniform()) + shift[axis];
+    return u < 1 ? u : u - 1;
+  };
+  const double px = x + filter_.offset(draw(0));
+  const double py = y + filter_.offset(draw(1));
   if (!(lens_.radius() > 0))
     return ray(px, py);
-  const double u = static_cast<double>(rng.uniform()), v = static_cast<double>(rng.uniform());
+  const double u = draw(0), v = draw(1);
   const Vec3d on_lens = lens_.sample(u, v);
   const Vec3d start = right_ * on_lens.x + up_ * on_lens.y;
   // All rays of a picture position meet in the plane of focus.
   const Vec3d meeting = (forward_ + right_ * window_x(px) + up_ * window_y(py)) * focus_;
   return {origin_ + start, normalize(meeting - start)};
+}
+
+double Camera::pixel_width(double px, double py, double t) const {
+  const EyeRay here = ray(px, py), beside = ray(px + 1, py);
+  return length(here.origin + here.direction * t - beside.origin - beside.direction * t);
 }
 
 std::optional<std::array<double, 2>> Camera::project(const Vec3d& point) const {

@@ -45,8 +45,12 @@ public:
   double depth_over_distance(double px, double py) const {
     return along_axis(ray(px, py).direction);
   }
-  /// A random ray of the pixel (x, y), by its filter and through the lens.
-  EyeRay sample(int x, int y, Rng& rng) const;
+  /// A random ray of the pixel (x, y), by its filter and through the lens. `shift`: is added to the
+  /// numbers that are drawn for the position, and for the lens, modulo 1.
+  EyeRay sample(int x, int y, Rng& rng, const std::array<double, 2>& shift = {0, 0}) const;
+  /// How far apart the rays through the pixel position and through its neighbour to the right are
+  /// at the distance t [render units].
+  double pixel_width(double px, double py, double t) const;
   /// Where a point is in the picture, as a pixel position; nothing for one that is not before the
   /// camera.
   std::optional<std::array<double, 2>> project(const Vec3d& point) const;
