@@ -17,7 +17,7 @@ struct SharingTrial {
 };
 
 /// Sharing blurs light as this power of its radius.
-inline constexpr double sharing_blur_power = 0.925;
+inline constexpr double sharing_blur_power = 0.75;
 
 /// How passes gather finally (FinalGather).
 struct WalkPlan {
