@@ -14,8 +14,7 @@ TileRays::PixelRay TileRays::pixel_ray(const EstimatorInput& input, const RngKey
                                        int number) {
   PixelRay ray;
   ray.inside = true;
-  const std::size_t pixels =
-      static_cast<std::size_t>(input.camera.width()) * input.camera.height();
+  const std::size_t pixels = static_cast<std::size_t>(input.camera.width()) * input.camera.height();
   ray.pixel = static_cast<std::size_t>(y) * input.camera.width() + x;
   ray.stream = ray.pixel + static_cast<std::size_t>(number) * pixels;
   Rng rng(key, RngStage::camera, ray.pixel); // the same numbers for all of its rays

@@ -47,8 +47,8 @@ public:
 
 private:
   std::array<PixelRay, count> rays_;
-  std::vector<PixelRay> more_; ///< kept from tile to tile for the memory of their profiles
-  std::size_t used_ = 0;       ///< of them, in this tile
+  std::vector<PixelRay> more_;          ///< kept from tile to tile for the memory of their profiles
+  std::size_t used_ = 0;                ///< of them, in this tile
   std::array<int, count> first_more_{}; ///< of each ray; -1: none
   int x0_ = 0, y0_ = 0;
 };

@@ -89,10 +89,10 @@ struct OneRay {
 
 /// Leaves nothing of it in the image.
 OneRay take(std::size_t pixel, PassImage& image) {
-  const OneRay ray{std::exchange(image.direct[pixel], {}), std::exchange(image.background[pixel], {}),
-                   image.emission.empty() ? Rgb() : std::exchange(image.emission[pixel], {}),
-                   std::exchange(image.opacity[pixel], 0.0f),
-                   std::exchange(image.depth[pixel], 0.0f)};
+  const OneRay ray{
+      std::exchange(image.direct[pixel], {}), std::exchange(image.background[pixel], {}),
+      image.emission.empty() ? Rgb() : std::exchange(image.emission[pixel], {}),
+      std::exchange(image.opacity[pixel], 0.0f), std::exchange(image.depth[pixel], 0.0f)};
   return ray;
 }
 
@@ -114,9 +114,9 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
     const TileRays::PixelRay& ray = scratch.rays[i];
     const auto width = static_cast<std::size_t>(image.width);
     uneven[static_cast<std::size_t>(i)] =
-        ray.inside && is_uneven(image, input.camera, world.space.scale,
-                                static_cast<int>(ray.pixel % width),
-                                static_cast<int>(ray.pixel / width));
+        ray.inside &&
+        is_uneven(image, input.camera, world.space.scale, static_cast<int>(ray.pixel % width),
+                  static_cast<int>(ray.pixel / width));
   }
   for (int i = 0; i < TileRays::count && !input.stopped(); ++i) {
     if (!uneven[static_cast<std::size_t>(i)])

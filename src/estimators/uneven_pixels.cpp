@@ -44,9 +44,9 @@ bool is_uneven(const PassImage& image, const Camera& camera, double world_scale,
     return true;
   if (!(depths.width() > 0))
     return false;
-  const double pixel = camera.pixel_width(x + 0.5, y + 0.5,
-                                          static_cast<double>(depths.least) * world_scale) /
-                       world_scale;
+  const double pixel =
+      camera.pixel_width(x + 0.5, y + 0.5, static_cast<double>(depths.least) * world_scale) /
+      world_scale;
   return depths.width() > uneven_widths * static_cast<float>(pixel);
 }
 
