@@ -125,7 +125,8 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
     scratch.rays.refine(input.in(world), key, i);
     for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
       const OneRay before = take(pixel, image);
-      shade_ray(input, photons, ray, {}, key, pixel, image, scratch.statistics);
+      shade_ray(input, photons, ray, {}, key, pixel, image, scratch.statistics,
+                TileRays::most_per_pixel);
       add(before, pixel, image);
     }
     image.scale_pixel(pixel, 1.0f / TileRays::most_per_pixel);
@@ -137,7 +138,7 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
 
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
-               std::size_t target, PassImage& image, RenderStatistics& counts) {
+               std::size_t target, PassImage& image, RenderStatistics& counts, int rays) {
   const World& world = photons.world();
   counts.depth_profiles += ray.profile.empty() ? 0 : 1;
   if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
@@ -146,8 +147,9 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   else
     shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
   Rng rng(key, RngStage::direct, ray.stream);
-  const int samples = photons.plan().direct_samples_of(
+  const int of_pixel = photons.plan().direct_samples_of(
       ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
+  const int samples = std::max(1, of_pixel / rays);
   const DeepRay deep(world, ray.camera, target, image);
   const VolumeLights volumes(input.layers, target, image);
   image.direct[target] =

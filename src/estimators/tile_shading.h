@@ -15,10 +15,10 @@ struct TileScratch {
 
 /// What a ray of the picture sees but for what it gathers from the photon map: direct light, and
 /// what is seen through the medium. Goes to pixel `target` of `image`. `surface`: radiance of the
-/// surface at which the ray ends, if it does.
+/// surface at which the ray ends, if it does. `rays`: of the pixel, which share its shadow rays.
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
-               std::size_t target, PassImage& image, RenderStatistics& counts);
+               std::size_t target, PassImage& image, RenderStatistics& counts, int rays = 1);
 
 /// The camera side of a pass that `beam` and `march` share: rays and depth profiles tile by tile,
 /// direct light, what is seen through the medium, and the stage times. `refine`: edges are seen by
