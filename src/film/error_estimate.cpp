@@ -25,6 +25,9 @@ constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 /// squared error over itself: 1 as James and Stein do. What only path-traced rays tell, or the
 /// truncation, counts where it stands out.
 constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
+/// What neither kernels nor passes show is expected to be no larger than all that they do, before
+/// any ray has told: with few rays the interval would otherwise end at tens of times the error.
+constexpr double expected_rest = 1;
 constexpr std::size_t batches_of_interval = fewest_batches;
 
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
@@ -203,7 +206,9 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
       average({bias.hidden, bias.hidden_error}, {bias.truncation, bias.truncation_error});
   if (std::isfinite(rest.value)) {
     result.value += positive_part(rest.value, rest.error, probe_shrinkage);
-    result.error = std::hypot(result.error, rest.error);
+    const double expected = expected_rest * (noise + result.value);
+    if (rest.error > 0 && expected > 0)
+      result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));
   }
   return result;
 }
