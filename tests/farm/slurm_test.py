@@ -61,15 +61,21 @@ def jobs(slurm):
     return [dict(re.findall(r"(\w+)=(\S*)", line)) for line in lines if "JobId=" in line]
 
 
+def running(slurm):
+    """Numbers of the tasks that run."""
+    return [job["JobId"] for job in jobs(slurm) if job["JobState"] == "RUNNING"]
+
+
 def requeue_one(slurm):
     """Requeues a task that runs, and returns its number."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
-        for job in jobs(slurm):
-            if job["JobState"] == "RUNNING":
-                if slurm.run("scontrol", "requeue", job["JobId"]).returncode == 0:
-                    return job["JobId"]
-        time.sleep(0.05)
+        started = running(slurm)
+        # Slurm drains a node on which a task is requeued before it has come to be.
+        time.sleep(0.3)
+        for task in running(slurm):
+            if task in started and slurm.run("scontrol", "requeue", task).returncode == 0:
+                return task
     raise AssertionError("no task came to run")
 
 
@@ -77,6 +83,10 @@ def wait_for_end(slurm):
     end = time.monotonic() + PATIENCE
     while waiting := slurm.output("squeue", "-h", "-o", "%i %T %r"):
         check(time.monotonic() < end, f"still in the queue after {PATIENCE} s:\n{waiting}")
+        if "held" in waiting:  # it was started anew before its former run had ended, and failed
+            slurm.run("scontrol", "update", "NodeName=localhost", "State=RESUME")
+            for task in [line.split()[0] for line in waiting.splitlines() if "held" in line]:
+                slurm.run("scontrol", "release", task)
         time.sleep(0.2)
 
 
