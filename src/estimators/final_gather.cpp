@@ -60,7 +60,7 @@ FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Photo
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
-                                  float weight_of_ray, Rng& rng, RenderStatistics& counts,
+                                  float ray_weight, Rng& rng, RenderStatistics& counts,
                                   const DeepRay& deep, const VolumeLights& of_volumes) const {
   const Medium& medium = world_.medium;
   DistanceSampler distances(medium, ray, profile);
@@ -86,7 +86,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
               chosen->weight * std::abs(weight)};
     follow(walk);
     ++counts.gather_walks;
-    const float counted = std::copysign(stratum * weight_of_ray, weight);
+    const float counted = std::copysign(stratum * ray_weight, weight);
     const Rgb light = (walk.found.direct + walk.found.indirect) * counted;
     deep.add_light_at(point.t, light);
     of_volumes.add(volume.setting, light);

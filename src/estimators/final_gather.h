@@ -26,9 +26,9 @@ public:
   FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
               const PhotonMap* compared = nullptr);
 
-  /// So many walks from the ray, whose profile is not empty, their distances stratified. `weight`:
-  /// of the ray in its pixel.
-  GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float weight,
+  /// So many walks from the ray, whose profile is not empty, their distances stratified.
+  /// `ray_weight`: of the ray among those of its pixel.
+  GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float ray_weight,
                        Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
                        const VolumeLights& of_volumes = {}) const;
 

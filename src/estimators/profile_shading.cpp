@@ -20,22 +20,26 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
+/// Opacity of a ray, and opacity times the mean distance [world].
+struct OpaqueParts {
+  float opacity = 0, depth = 0;
+};
+
 /// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
 /// the share that is in shadow is.
-void end_at_surface(const World& world, const CameraRay& camera, std::size_t pixel, float shadow,
-                    PassImage& image) {
+void end_at_surface(const World& world, const CameraRay& camera, float shadow, OpaqueParts& seen) {
   const Material& material = world.surfaces->material(*camera.hit);
   if (material.is_holdout())
     return;
+  const auto distance = static_cast<float>(camera.hit->t / world.space.scale);
   if (material.is_shadow_catcher()) {
-    const float seen = (1 - image.opacity[pixel]) * shadow;
-    image.depth[pixel] += seen * static_cast<float>(camera.hit->t / world.space.scale);
-    image.opacity[pixel] += seen;
+    const float more = (1 - seen.opacity) * shadow;
+    seen.depth += more * distance;
+    seen.opacity += more;
     return;
   }
-  image.depth[pixel] +=
-      (1 - image.opacity[pixel]) * static_cast<float>(camera.hit->t / world.space.scale);
-  image.opacity[pixel] = 1;
+  seen.depth += (1 - seen.opacity) * distance;
+  seen.opacity = 1;
 }
 
 /// How much of the pixel each object covers: the integral of Tr sigma_t dt of a volume, and what is
@@ -85,26 +89,28 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    std::uint64_t& emission_rays, const SeenSurface& surface) {
   const World& world = input.world;
   Rgb tr(1);
+  OpaqueParts seen;
   if (!profile.empty()) {
     const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
     tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
     // Not 1 - tr, which has no digits left where the medium is thin.
-    const float opacity =
-        mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
-    image.opacity[pixel] = opacity;
-    image.depth[pixel] = static_cast<float>(
-        (profile.opacity_depth(world.medium) + camera.shift * opacity) / world.space.scale);
+    seen.opacity = mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
+    seen.depth = static_cast<float>(
+        (profile.opacity_depth(world.medium) + camera.shift * seen.opacity) / world.space.scale);
   }
-  image.background[pixel] = lights_through(world, camera.whole(), profile, tr, true);
+  Rgb background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
-    image.background[pixel] += tr * surface.radiance;
-    end_at_surface(world, camera, pixel, surface.shadow, image);
+    background += tr * surface.radiance;
+    end_at_surface(world, camera, surface.shadow, seen);
   }
+  image.background[pixel] += background;
+  image.opacity[pixel] += seen.opacity;
+  image.depth[pixel] += seen.depth;
   if (!image.emission.empty() && !camera.segment.empty()) {
     ++emission_rays;
     const VolumeLights volumes(input.layers, pixel, image);
     std::vector<Rgb> of_emitters;
-    image.emission[pixel] =
+    image.emission[pixel] +=
         emission_along(world.medium, camera.segment, profile,
                        static_cast<float>(input.settings.cutoff), volumes ? &of_emitters : nullptr);
     for (std::size_t i = 0; i < of_emitters.size(); ++i)
@@ -113,7 +119,8 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
-    input.layers->record(world, camera, profile, mean_component(tr), surface.shadow, pixel, image);
+    input.layers->record(world, camera, profile, mean_component(tr), surface.shadow, seen.depth,
+                         pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep) {
     deep.add_opacity(world.medium, profile);
     if (!camera.segment.empty())

@@ -15,8 +15,9 @@ struct SeenSurface {
 };
 
 /// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
-/// through the medium, and emission. `surface`: what is seen of the surface at which the ray ends,
-/// if it does. Counts a ray in `emission_rays` where emission was integrated.
+/// through the medium, and emission. They are added to what other rays gave the pixel. `surface`:
+/// what is seen of the surface at which the ray ends, if it does. Counts a ray in `emission_rays`
+/// where emission was integrated.
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
                    std::uint64_t& emission_rays, const SeenSurface& surface = {});

@@ -113,7 +113,8 @@ bool RayLayers::is_light(std::size_t plane) const {
 }
 
 void RayLayers::record(const World& world, const CameraRay& camera, const DepthProfile& profile,
-                       float left, float shadow, std::size_t pixel, PassImage& image) const {
+                       float left, float shadow, float depth, std::size_t pixel,
+                       PassImage& image) const {
   const auto add = [&](int plane, double value) {
     if (plane >= 0)
       image.planes[static_cast<std::size_t>(plane)][pixel] += static_cast<float>(value);
@@ -154,7 +155,7 @@ void RayLayers::record(const World& world, const CameraRay& camera, const DepthP
   if (position_ >= 0) {
     const Vec3d eye = in_world(Vec3d(ray.origin) - Vec3d(ray.direction) * camera.shift);
     add_vector(position_, eye * static_cast<double>(opacity) +
-                              Vec3d(ray.direction) * static_cast<double>(image.depth[pixel]));
+                              Vec3d(ray.direction) * static_cast<double>(depth));
   }
   if (camera.hit && motion_ >= 0 && behind > 0) {
     const SceneMotion::Pixels moved = scene_motion_->of_mesh(

@@ -25,9 +25,10 @@ public:
   bool is_light(std::size_t plane) const;
 
   /// What the ray sees, but for the light of volumes. `left`: what the medium lets through of the
-  /// light behind; `shadow`: of the surface at its end, that of a shadow catcher.
+  /// light behind; `shadow`: of the surface at its end, that of a shadow catcher; `depth`: what the
+  /// ray adds to PassImage::depth.
   void record(const World& world, const CameraRay& camera, const DepthProfile& profile, float left,
-              float shadow, std::size_t pixel, PassImage& image) const;
+              float shadow, float depth, std::size_t pixel, PassImage& image) const;
 
 private:
   int find(const std::string& name) const;

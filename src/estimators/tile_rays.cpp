@@ -5,7 +5,7 @@ namespace vdbeam {
 namespace {
 
 /// Where the rays of a pixel lie, relative to its own.
-constexpr std::array<double, 2> lattice[TileRays::most_per_pixel] = {
+constexpr std::array<double, 2> lattice[TileRays::rays_if_refined] = {
     {0, 0}, {0.5, 0.5}, {0.5, 0}, {0, 0.5}};
 
 } // namespace
@@ -49,7 +49,7 @@ void TileRays::refine(const EstimatorInput& input, const RngKey& key, int ray) {
   const int x = static_cast<int>(rays_[ray].pixel % width);
   const int y = static_cast<int>(rays_[ray].pixel / width);
   first_more_[ray] = static_cast<int>(used_);
-  for (int number = 1; number < most_per_pixel; ++number) {
+  for (int number = 1; number < rays_if_refined; ++number) {
     if (used_ == more_.size())
       more_.emplace_back();
     PixelRay& out = more_[used_++];
@@ -65,7 +65,7 @@ std::span<const TileRays::PixelRay> TileRays::more(int ray) const {
   const int first = first_more_[ray];
   if (first < 0)
     return {};
-  return {more_.data() + first, static_cast<std::size_t>(most_per_pixel - 1)};
+  return {more_.data() + first, static_cast<std::size_t>(rays_if_refined - 1)};
 }
 
 } // namespace vdbeam

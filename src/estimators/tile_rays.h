@@ -29,8 +29,8 @@ public:
     std::size_t stream = 0; ///< of the ray's random numbers
     bool inside = false;    ///< the pixel exists
   };
-  /// Rays of a pixel once it has been refined.
-  static constexpr int most_per_pixel = 4;
+  /// Rays of a pixel that has been refined, its own among them.
+  static constexpr int rays_if_refined = 4;
   /// One pixel's ray, jittered, without its profile; `number`: which of its rays. Together they lie
   /// on a lattice in the pixel, and each is distributed as if it were alone.
   static PixelRay pixel_ray(const EstimatorInput& input, const RngKey& key, int x, int y,

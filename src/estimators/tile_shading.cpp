@@ -81,30 +81,6 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   return radiance;
 }
 
-/// What one ray gives to a pixel where later ones would overwrite it.
-struct OneRay {
-  Rgb direct, background, emission;
-  float opacity, depth;
-};
-
-/// Leaves nothing of it in the image.
-OneRay take(std::size_t pixel, PassImage& image) {
-  const OneRay ray{
-      std::exchange(image.direct[pixel], {}), std::exchange(image.background[pixel], {}),
-      image.emission.empty() ? Rgb() : std::exchange(image.emission[pixel], {}),
-      std::exchange(image.opacity[pixel], 0.0f), std::exchange(image.depth[pixel], 0.0f)};
-  return ray;
-}
-
-void add(const OneRay& ray, std::size_t pixel, PassImage& image) {
-  image.direct[pixel] += ray.direct;
-  image.background[pixel] += ray.background;
-  if (!image.emission.empty())
-    image.emission[pixel] += ray.emission;
-  image.opacity[pixel] += ray.opacity;
-  image.depth[pixel] += ray.depth;
-}
-
 /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
 void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const RngKey& key,
                   TileScratch& scratch, PassImage& image) {
@@ -123,14 +99,11 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
       continue;
     const std::size_t pixel = scratch.rays[i].pixel;
     scratch.rays.refine(input.in(world), key, i);
-    for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
-      const OneRay before = take(pixel, image);
+    for (const TileRays::PixelRay& ray : scratch.rays.more(i))
       shade_ray(input, photons, ray, {}, key, pixel, image, scratch.statistics,
-                TileRays::most_per_pixel);
-      add(before, pixel, image);
-    }
-    image.scale_pixel(pixel, 1.0f / TileRays::most_per_pixel);
-    scratch.statistics.camera_rays += TileRays::most_per_pixel - 1;
+                TileRays::rays_if_refined);
+    image.scale_pixel(pixel, 1.0f / TileRays::rays_if_refined);
+    scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
   }
 }
 
@@ -152,7 +125,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   const int samples = std::max(1, of_pixel / rays);
   const DeepRay deep(world, ray.camera, target, image);
   const VolumeLights volumes(input.layers, target, image);
-  image.direct[target] =
+  image.direct[target] +=
       light_of_the_peak(world, ray, photons.plan().sampled_lights, deep, volumes) +
       direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights, samples,
                    rng, counts.shadow_rays, photons.shadows(), deep, volumes);

@@ -14,8 +14,9 @@ struct TileScratch {
 };
 
 /// What a ray of the picture sees but for what it gathers from the photon map: direct light, and
-/// what is seen through the medium. Goes to pixel `target` of `image`. `surface`: radiance of the
-/// surface at which the ray ends, if it does. `rays`: of the pixel, which share its shadow rays.
+/// what is seen through the medium. It is added to pixel `target` of `image`. `surface`: radiance
+/// of the surface at which the ray ends, if it does. `rays`: how many rays of the pixel share its
+/// shadow rays.
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
                std::size_t target, PassImage& image, RenderStatistics& counts, int rays = 1);

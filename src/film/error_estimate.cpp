@@ -25,8 +25,8 @@ constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 /// squared error over itself: 1 as James and Stein do. What only path-traced rays tell, or the
 /// truncation, counts where it stands out.
 constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
-/// What neither kernels nor passes show is expected to be no larger than all that they do, before
-/// any ray has told: with few rays the interval would otherwise end at tens of times the error.
+/// Standard deviation, relative to the known error, that the bias not yet seen has beforehand.
+/// Without it the interval of a few rays ends at tens of times the error.
 constexpr double expected_rest = 1;
 constexpr std::size_t batches_of_interval = fewest_batches;
 

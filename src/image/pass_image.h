@@ -87,7 +87,7 @@ struct PassImage {
       indirect[pixel][c] = std::abs(rest) < 1e-6f * std::abs(whole) ? 0 : rest;
     }
   }
-  /// Takes all that rays have given to the pixel so often.
+  /// Multiplies what rays have added to the pixel.
   void scale_pixel(std::size_t pixel, float factor) {
     for (std::vector<Rgb>* light : {&direct, &indirect, &background, &emission})
       if (!light->empty())
