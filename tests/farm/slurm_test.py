@@ -122,8 +122,9 @@ def run_job(slurm, folder):
     check(len(everything) == 3 * len(FRAMES), f"{len(everything)} tasks ran")
     for job in everything:
         check(job["JobState"] == "COMPLETED", f"task {job['JobId']}: {job}{logs(farm)}")
-    restarts = {job["JobId"]: job["Restarts"] for job in everything if job["Restarts"] != "0"}
-    check(restarts == {number: "1"}, f"restarted: {restarts}, and not {number} once")
+    # Once, or more often where Slurm failed to start it anew (wait_for_end).
+    restarted = [job["JobId"] for job in everything if job["Restarts"] != "0"]
+    check(restarted == [number], f"restarted: {restarted}, and not {number} alone")
     check_images(farm, local)
 
 
