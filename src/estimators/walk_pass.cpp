@@ -40,13 +40,13 @@ void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
 /// What narrow sharing is: of half the radius, so that both have much of their noise in common; of
 /// the pixel's own light where so little would change.
 float narrower(float radius) {
-  return radius < 1 ? 0 : radius / 2;
+  return radius <= 1 ? 0 : radius / 2;
 }
 
 /// All that sharing blurs over what it blurs beyond narrower sharing.
-float blur_over_difference(float narrow_over_wide) {
-  return static_cast<float>(
-      1 / (1 - std::pow(static_cast<double>(narrow_over_wide), sharing_blur_power)));
+float blur_over_difference(float narrow, float wide) {
+  const double of_narrow = std::sqrt(WalkSharing::blur(narrow) / WalkSharing::blur(wide));
+  return static_cast<float>(1 / (1 - of_narrow));
 }
 
 } // namespace
@@ -153,7 +153,7 @@ void WalkPass::share_pixel(int x, int y, BlurProbe& blur, PassImage& image) cons
     const GatheredLight narrow = shared(narrow_.shares(seen, x, y, buffer));
     if (sharing_.radius() > 0)
       probe->radiance += (wide.direct + wide.indirect - narrow.direct - narrow.indirect) *
-                         blur_over_difference(narrow_.radius() / sharing_.radius());
+                         blur_over_difference(narrow_.radius(), sharing_.radius());
   }
   const std::span<const WalkSharing::Share> shares = sharing_.shares(seen, x, y, buffer);
   const GatheredLight light = shared(shares);

@@ -1,6 +1,6 @@
 #include "estimators/walk_plan.h"
 
-#include <cmath>
+#include "estimators/walk_sharing.h"
 
 namespace vdbeam {
 
@@ -18,7 +18,7 @@ int walks_of(float radius) {
 } // namespace
 
 double SharingTrial::blur_of(std::size_t radius) const {
-  return blur * std::pow(static_cast<double>(radii[radius] / radii.back()), 2 * sharing_blur_power);
+  return blur * WalkSharing::blur(radii[radius]) / WalkSharing::blur(radii.back());
 }
 
 double WalkPlan::error_after(double passes_along, std::size_t radius) const {

@@ -7,17 +7,15 @@ namespace vdbeam {
 
 /// What sharing (WalkSharing) does to a picture, by its radius.
 struct SharingTrial {
-  static constexpr std::array<float, 7> radii = {0, 0.5f, 0.7f, 1, 1.4f, 2, 2.8f}; ///< [pixels]
+  static constexpr std::array<float, 10> radii = {0,    0.05f, 0.1f, 0.25f, 0.5f,
+                                                  0.7f, 1,     1.4f, 2,     2.8f}; ///< [pixels]
   /// Variance of what is shared over that of what each pixel has of its own.
-  std::array<double, radii.size()> noise = {1, 1, 1, 1, 1, 1, 1};
+  std::array<double, radii.size()> noise = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   double blur = 0; ///< squared bias by the widest, in units like MRSE
 
   /// Squared bias by one of the radii.
   double blur_of(std::size_t radius) const;
 };
-
-/// Sharing blurs light as this power of its radius.
-inline constexpr double sharing_blur_power = 0.75;
 
 /// How passes gather finally (FinalGather).
 struct WalkPlan {

@@ -13,6 +13,14 @@ constexpr float deepest_over_width = 8;
 /// the plane across it would be undetermined.
 constexpr double ridge = 1e-3;
 
+int reach_of(float radius) {
+  return radius > 0 ? static_cast<int>(std::ceil(radius)) : 0;
+}
+
+float weight_at(float dx, float dy, float radius) {
+  return std::max(0.0f, 1 - (dx * dx + dy * dy) / ((radius + 1) * (radius + 1)));
+}
+
 /// Weighted sums of 1, x, y and their products.
 struct Moments {
   double one = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
@@ -37,8 +45,19 @@ struct Moments {
 } // namespace
 
 WalkSharing::WalkSharing(const Camera& camera, double world_scale, float radius)
-    : camera_(camera), world_scale_(world_scale), radius_(radius),
-      reach_(radius > 0 ? static_cast<int>(std::ceil(radius)) : 0) {}
+    : camera_(camera), world_scale_(world_scale), radius_(radius), reach_(reach_of(radius)) {}
+
+double WalkSharing::blur(float radius) {
+  const int reach = reach_of(radius);
+  Moments moments;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx)
+      moments.add(
+          static_cast<double>(weight_at(static_cast<float>(dx), static_cast<float>(dy), radius)),
+          dx, dy);
+  const double mean_square = (moments.xx + moments.yy) / moments.one;
+  return mean_square * mean_square / std::sqrt(1 + mean_square * mean_square);
+}
 
 float WalkSharing::deepest(const SeenMedium& seen, int x, int y, float distance) const {
   const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
@@ -61,7 +80,6 @@ std::span<const WalkSharing::Share> WalkSharing::shares(const SeenMedium& seen, 
   const float deepest = this->deepest(seen, x, y, distance);
   if (!(deepest > 0)) // a medium at the lens itself
     return {shares.data(), 1};
-  const float widest_squared = (radius_ + 1) * (radius_ + 1);
   std::array<std::array<double, 2>, most_shares> offsets;
   Moments moments;
   std::size_t count = 0;
@@ -73,8 +91,7 @@ std::span<const WalkSharing::Share> WalkSharing::shares(const SeenMedium& seen, 
         continue;
       const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
       const float off = (seen.depth[pixel] / own - distance) / deepest;
-      const float weight =
-          std::max(0.0f, 1 - (dx * dx + dy * dy) / widest_squared) * std::max(0.0f, 1 - off * off);
+      const float weight = weight_at(dx, dy, radius_) * std::max(0.0f, 1 - off * off);
       if (!(weight > 0))
         continue;
       // The variance of light per opacity goes as one over the opacity.

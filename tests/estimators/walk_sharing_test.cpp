@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 
 namespace vdbeam {
 namespace {
@@ -60,7 +61,7 @@ TEST(WalkSharing, KeepsPlanesOfAnyOpacity) {
   Rng rng({1, 1, 0}, RngStage::direct, 0);
   for (float& opacity : square.opacity)
     opacity = 0.02f + 0.98f * rng.uniform();
-  for (const float radius : {0.0f, 0.5f, 1.0f, 2.8f})
+  for (const float radius : {0.0f, 0.05f, 0.5f, 1.0f, 2.8f})
     for (int y = 0; y < width; ++y)
       for (int x = 0; x < width; ++x) {
         // The same light everywhere is kept to rounding, a slope but for the ridge.
@@ -81,6 +82,19 @@ TEST(WalkSharing, LessensNoiseTheMoreTheWiderItIs) {
     before = left;
   }
   EXPECT_LT(before, 0.06);
+}
+
+/// The squared bias that the fit gives light that bends is as the forecast for narrow radii says.
+TEST(WalkSharing, BlursSmoothLightAsItsMeanSquareDistanceSquared) {
+  Square square;
+  const auto bend = [](int px, int py) { return 100 + (px - 4) * (px - 4) + (py - 4) * (py - 4); };
+  const auto bias = [&](float radius) { return square.shared(radius, 4, 4, bend) - 100; };
+  const double squared = std::pow(bias(0.05f) / bias(0.25f), 2);
+  EXPECT_NEAR(WalkSharing::blur(0.05f) / WalkSharing::blur(0.25f), squared, 0.15 * squared);
+  EXPECT_EQ(WalkSharing::blur(0), 0);
+  for (std::size_t i = 1; i < SharingTrial::radii.size(); ++i)
+    EXPECT_GT(WalkSharing::blur(SharingTrial::radii[i]),
+              WalkSharing::blur(SharingTrial::radii[i - 1]));
 }
 
 TEST(WalkSharing, IsNotAcrossDepths) {
@@ -109,7 +123,7 @@ TEST(WalkSharing, KeepsItsOwnLightAtTheLens) {
 }
 
 TEST(WalkPlan, SharesLessFromPassToPass) {
-  WalkPlan plan{3, 1, 0, {{1, 0.4, 0.3, 0.2, 0.1, 0.07, 0.04}, 0.05}};
+  WalkPlan plan{3, 1, 0, {{1, 0.55, 0.4, 0.3, 0.28, 0.25, 0.2, 0.1, 0.07, 0.04}, 0.05}};
   float before = plan.sharing_radius(3);
   EXPECT_GT(before, 1);
   for (int pass = 4; pass < 5000; ++pass) {
