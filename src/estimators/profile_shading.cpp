@@ -20,14 +20,15 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-/// Opacity of a ray, and opacity times the mean distance [world].
-struct OpaqueParts {
+/// What a ray adds to PassImage::opacity and PassImage::depth.
+struct OpacityAndDepth {
   float opacity = 0, depth = 0;
 };
 
 /// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
 /// the share that is in shadow is.
-void end_at_surface(const World& world, const CameraRay& camera, float shadow, OpaqueParts& seen) {
+void end_at_surface(const World& world, const CameraRay& camera, float shadow,
+                    OpacityAndDepth& seen) {
   const Material& material = world.surfaces->material(*camera.hit);
   if (material.is_holdout())
     return;
@@ -89,7 +90,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    std::uint64_t& emission_rays, const SeenSurface& surface) {
   const World& world = input.world;
   Rgb tr(1);
-  OpaqueParts seen;
+  OpacityAndDepth seen;
   if (!profile.empty()) {
     const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
     tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};

@@ -43,8 +43,10 @@ float narrower(float radius) {
   return radius <= 1 ? 0 : radius / 2;
 }
 
-/// All that sharing blurs over what it blurs beyond narrower sharing.
+/// All that sharing blurs over what it blurs beyond narrower sharing; 0 where nothing is shared.
 float blur_over_difference(float narrow, float wide) {
+  if (!(wide > 0))
+    return 0;
   const double of_narrow = std::sqrt(WalkSharing::blur(narrow) / WalkSharing::blur(wide));
   return static_cast<float>(1 / (1 - of_narrow));
 }
@@ -55,6 +57,7 @@ WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int p
     : wide_(input), window_(wanted(input)), photons_(photons),
       sharing_(input.camera, input.world.space.scale, photons.plan().walks->sharing_radius(pass)),
       narrow_(input.camera, input.world.space.scale, narrower(sharing_.radius())),
+      blur_over_difference_(blur_over_difference(narrow_.radius(), sharing_.radius())),
       walks_(photons.plan().walks->walks(pass)) {
   wide_.window = widened(window_, sharing_.reach(), input.camera);
   const auto pixels = static_cast<std::size_t>(input.camera.width()) *
@@ -151,9 +154,8 @@ void WalkPass::share_pixel(int x, int y, BlurProbe& blur, PassImage& image) cons
   if (PixelValue* probe = blur.find(pixel)) {
     const GatheredLight wide = shared(sharing_.shares(seen, x, y, buffer));
     const GatheredLight narrow = shared(narrow_.shares(seen, x, y, buffer));
-    if (sharing_.radius() > 0)
-      probe->radiance += (wide.direct + wide.indirect - narrow.direct - narrow.indirect) *
-                         blur_over_difference(narrow_.radius(), sharing_.radius());
+    probe->radiance +=
+        (wide.direct + wide.indirect - narrow.direct - narrow.indirect) * blur_over_difference_;
   }
   const std::span<const WalkSharing::Share> shares = sharing_.shares(seen, x, y, buffer);
   const GatheredLight light = shared(shares);

@@ -41,6 +41,7 @@ private:
   PixelRegion window_; ///< of pixels that are wanted
   const PhotonPass& photons_;
   WalkSharing sharing_, narrow_; ///< the latter tells how much the former blurs
+  float blur_over_difference_;   ///< all that sharing blurs over what it blurs beyond narrower
   int walks_;                    ///< of a ray
   PassImage walked_;             ///< what the walks of each pixel gathered
 };
