@@ -30,9 +30,12 @@ constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
 constexpr double expected_rest = 1;
 constexpr std::size_t batches_of_interval = fewest_batches;
 
+/// 97.5 % quantile of the normal distribution.
+constexpr double normal_quantile = 1.959964;
+
 /// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
 double student(double degrees) {
-  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
+  constexpr double z = normal_quantile, z3 = z * z * z, z5 = z3 * z * z;
   return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees) +
          (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / (384 * degrees * degrees * degrees);
 }
@@ -187,8 +190,9 @@ SquaredBias average(const SquaredBias& first, const SquaredBias& second) {
 }
 
 /// What the widths of kernels and the probes tell together, each weighted by how well it knows.
-/// Where only probes are, small values are noise more likely than bias.
-SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
+/// Where only probes are, small values are noise more likely than bias. `t`: quantile of the
+/// batches by which standard errors are told.
+SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
   const bool probed = std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error);
   if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
     if (!probed)
@@ -205,7 +209,8 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise) {
   const SquaredBias rest =
       average({bias.hidden, bias.hidden_error}, {bias.truncation, bias.truncation_error});
   if (std::isfinite(rest.value)) {
-    result.value += positive_part(rest.value, rest.error, probe_shrinkage);
+    // Three batches that agree by chance would make a bias of what is noise.
+    result.value += positive_part(rest.value, rest.error * t / normal_quantile, probe_shrinkage);
     const double expected = expected_rest * (noise + result.value);
     if (rest.error > 0 && expected > 0)
       result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));
@@ -224,7 +229,7 @@ ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
   estimate.bias_mrse = estimate.bias = estimate.bias_margin = unbiased ? 0 : unknown;
   SquaredBias part;
   if (!unbiased) {
-    part = squared_bias(bias, estimate.noise);
+    part = squared_bias(bias, estimate.noise, t);
     estimate.bias_mrse = std::isfinite(bias.blur) ? part.value : bias.mrse;
     estimate.bias = bias.bias;
     estimate.bias_margin = t * bias.bias_error;
