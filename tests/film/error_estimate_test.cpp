@@ -331,8 +331,6 @@ TEST(ErrorEstimate, RaysThatAreTooFewDoNotOutvoteTheKernels) {
   EXPECT_NEAR(exact.bias_mrse, 0.004, 0.0001);
 }
 
-/// What nobody has seen is expected to be no larger than the error that is known, 0.0039, so the
-/// interval ends at t = 2.13 times as much above it, and what is known is not sure either.
 TEST(ErrorEstimate, FewBatchesThatAgreeByChanceMakeNoBias) {
   // 0.004 +- 0.001 that kernels of any width share: 0.004 less 2 (0.001 t / 1.96)^2 / 0.004, with
   // t = 4.30 and 2.13 for 2 and 15 degrees of freedom, the first of which is known to 3 %.
@@ -341,6 +339,8 @@ TEST(ErrorEstimate, FewBatchesThatAgreeByChanceMakeNoBias) {
   EXPECT_NEAR(combine_errors(0.002, {1, 0.1, 16}, bias, false).bias_mrse, 0.0034, 0.00005);
 }
 
+/// What nobody has seen is expected to be no larger than the error that is known, 0.0039, so the
+/// interval ends at t = 2.13 times as much above it, and what is known is not sure either.
 TEST(ErrorEstimate, RaysThatTellNothingLeaveTheIntervalFinite) {
   const ErrorEstimate blind = with_blur(0.002, 0.0004, 0, 1e3, 1e3);
   EXPECT_NEAR(blind.high, 0.0039 + 2.13 * std::hypot(0.0039, 0.00202), 0.0004);
