@@ -58,6 +58,7 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
 struct PathEstimator::Scratch {
   DepthProfile profile;
   std::vector<PathWalk> walks;
+  std::vector<PathWalk> branches; ///< of the present round
   RenderStatistics counts;
 };
 
@@ -170,7 +171,7 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
     scratch.counts.walk_collisions += walks.size();
     for (std::size_t i = 0; i < walks.size();) {
       PathWalk& walk = walks[i];
-      if (tracer_.step(walk)) {
+      if (tracer_.step(walk, scratch.branches)) {
         ++i;
         continue;
       }
@@ -184,6 +185,8 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
         walk = std::move(walks.back());
       walks.pop_back();
     }
+    walks.insert(walks.end(), scratch.branches.begin(), scratch.branches.end());
+    scratch.branches.clear();
   }
 }
 

@@ -2,18 +2,15 @@
 
 #include "transport/emission.h"
 
-#include <algorithm>
-
 namespace vdbeam {
 
 namespace {
 
 /// Weight under which Russian roulette begins.
 constexpr float roulette_below = 0.1f;
-/// Detours towards a narrow light, per scattering.
-constexpr float detours = 0.25f;
-/// A phase function that scatters this much more straight on than it does on average is worth them.
-constexpr float sharp_peak = 200;
+/// The same of walks that branch, in parts of the weight with which they began. They become many
+/// where they matter; with 0.1 they would be many elsewhere too.
+constexpr float roulette_of_branches_below = 0.6f;
 
 } // namespace
 
@@ -21,6 +18,8 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
                            const Rgb& throughput, const PhaseFunction& phase) const {
   PathWalk walk(rng, throughput);
   walk.segment.ray = ray;
+  walk.least_weight = light_branches_.any() ? roulette_of_branches_below * max_component(throughput)
+                                            : roulette_below;
   walk.target = target;
   walk.phase = &phase;
   // Before its first flight there is no shadow ray left to trace.
@@ -28,82 +27,24 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
   return walk;
 }
 
-void WalkTracer::find_narrow_lights() {
-  for (const PhaseFunction& phase : world_.medium.phases)
-    peaked_.push_back(4 * pi * phase.evaluate(1) > sharp_peak);
-  // Detours would count scatterings differently.
-  if (max_bounces_ || std::find(peaked_.begin(), peaked_.end(), true) == peaked_.end())
-    return;
-  for (std::size_t i = 0; i < world_.lights.size(); ++i)
-    if (shadow_rays_[i] && world_.lights[i].narrow_direction())
-      narrow_lights_.push_back(i);
+/// Density of flights from the walk's collision in this direction, its branches among them.
+float WalkTracer::flight_density(const PathWalk& walk, const Vec3f& direction) const {
+  return walk.phase->evaluate(dot(walk.segment.ray.direction, direction)) +
+         light_branches_.density(*walk.phase, direction);
 }
 
-/// Density with which a detour towards this light would have drawn a direction, over that with
-/// which it was drawn.
-float WalkTracer::detour_density(const DrawnDirection& drawn, std::size_t light) const {
-  if (std::find(narrow_lights_.begin(), narrow_lights_.end(), light) == narrow_lights_.end() ||
-      !peaked_[static_cast<std::size_t>(drawn.phase - world_.medium.phases.data())])
-    return 0;
-  const Vec3f& towards = *world_.lights[light].narrow_direction();
-  const float chance = detours / static_cast<float>(narrow_lights_.size());
-  return chance * drawn.phase->evaluate(dot(towards, drawn.direction)) / drawn.pdf;
-}
-
-/// A detour, now and then: from the collision in a direction drawn about a narrow light's by the
-/// phase function, to the next collision, from which a shadow ray goes to that light.
-void WalkTracer::scatter_towards_light(PathWalk& walk) const {
-  if (narrow_lights_.empty() ||
-      !peaked_[static_cast<std::size_t>(walk.phase - world_.medium.phases.data())])
-    return;
-  const float u = walk.rng.uniform();
-  if (u >= detours)
-    return;
-  const std::size_t count = narrow_lights_.size();
-  const auto number = static_cast<std::size_t>(u / detours * static_cast<float>(count));
-  const Light& light = world_.lights[narrow_lights_[std::min(number, count - 1)]];
-  const Medium& medium = world_.medium;
-  const Ray& ray = walk.segment.ray;
-  const float u_lobe = walk.rng.uniform(), u1 = walk.rng.uniform(), u2 = walk.rng.uniform();
-  const Vec3f& towards = *light.narrow_direction();
-  const Vec3f direction = walk.phase->sample(towards, u_lobe, u1, u2);
-  const float p1 = walk.phase->evaluate(dot(ray.direction, direction));
-  const float drawn =
-      detours / static_cast<float>(count) * walk.phase->evaluate(dot(towards, direction));
-
-  BoundedTracker tracker(medium, {{ray.origin, direction}});
-  Rgb throughput = walk.throughput;
-  Collision hit;
-  do {
-    hit = tracker.next(walk.rng);
-    if (!hit.volume)
-      return;
-  } while (!sample_real_collision(hit, medium.chromatic, throughput, walk.rng));
-  const Vec3f point = ray.origin + direction * hit.t;
-  const float v1 = walk.rng.uniform(), v2 = walk.rng.uniform();
-  const IncidentSample sample = light.sample_incident(point, v1, v2);
-  const PhaseFunction& phase = medium.phases[static_cast<std::size_t>(hit.volume->phase_index)];
-  const float p2 = phase.evaluate(dot(direction, sample.wi));
-  // Ways to the same path: this one, a walk with a shadow ray, a walk that meets the light.
-  const float by_walk = sample.pdf > 0 ? p1 * (1 + p2 / sample.pdf) : p1;
-  const Rgb value =
-      sample.value * hit.volume->albedo_at(point) * throughput * (p1 * p2 / (by_walk + drawn));
-  RatioTracking shadow(medium, {{point, sample.wi}, 0, sample.distance});
-  while (shadow.advance(walk.rng))
-    if (!shadow.attenuate(walk.rng))
-      break;
-  walk.indirect += value * shadow.transmittance();
-}
-
-bool WalkTracer::step(PathWalk& walk) const {
-  if (walk.bounces == 0)
-    return scatter(walk);
+bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
+  if (walk.scatters) {
+    branch(walk, branches);
+    return begin_flight(walk, walk.sample_direction(*walk.phase));
+  }
   if (walk.shadow) {
     if (walk.shadow->attenuate(walk.rng) && walk.shadow->advance(walk.rng))
       return true;
     walk.indirect += walk.shadow_value * walk.shadow->transmittance();
     ++walk.light;
-    return sample_lights(walk);
+    sample_lights(walk);
+    return true;
   }
   if (walk.null_collisions >= most_tentative_collisions)
     return end_flight(walk);
@@ -142,18 +83,18 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     return false;
   const Vec3f point = walk.segment.ray.at(hit.t);
   walk.throughput *= hit.volume->albedo_at(point);
-  if (!survive_roulette(roulette_below, walk.throughput, walk.rng) ||
-      !walk.length.survive(walk.throughput, walk.rng))
+  if (!outlives_roulette(walk) || !walk.length.survive(walk.throughput, walk.rng))
     return false;
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
   walk.segment.ray.origin = point;
   walk.light = 0;
-  return sample_lights(walk);
+  sample_lights(walk);
+  return true;
 }
 
-/// Next-event estimation: shadow rays from the collision to the lights from walk.light on, then on
-/// with the walk.
-bool WalkTracer::sample_lights(PathWalk& walk) const {
+/// Next-event estimation: shadow rays from the collision to the lights from walk.light on, one at a
+/// time; then the walk scatters.
+void WalkTracer::sample_lights(PathWalk& walk) const {
   const Ray& ray = walk.segment.ray;
   for (; walk.light < world_.lights.size(); ++walk.light) {
     if (!shadow_rays_[walk.light])
@@ -163,31 +104,56 @@ bool WalkTracer::sample_lights(PathWalk& walk) const {
     if (max_component(sample.value) <= 0)
       continue;
     const float p = walk.phase->evaluate(dot(ray.direction, sample.wi));
-    const float detour = detour_density(walk.drawn, walk.light);
     const float weight =
-        sample.pdf > 0 ? sample.pdf / (sample.pdf * (1 + detour) + p) : 1 / (1 + detour);
+        sample.pdf > 0 ? sample.pdf / (sample.pdf + flight_density(walk, sample.wi)) : 1;
     walk.shadow_value = sample.value * (p * weight) * walk.throughput;
     walk.shadow.emplace(world_.medium, Segment{{ray.origin, sample.wi}, 0, sample.distance});
     if (walk.shadow->advance(walk.rng))
-      return true;
+      return;
     walk.indirect += walk.shadow_value;
   }
   walk.shadow.reset();
-  return scatter(walk);
+  walk.scatters = true;
 }
 
-/// Draws a direction at the collision and begins the next flight.
-bool WalkTracer::scatter(PathWalk& walk) const {
-  const Ray& ray = walk.segment.ray;
-  scatter_towards_light(walk);
-  const Vec3f direction = walk.sample_direction(*walk.phase);
-  walk.drawn_before = walk.drawn;
-  walk.drawn = {direction, walk.phase, walk.phase->evaluate(dot(ray.direction, direction))};
+/// Now and then, a walk of its own from the collision, about the direction of a narrow light.
+void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
+  const std::optional<Vec3f> direction = light_branches_.sample(*walk.phase, walk.rng);
+  if (!direction)
+    return;
+  PathWalk branch = walk;
+  branch.direct = branch.indirect = Rgb();
+  const std::uint64_t high = walk.rng.bits(), low = walk.rng.bits();
+  branch.rng = Rng({}, RngStage::split, high << 32 | low);
+  if (begin_flight(branch, *direction)) {
+    branches.push_back(branch);
+    return;
+  }
+  walk.direct += branch.direct;
+  walk.indirect += branch.indirect;
+}
+
+/// Begins a flight from the walk's collision, one of those of the walk and its branches.
+bool WalkTracer::begin_flight(PathWalk& walk, const Vec3f& direction) const {
+  const Ray from = walk.segment.ray;
+  walk.density = flight_density(walk, direction);
   ++walk.bounces;
+  walk.scatters = false;
   walk.gathered = 0;
   walk.null_collisions = 0;
-  walk.start(world_.medium, {{ray.origin, direction}});
+  walk.start(world_.medium, {{from.origin, direction}});
+  if (light_branches_.any()) {
+    walk.throughput *= walk.phase->evaluate(dot(from.direction, direction)) / walk.density;
+    if (!outlives_roulette(walk))
+      return false;
+  }
   return advance_flight(walk, *this);
+}
+
+/// Russian roulette on what the walk's flight is about to bring.
+bool WalkTracer::outlives_roulette(PathWalk& walk) const {
+  const float importance = light_branches_.importance(walk.segment.ray.direction);
+  return survive_roulette(walk.least_weight / importance, walk.throughput, walk.rng);
 }
 
 /// The flight has left the medium.
@@ -226,8 +192,7 @@ Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
       continue;
     float weight = 1;
     if (shadow_rays_[i])
-      weight = walk.drawn.pdf / (walk.drawn.pdf + light.incident_pdf(ray.origin, ray.direction) *
-                                                      (1 + detour_density(walk.drawn_before, i)));
+      weight = walk.density / (walk.density + light.incident_pdf(ray.origin, ray.direction));
     sum += light.emitted_radiance(segment).radiance * weight;
   }
   return sum * walk.throughput;

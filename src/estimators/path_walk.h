@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/light_branches.h"
 #include "transport/flight.h"
 #include "transport/optical_depth.h"
 #include "transport/world.h"
@@ -8,23 +9,18 @@
 
 namespace vdbeam {
 
-/// How a flight's direction was drawn.
-struct DrawnDirection {
-  Vec3f direction;
-  const PhaseFunction* phase = nullptr;
-  float pdf = 0; ///< of the phase function
-};
-
 /// The state of a camera path after its first scattering event: it is at a tentative collision of
 /// its flight or, while there is one, of its shadow ray.
 struct PathWalk : Flight {
   using Flight::Flight;
 
   std::size_t target = 0;               ///< pixel of the image to which its light is added
+  float least_weight = 0;               ///< under which Russian roulette begins
   std::size_t piece = 0;                ///< of the pixel's deep layout in which it began
   std::size_t volume = 0;               ///< of the scene, that scatters its light to the camera
   const PhaseFunction* phase = nullptr; ///< at the last real collision
-  DrawnDirection drawn, drawn_before;   ///< of this flight and of the one before it
+  bool scatters = true;                 ///< next, there
+  float density = 0;       ///< of flights in this one's direction, branches among them [1/sr]
   float gathered = 0;      ///< distance of the flight up to which light that it meets was added
   int null_collisions = 0; ///< of this flight
   Rgb direct, indirect;    ///< light so far that was scattered once, and more often
@@ -37,21 +33,16 @@ struct PathWalk : Flight {
 /// where the extinction is chromatic, Kutz et al. 2017), next-event estimation by ratio tracking at
 /// every collision, multiple importance sampling for lights that a scattered ray can meet (balance
 /// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own emission is added along
-/// every flight up to its end (track-length estimator).
-///
-/// Where phase functions have a sharp peak and a light is narrow, next-event estimation alone has
-/// rare, very bright values: a walk that happens to fly at the sun scatters all of its peak. Light
-/// that is scattered twice is then also drawn the other way round, a direction about the light's
-/// first, and the two ways share it by the balance heuristic (docs/physics.md, "The reference").
+/// every flight up to its end (track-length estimator). Walks branch towards narrow lights where
+/// phase functions have a sharp peak (LightBranches).
 class WalkTracer {
 public:
   /// `shadow_rays`: per light, whether next-event estimation samples it. `max_bounces`: scattering
   /// events of a light path; absent: no limit.
   WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
-        meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {
-    find_narrow_lights();
-  }
+        meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()),
+        light_branches_(world, shadow_rays_) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -60,7 +51,8 @@ public:
 
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
   /// step ends with a prefetch: callers interleave several walks to hide the memory latency.
-  bool step(PathWalk& walk) const;
+  /// Branches of the walk are put to `branches`, to be stepped like any other.
+  bool step(PathWalk& walk, std::vector<PathWalk>& branches) const;
 
   // What happens at the collisions of a flight (step_flight).
   void meet(PathWalk& walk, const Collision& hit) const;
@@ -72,21 +64,20 @@ public:
   bool leave(PathWalk& walk) const;
 
 private:
-  bool sample_lights(PathWalk& walk) const;
+  void sample_lights(PathWalk& walk) const;
   bool end_flight(PathWalk& walk) const;
-  bool scatter(PathWalk& walk) const;
-  void find_narrow_lights();
-  void scatter_towards_light(PathWalk& walk) const;
-  float detour_density(const DrawnDirection& drawn, std::size_t light) const;
+  void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;
+  bool begin_flight(PathWalk& walk, const Vec3f& direction) const;
+  bool outlives_roulette(PathWalk& walk) const;
+  float flight_density(const PathWalk& walk, const Vec3f& direction) const;
   void gather_light(PathWalk& walk, float t_end) const;
   Rgb lights_met(const PathWalk& walk, const Segment& segment) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;
   std::optional<int> max_bounces_;
-  bool meets_light_;                       ///< flights may meet light before they end
-  std::vector<std::size_t> narrow_lights_; ///< towards which walks make detours
-  std::vector<bool> peaked_;               ///< per phase function: has a sharp forward peak
+  bool meets_light_; ///< flights may meet light before they end
+  LightBranches light_branches_;
 };
 
 } // namespace vdbeam

@@ -173,9 +173,10 @@ MemoryScene seen_slab(const SlabSpec& spec, const View& view, double least_half_
 }
 
 void expect_seen(const SlabSpec& spec, const slab::Moments& moments, EstimatorType estimator,
-                 int passes, double bias) {
+                 int passes, double bias, std::size_t points = 32) {
   const std::vector<double> angles{0.2, 0.5, 0.9};
-  const slab::Slab exact(moments, static_cast<double>(spec.albedo), spec.thickness, {1}, angles);
+  const slab::Slab exact(moments, static_cast<double>(spec.albedo), spec.thickness, {1}, angles,
+                         points);
   for (std::size_t i = 0; i < angles.size(); ++i)
     for (const bool below : {false, true}) {
       SCOPED_TRACE(testing::Message() << "mu " << angles[i] << (below ? " below" : " above"));
@@ -191,6 +192,11 @@ TEST(Slab, RadianceByPaths) {
   expect_seen({1, 1, isotropic(), 1}, slab::isotropic(), EstimatorType::path, 150, 0);
   expect_seen({4, 0.9f, test::henyey_greenstein(0.75), 1}, slab::henyey_greenstein(0.75),
               EstimatorType::path, 150, 0);
+}
+
+TEST(Slab, RadianceByPathsThatBranchTowardsTheSun) {
+  expect_seen({4, 0.9f, test::henyey_greenstein(0.93), 1}, slab::henyey_greenstein(0.93),
+              EstimatorType::path, 120, 0, 96);
 }
 
 /// A slab as beam renders it by default: the kernels are those that its pilot chooses, a mean free
