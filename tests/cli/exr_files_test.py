@@ -20,8 +20,10 @@ class ExrFiles(InTempFolder):
         return text
 
     def info(self, name):
-        code, text = run("exrinfo", "-v", self.file(name))
-        self.assertEqual(code, 0, text)
+        # The exit code of OpenEXR 3.1.5's exrinfo is chance where the file is good: it is never set.
+        _, text = run("exrinfo", "-v", self.file(name))
+        self.assertIn("File '", text)
+        self.assertNotIn("ERROR", text)
         return text
 
     def test_a_part_for_each_layer(self):
