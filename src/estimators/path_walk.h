@@ -19,7 +19,7 @@ struct PathWalk : Flight {
   std::size_t piece = 0;                ///< of the pixel's deep layout in which it began
   std::size_t volume = 0;               ///< of the scene, that scatters its light to the camera
   const PhaseFunction* phase = nullptr; ///< at the last real collision
-  bool scatters = true;                 ///< next, there
+  bool scatters = true;                 ///< there, in the next step
   float density = 0;       ///< of flights in this one's direction, branches among them [1/sr]
   float gathered = 0;      ///< distance of the flight up to which light that it meets was added
   int null_collisions = 0; ///< of this flight
