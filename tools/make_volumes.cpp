@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <openvdb/openvdb.h>
 
 namespace {
 
@@ -12,13 +13,24 @@ void list_kinds() {
     fmt::print("{:<12} {}\n", kind.name, kind.description);
 }
 
+/// Writes the file anew, so that each of its bytes is a byte of a value or of the tree.
+void unpack(const std::string& path) {
+  openvdb::io::File packed(path);
+  packed.open(false);
+  const openvdb::GridPtrVecPtr grids = packed.getGrids();
+  packed.close();
+  openvdb::io::File plain(path);
+  plain.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);
+  plain.write(*grids);
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
   CLI::App app{"Writes a procedural VDB volume for tests and experiments.\n\n"
                "Examples:\n  make_volumes --list\n  make_volumes sphere sphere.vdb --size 128",
                "make_volumes"};
-  bool list = false;
+  bool list = false, plain = false;
   std::string kind, path;
   vdbeam::VolumeOptions options;
   app.add_flag("--list", list, "Show the kinds and end");
@@ -29,6 +41,7 @@ int main(int count, char** arguments) {
   app.add_option("--extent", options.extent, "World units across")->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of the noise")->capture_default_str();
   app.add_option("--name", options.name, "Name of the grid")->capture_default_str();
+  app.add_flag("--plain", plain, "Store it without compression");
   CLI11_PARSE(app, count, arguments);
   if (list) {
     list_kinds();
@@ -38,6 +51,8 @@ int main(int count, char** arguments) {
     if (kind.empty() || path.empty())
       throw vdbeam::InputError("a kind and a file are needed; --help shows how");
     vdbeam::write_volume(kind, path, options);
+    if (plain)
+      unpack(path);
   } catch (const std::exception& error) {
     fmt::print(stderr, "make_volumes: {}\n", error.what());
     return static_cast<int>(vdbeam::ExitCode::bad_input);

@@ -1,8 +1,12 @@
-// Preloaded into vdbeam by failing_disk_test.py: lets one function of the C library fail on output
-// files, as a full disk or a lost network mount would. VDBEAM_TEST_FAULT is "FUNCTION ERRNO WORD":
-// files whose names hold WORD and end in ".tmp" are affected.
+// Preloaded into vdbeam by failing_disk_test.py and tools/attack.
+// VDBEAM_TEST_FAULT, "FUNCTION ERRNO WORD", lets one function of the C library fail on output
+// files, as a full disk or a lost network mount would: files whose names hold WORD and end in
+// ".tmp". VDBEAM_TEST_KILL, "N FOLDER", kills the process before the N-th call that concerns a file
+// in FOLDER; VDBEAM_TEST_CALLS names a file that lists those calls.
+#include <atomic>
 #include <cerrno>
 #include <climits>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +14,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <string>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace {
@@ -42,6 +47,48 @@ F next(const char* function, F) {
   return reinterpret_cast<F>(::dlsym(RTLD_NEXT, function));
 }
 
+/// What is killed is the program, not the children that it forks.
+const pid_t program = ::getpid();
+std::atomic<int> calls{0};
+
+std::string absolute(const std::string& path) {
+  char folder[PATH_MAX] = "";
+  if (path.empty() || path[0] == '/' || !::getcwd(folder, sizeof folder))
+    return path;
+  return std::string(folder) + '/' + path;
+}
+
+void list_call(const char* function) {
+  const char* list = std::getenv("VDBEAM_TEST_CALLS");
+  if (!list || !*list)
+    return;
+  const int descriptor =
+      next("open", &::open)(list, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const std::string line = std::string(function) + '\n';
+  if (::write(descriptor, line.data(), line.size()) < 0)
+    std::abort();
+  next("close", &::close)(descriptor);
+}
+
+/// Dies where this call's turn has come.
+void note_call(const char* function, const std::string& path) {
+  const char* wanted = std::getenv("VDBEAM_TEST_KILL");
+  char folder[PATH_MAX] = "";
+  int number = 0;
+  static_assert(PATH_MAX == 4096);
+  if (!wanted || ::getpid() != program || std::sscanf(wanted, "%d %4095s", &number, folder) != 2 ||
+      absolute(path).rfind(folder, 0) != 0)
+    return;
+  list_call(function);
+  if (++calls == number)
+    std::raise(SIGKILL);
+}
+
+void note_call(const char* function, int descriptor) {
+  if (std::getenv("VDBEAM_TEST_KILL"))
+    note_call(function, path_of(descriptor));
+}
+
 } // namespace
 
 extern "C" {
@@ -51,6 +98,8 @@ int open(const char* path, int flags, ...) {
   va_start(rest, flags);
   const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0;
   va_end(rest);
+  if (flags & O_CREAT)
+    note_call("open", std::string(path));
   if (const int error = fault("open", path)) {
     errno = error;
     return -1;
@@ -61,6 +110,7 @@ int open(const char* path, int flags, ...) {
 /// The stream's own write(2) cannot be replaced; half of the bytes are written.
 std::size_t fwrite(const void* data, std::size_t size, std::size_t count, std::FILE* file) {
   const auto real = next("fwrite", &fwrite);
+  note_call("fwrite", ::fileno(file));
   const int error = fault("fwrite", path_of(::fileno(file)));
   if (error == 0)
     return real(data, size, count, file);
@@ -70,6 +120,8 @@ std::size_t fwrite(const void* data, std::size_t size, std::size_t count, std::F
 }
 
 int fflush(std::FILE* file) {
+  if (file)
+    note_call("fflush", ::fileno(file));
   const int error = file ? fault("fflush", path_of(::fileno(file))) : 0;
   if (error == 0)
     return next("fflush", &fflush)(file);
@@ -78,6 +130,7 @@ int fflush(std::FILE* file) {
 }
 
 int fsync(int descriptor) {
+  note_call("fsync", descriptor);
   const int error = fault("fsync", path_of(descriptor));
   if (error == 0)
     return next("fsync", &fsync)(descriptor);
@@ -87,6 +140,7 @@ int fsync(int descriptor) {
 
 /// As close(2) does it: the file is closed, and the error tells of data that is lost.
 int fclose(std::FILE* file) {
+  note_call("fclose", ::fileno(file));
   const int error = fault("fclose", path_of(::fileno(file)));
   const int result = next("fclose", &fclose)(file);
   if (error == 0)
@@ -96,11 +150,32 @@ int fclose(std::FILE* file) {
 }
 
 int rename(const char* from, const char* to) {
+  note_call("rename", std::string(from));
   const int error = fault("rename", from);
   if (error == 0)
     return next("rename", &rename)(from, to);
   errno = error;
   return -1;
+}
+
+int close(int descriptor) {
+  note_call("close", descriptor);
+  return next("close", &close)(descriptor);
+}
+
+int flock(int descriptor, int operation) {
+  note_call("flock", descriptor);
+  return next("flock", &flock)(descriptor, operation);
+}
+
+int unlink(const char* path) {
+  note_call("unlink", std::string(path));
+  return next("unlink", &unlink)(path);
+}
+
+int remove(const char* path) {
+  note_call("remove", std::string(path));
+  return next("remove", &remove)(path);
 }
 
 } // extern "C"
