@@ -215,7 +215,8 @@ class Targets:
             if not argument.names:
                 words += self.sound_words(command, argument) if rng.random() < 0.8 else [self.value(argument, rng)]
         words += required(command)
-        for argument in rng.sample([one for one in rows if one.names], min(len(rows) - 1, rng.choice([1, 2, 3, 5]))):
+        options = [one for one in rows if one.names]
+        for argument in rng.sample(options, min(len(options), rng.choice([1, 2, 3, 5]))):
             words = without(words, argument) + argument.words(self.value(argument, rng))
         return Case("", {}, [word.replace("\0", "") for word in words], patience=5)
 
