@@ -65,6 +65,8 @@ class Campaign:
         if lost := [name for name in before if after.get(name) != before[name] and name not in outputs
                     and not name.startswith(("out.", "deep."))]:
             return f"an input was replaced or removed: {lost}"
+        if lost := [name for name in case.inputs if after.get(name) != before[name]]:
+            return f"an output replaced or removed an input: {lost}, exit code {result.code}"
         for name in after:
             is_picture = case.words[0] in ("render", "merge")  # the others write text, whatever the name
             if after[name] != before.get(name) and is_picture and (wrong := judge.half_written(self.place / name)):

@@ -20,8 +20,8 @@ import tables
 class Case:
     """One mutant: the files to write, the command, and what must hold beyond the usual."""
 
-    def __init__(self, label, files, words, patience=None, must_succeed=False, picture=None, environment=None):
-        self.label, self.files, self.words, self.patience = label, files, words, patience
+    def __init__(self, label, files, words, patience=None, must_succeed=False, picture=None, environment=None, inputs=()):
+        self.label, self.files, self.words, self.patience, self.inputs = label, files, words, patience, inputs
         self.must_succeed, self.picture, self.environment = must_succeed, picture, environment
 
 
@@ -59,7 +59,7 @@ class Targets:
         self.any_door = pairs
         self.doors = {kind: [pair for pair in pairs if kind in doors[pair[0].path]] for kind in self.readable}
         self.rows = [(command, argument) for command in tables.commands() for argument in tables.arguments(command)]
-        self.kinds = [*self.readable, "scene", "values", "command"]
+        self.kinds = [*self.readable, "scene", "values", "command", "clash"]
 
     def find_doors(self):
         """The kinds of which a sound file renders behind each key. A key that takes none stops the campaign."""
@@ -93,7 +93,8 @@ class Targets:
 
     def make(self, kind, number):
         rng = random.Random(f"{kind}:{number}")
-        maker = {"scene": self.scene, "values": self.values, "command": self.command, "film": self.film}.get(kind)
+        maker = {"scene": self.scene, "values": self.values, "command": self.command, "film": self.film,
+                 "clash": self.clash}.get(kind)
         case = maker(rng) if maker else self.file(kind, rng)
         case.label = f"{kind}:{number}"
         return case
@@ -219,6 +220,25 @@ class Targets:
         for argument in rng.sample(options, min(len(options), rng.choice([1, 2, 3, 5]))):
             words = without(words, argument) + argument.words(self.value(argument, rng))
         return Case("", {}, [word.replace("\0", "") for word in words], patience=5)
+
+    def clash(self, rng):
+        """An output that is also an input: each key of kind file and each output, also those beside -o."""
+        kind = rng.choice(list(self.readable))
+        key, owner = rng.choice(self.doors[kind])
+        name = rng.choice(list(self.first_of(kind)))
+        ending = name[name.rfind("."):]
+        named = rng.choice([f"x{ending}", f"x{ending}", "x.deep.exr", "x.checkpoint.exr", "x.snapshot.exr"])
+        beside = "x.exr" if named.count(".") > 1 else None
+        outputs = [argument for argument in tables.arguments("render") if argument.is_output and argument.names]
+        words = ["render", "scene.toml", *samples.SMALL, "--passes", "1", "--set", "image.deep=true"]
+        output = rng.choice(outputs)
+        written = output.words(rng.choice([named, f"./{named}", f"missing/../{named}", named.upper()]))
+        if beside or output.names[-1] == "--output":
+            written = ["-o", beside or named]
+        elif rng.random() < 0.8:
+            words += ["-o", "out.exr"]
+        files = {named: (self.sound / name).read_bytes(), "scene.toml": scene_with(key, named, owner).encode()}
+        return Case("", files, words + written, inputs=[named, "scene.toml"])
 
     def value(self, argument, rng):
         if argument.choices and rng.random() < 0.7:
