@@ -167,7 +167,7 @@ class Exr:
             name_end = data.index(b"\0", at)
             type_end = data.index(b"\0", name_end + 1)
             size = struct.unpack_from("<I", data, type_end + 1)[0]
-            self.attributes[data[at:name_end].decode()] = data[type_end + 5:type_end + 5 + size]
+            self.attributes[data[at:name_end].decode(errors="replace")] = data[type_end + 5:type_end + 5 + size]
             at = type_end + 5 + size
         self.body, self.data = at + 1, data
 
@@ -179,7 +179,7 @@ class Exr:
         text, at, found = self.attributes["channels"], 0, []
         while text[at]:
             end = text.index(b"\0", at)
-            found.append((text[at:end].decode(), 2 if struct.unpack_from("<i", text, end + 1)[0] == 1 else 4))
+            found.append((text[at:end].decode(errors="replace"), 2 if struct.unpack_from("<i", text, end + 1)[0] == 1 else 4))
             at = end + 17
         return found
 
