@@ -4,6 +4,7 @@
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
+#include "machine/memory.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -192,7 +193,7 @@ CameraTrack read_gltf_camera(const std::string& path, const std::string& name, d
   const std::uint64_t bytes = open_input_file(path).bytes + bytes_of_gltf_files(path);
   GuardLimits limits;
   limits.cpu_seconds = 2 + 5e-6 * static_cast<double>(bytes);
-  limits.bytes = std::min(std::uint64_t(16) << 30, (std::uint64_t(512) << 20) + 200 * bytes);
+  limits.bytes = std::min(free_memory(), (std::uint64_t(512) << 20) + 200 * bytes);
   const MappedFile file =
       run_guarded(path, limits, [&](int output) { parse(path, name, rate, output); });
   const std::size_t rest = file.size() - std::min(file.size(), sizeof(double));

@@ -69,8 +69,8 @@ void check_gltf_normals(const std::string& path) {
 /// so the time for a small one is short.
 GuardLimits guard_limits(std::uint64_t file_bytes, const MeshLimits& limits) {
   GuardLimits guard;
-  guard.seconds = limits.seconds;
-  guard.cpu_seconds = std::min(limits.seconds, 2 + 5e-6 * static_cast<double>(file_bytes));
+  guard.seconds = limits.seconds + time_for(file_bytes);
+  guard.cpu_seconds = std::min(guard.seconds, 2 + 5e-6 * static_cast<double>(file_bytes));
   guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 200 * file_bytes);
   return guard;
 }

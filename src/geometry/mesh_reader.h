@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/mesh.h"
+#include "machine/memory.h"
 
 #include <cstdint>
 #include <string>
@@ -9,8 +10,8 @@ namespace vdbeam {
 
 /// What reading a mesh file may take.
 struct MeshLimits {
-  double seconds = 120;                          ///< of wall-clock time
-  std::uint64_t bytes = std::uint64_t(16) << 30; ///< of memory
+  double seconds = 120; ///< of wall-clock time, beside what its size takes (time_for)
+  std::uint64_t bytes = free_memory(); ///< of memory
 };
 
 /// What of a mesh file is wanted beyond its triangles.

@@ -1,3 +1,4 @@
+#include "image/exr_chunks.h"
 #include "image/exr_stream.h"
 #include "image/image_readers.h"
 #include "image/layer_names.h"
@@ -154,6 +155,7 @@ void read_part(Imf::MultiPartInputFile& file, int number, const std::string& pat
   check_size(display, channels, "display", path);
   if (!file.partComplete(number))
     throw InputError(path + ": the EXR is incomplete; its writer was interrupted");
+  check_chunks(file, number, path);
   Imf::InputPart part(file, number);
   std::vector<std::vector<float>> planes = read_pixels(part, names);
   for (std::size_t i = 0; i < names.size(); ++i) {

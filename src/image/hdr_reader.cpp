@@ -82,6 +82,9 @@ HdrHeader read_header(std::istream& file, const std::string& path) {
       header.width * header.height > max_image_pixels)
     damaged(path, fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels",
                               header.width, header.height));
+  // A scanline takes 4 bytes at least, and where pixels repeat these may stand for thousands.
+  constexpr double pixels_per_byte = 4096;
+  check_size_fits_file(path, static_cast<double>(header.width * header.height), pixels_per_byte);
   return header;
 }
 

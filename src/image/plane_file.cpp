@@ -1,11 +1,13 @@
 #include "image/plane_file.h"
 
+#include "image/exr_chunks.h"
 #include "image/exr_stream.h"
 #include "vdbeam/error.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 
 #include <bit>
@@ -83,6 +85,7 @@ Image read_exr_header(const std::string& path) {
     const Imath::Box2i data = file.header().dataWindow(), display = file.header().displayWindow();
     if (!are_windows(data, display))
       return image;
+    check_part_fits_file(file.header(), path);
     image.x = data.min.x;
     image.y = data.min.y;
     image.width = data.max.x - data.min.x + 1;
@@ -113,6 +116,8 @@ bool read_planes(const std::string& path, int width, int height,
       });
     if (!whole)
       return false;
+    Imf::MultiPartInputFile chunks(path.c_str(), 0);
+    check_chunks(chunks, 0, path);
     file.setFrameBuffer(pixels);
     file.readPixels(window.min.y, window.max.y);
     return true;

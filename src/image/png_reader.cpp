@@ -47,6 +47,8 @@ Image read_png(const std::string& path) {
   if (std::int64_t(png.width) * png.height > max_image_pixels)
     damaged(path, fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels", png.width,
                               png.height));
+  // Deflate packs 1032 to 1 at best, and a byte holds eight pixels where there are two colours.
+  check_size_fits_file(path, static_cast<double>(png.width) * png.height / 8, 1032);
   Image image;
   image.width = static_cast<int>(png.width);
   image.height = static_cast<int>(png.height);

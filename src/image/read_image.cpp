@@ -1,9 +1,12 @@
 #include "image/image_readers.h"
+#include "image/picture_guard.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <string_view>
 
@@ -23,6 +26,16 @@ constexpr InputFormat input_formats[] = {
 
 } // namespace
 
+void check_size_fits_file(const std::string& path, double bytes, double most_per_byte) {
+  const auto size = static_cast<double>(std::filesystem::file_size(path));
+  // Small files may do without a pixel, for instance where a header says what all of them are.
+  constexpr double negligible = 1 << 20;
+  if (bytes > negligible && bytes > most_per_byte * size)
+    throw InputError(fmt::format("{}: is damaged: {:.0f} bytes cannot hold the {:.0f} MB of pixels "
+                                 "that its header announces",
+                                 path, size, bytes * 1e-6));
+}
+
 Image read_image(const std::string& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
@@ -33,7 +46,7 @@ Image read_image(const std::string& path) {
   file.close();
   for (const InputFormat& format : input_formats)
     if (std::string_view(start, sizeof start).substr(0, format.magic.size()) == format.magic)
-      return format.read(path);
+      return read_guarded_picture(path, format.read);
   throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr picture, nor a PNG");
 }
 

@@ -188,8 +188,14 @@ std::optional<Message> Child::receive(int milliseconds) {
 }
 
 std::optional<Message> Child::wait(double seconds) {
-  const Stopwatch watch;
-  while (watch.seconds() < seconds) {
+  // A queue that suspends the job (SIGSTOP) stops both processes, so a look at the clock that comes
+  // late counts as one second: the child could not work meanwhile.
+  constexpr double longest_step = 1;
+  double used = 0, last = 0;
+  for (const Stopwatch watch; used < seconds;) {
+    const double now = watch.seconds();
+    used += std::min(now - last, longest_step);
+    last = now;
     // A child that dies says nothing, and the pipe may stay open in a sibling forked meanwhile, so
     // its death is looked for now and then.
     if (auto message = receive(20))
@@ -198,7 +204,7 @@ std::optional<Message> Child::wait(double seconds) {
     if (reaped_)
       return receive(0);
   }
-  return std::nullopt;
+  return receive(0); // the answer may have come since the last look
 }
 
 /// One line for a terminal, whatever a broken file put in it: no control characters.

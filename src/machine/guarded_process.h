@@ -8,9 +8,14 @@
 
 namespace vdbeam {
 
+/// Seconds that reading a file of this size may take on a slow or busy disk, at 10 MB/s.
+constexpr double time_for(std::uint64_t file_bytes) {
+  return 1e-7 * static_cast<double>(file_bytes);
+}
+
 /// What a guarded child process may use.
 struct GuardLimits {
-  double seconds = 120;     ///< of wall-clock time
+  double seconds = 120;     ///< of wall-clock time; time during which both were suspended is free
   double cpu_seconds = 120; ///< of processor time
   std::uint64_t bytes = 0;  ///< of memory on top of what the parent has, and of output
 };

@@ -1,13 +1,9 @@
 #include "render/memory_check.h"
 
 #include "estimators/plane_layers.h"
-#include "machine/cgroups.h"
-#include "machine/farm_grants.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <limits>
 
@@ -30,18 +26,6 @@ std::string gigabytes(std::uint64_t bytes) {
 }
 
 } // namespace
-
-std::uint64_t granted_memory() {
-  std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                        static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  for (const std::uint64_t limit : {cgroup_limits().memory, farm_memory()})
-    if (limit > 0)
-      bytes = std::min(bytes, limit);
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);
-  return bytes;
-}
 
 void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t granted) {
   if (bytes > granted)

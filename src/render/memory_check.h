@@ -4,10 +4,6 @@
 
 namespace vdbeam {
 
-/// Bytes that this machine grants the process: its memory, or less where a control group, the farm
-/// (SLURM_MEM_PER_NODE, SLURM_MEM_PER_CPU) or a limit on the address space says so.
-std::uint64_t granted_memory();
-
 /// Throws InputError where the samples of a deep picture need more than `granted` bytes.
 void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t granted);
 

@@ -1,8 +1,8 @@
 #include "render/prepared_scene.h"
 
 #include "geometry/gltf_files.h"
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
-#include "render/memory_check.h"
 #include "render/read_volumes.h"
 #include "scene/scene_keys.h"
 #include "scene/working_space.h"

@@ -2,7 +2,7 @@
 
 #include "estimators/plane_layers.h"
 #include "machine/input_file.h"
-#include "render/memory_check.h"
+#include "machine/memory.h"
 #include "scene/scene_keys.h"
 #include "vdbeam/error.h"
 #include "volume/edited_field.h"

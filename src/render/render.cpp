@@ -7,6 +7,7 @@
 #include "estimators/make_deep_layout.h"
 #include "estimators/plane_layers.h"
 #include "film/deep_film.h"
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "render/limit_notes.h"

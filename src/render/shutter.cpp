@@ -2,8 +2,8 @@
 
 #include "estimators/beam_plan.h"
 #include "estimators/light_groups.h"
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
-#include "render/memory_check.h"
 #include "render/prepared_scene.h"
 
 #include <algorithm>

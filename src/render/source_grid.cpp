@@ -1,7 +1,7 @@
 #include "render/source_grid.h"
 
 #include "machine/input_file.h"
-#include "render/memory_check.h"
+#include "machine/memory.h"
 #include "volume/combined_grid.h"
 #include "volume/edited_field.h"
 #include "volume/noise.h"

@@ -170,6 +170,20 @@ const openvdb::GridBase& read_part(openvdb::io::File& file, const std::string& p
   return *grid;
 }
 
+/// One flipped bit turns a tile on that stands for millions of voxels. What programs change after
+/// they have counted differs by far less, and is worth a note only.
+void check_declared_voxels(const std::string& path, const std::string& name,
+                           const RawGridHeader& header) {
+  constexpr std::uint64_t most_times = 1000;
+  if (header.declared_voxels < 0)
+    return;
+  const auto declared = static_cast<std::uint64_t>(header.declared_voxels);
+  if (header.active_voxels / most_times > std::max<std::uint64_t>(declared, 1))
+    throw FrameError(fmt::format("{}: grid \"{}\" has {} active voxels, but its file says {}; the "
+                                 "file is damaged: copy or export it again",
+                                 path, name, header.active_voxels, declared));
+}
+
 template <class Grid>
 void write_grid(const std::string& path, const std::string& name, const Grid& grid,
                 Background background, bool cropped, int descriptor) {
@@ -192,6 +206,7 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
     leaves.push_back(leaf.getLeaf());
     header.active_voxels += leaf->onVoxelCount();
   }
+  check_declared_voxels(path, name, header);
   std::sort(leaves.begin(), leaves.end(),
             [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });
   const std::vector<RawTile> tiles = collect_tiles(grid.tree(), level_set);

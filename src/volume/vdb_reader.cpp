@@ -39,8 +39,8 @@ std::uint64_t check_file(const std::string& path) {
 /// bytes per byte of file for float values, 66 for double, and 80 more for a list of its tiles.
 GuardLimits guard_limits(std::uint64_t file_bytes, const ReadLimits& limits) {
   GuardLimits guard;
-  guard.seconds = limits.seconds;
-  guard.cpu_seconds = std::min(limits.seconds, 10 + 1e-6 * static_cast<double>(file_bytes));
+  guard.seconds = limits.seconds + time_for(file_bytes);
+  guard.cpu_seconds = std::min(guard.seconds, 10 + 1e-6 * static_cast<double>(file_bytes));
   guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 160 * file_bytes);
   return guard;
 }
@@ -122,6 +122,7 @@ GridSummary read_grid_header(const std::string& path, const std::string& grid_na
 std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits& limits) {
   const Stopwatch watch;
   GuardLimits guard = guard_limits(check_file(path), limits);
+  const double whole_seconds = guard.seconds;
   prepare_openvdb();
   const MappedFile list =
       run_guarded(path, guard, [&](int output) { write_grid_names(path, output); });
@@ -133,7 +134,7 @@ std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits
   std::vector<GridSummary> summaries;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     const std::string name = text.substr(begin, end - begin);
-    guard.seconds = std::max(limits.seconds - watch.seconds(), 0.0);
+    guard.seconds = std::max(whole_seconds - watch.seconds(), 1.0);
     const MappedFile summary =
         run_guarded(path, guard, [&](int output) { write_summary(path, name, output); });
     summaries.push_back(decode_summary(path, summary.data(), summary.size()));

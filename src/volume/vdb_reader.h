@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine/memory.h"
 #include "math/affine.h"
 #include "volume/color_field.h"
 #include "volume/density_field.h"
@@ -59,8 +60,8 @@ struct GridSummary {
 
 /// How far an untrusted file may go before it is refused.
 struct ReadLimits {
-  double seconds = 120;
-  std::uint64_t bytes = std::uint64_t(16) << 30;
+  double seconds = 120; ///< of wall-clock time, beside what its size takes (time_for)
+  std::uint64_t bytes = free_memory(); ///< of memory
 };
 
 /// What becomes of a grid whose value far outside is not 0: a density without end is refused; of

@@ -1,5 +1,6 @@
 // Sizes, times and magnitudes at the ends of their ranges.
 #include "film/film.h"
+#include "machine/memory.h"
 #include "render/memory_check.h"
 #include "render/plan.h"
 #include "stability/stability_scene.h"

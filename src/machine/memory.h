@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+namespace vdbeam {
+
+/// Bytes that this machine grants the process: its memory, or less where a control group, the farm
+/// (SLURM_MEM_PER_NODE, SLURM_MEM_PER_CPU) or a limit on the address space says so.
+std::uint64_t granted_memory();
+
+/// Bytes that the process may still take: the least of what the machine has free (MemAvailable of
+/// /proc/meminfo) and of what each of these grants leaves beside the memory in use. Whatever reads
+/// a file is bounded by this.
+std::uint64_t free_memory();
+
+} // namespace vdbeam
