@@ -23,6 +23,14 @@ FOREIGN = re.compile(r"\b(openvdb|nanovdb|embree|rtc[A-Z]\w*|tbb|Imath|Imf|toml|
 PRINTS = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.])(std::)?(printf|puts|fputs|perror)\s*\("
                     r"|\bfprintf\s*\(\s*std(out|err)|\bfmt::print\s*\(\s*(\"|std(out|err))")
 EXITS = re.compile(r"(?<![\w.>])(std::)?(exit|quick_exit|abort|terminate)\s*\(")
+# A user's file is opened by machine/input_file, which waits for no pipe and reads no device. What a library
+# opens by its path is checked there first. The rest of src/machine reads the system's own files.
+OPENS = re.compile(r"\b(std::)?(basic_)?[io]?(fstream|filebuf)\b(?!\s*>)|(?<![\w.>])(std::|::)?(fopen|freopen|open|openat|creat)"
+                   r"\s*\(\s*[^)\s]")
+LIBRARY_OPENS = re.compile(r"\bio::File>?\(|\bCreateFromFile\(|\.ReadFile\(|\bImf::\w*InputFile \w+\("
+                           r"|\bpng_image_begin_read_from_file\(|\bImageInput::open\(")
+CHECKS = re.compile(r"\b(check_input_file|open_input_file|check_attribute_sizes|check_configuration|read_guarded"
+                    r"|check_file|make_immortal|open_uris|read_start)\b")
 LEFTOVERS = re.compile(r"\b(TO" r"DO|FIX" r"ME|XX" r"X|NOLI" r"NT\w*)\b")
 
 
@@ -91,6 +99,11 @@ def check_file(path, text):
                 found.append((number, "only src/cli prints"))
             if EXITS.search(code):
                 found.append((number, "only src/cli ends the process"))
+        if path.parts[0] == "src" and path.parts[1] != "machine" and not include:
+            if OPENS.search(code) and "/dev/null" not in line:
+                found.append((number, "files are opened by machine/input_file and machine/atomic_file"))
+            if LIBRARY_OPENS.search(code) and not CHECKS.search(text):
+                found.append((number, "a library opens a path that machine/input_file has not checked"))
     return found
 
 

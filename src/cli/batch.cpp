@@ -59,8 +59,10 @@ Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
       loaded.note = renderer_.why_unfinished(loaded.frame);
       loaded.skip = loaded.note.empty();
     }
-    if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty())
+    if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty()) {
+      renderer_.check_side_files(frame);
       loaded.frame.prepared = prepare_scene(loaded.frame.scene, previous);
+    }
   } catch (const InputError& error) {
     const std::string line = error.what();
     loaded.error =
@@ -181,8 +183,8 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
 int Batch::finish() {
   if (frames_.size() > 1)
     say(summary_.text());
-  if (!options_.summary.empty())
-    summary_.write(options_.summary);
+  if (const FrameFiles& files = options_.frame.files; !files.summary.empty())
+    summary_.write(output_path(files, Output::summary, 0));
   if (stop_requested() && summary_.outcomes.size() < frames_.size())
     return signal_exit_code();
   if (!summary_.with_status("interrupted").empty())

@@ -13,7 +13,6 @@ struct BatchOptions {
   bool skip_existing = false; ///< leave frames alone whose finished image is there
   bool stop_on_error = false;
   MissingFile missing = MissingFile::error;
-  std::string summary; ///< path of a JSON file, or empty
   FarmFormat farm = FarmFormat::plain;
 };
 

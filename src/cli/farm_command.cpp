@@ -1,12 +1,13 @@
 #include "cli/commands.h"
 #include "cli/file_claims.h"
-#include "cli/frame_renderer.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/streams.h"
 #include "farm/engines.h"
+#include "farm/job_seal.h"
 #include "image/output_formats.h"
 #include "machine/atomic_file.h"
+#include "machine/input_file.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -131,20 +132,36 @@ void check_clashes(const FarmJob& job, const SceneDocument& document) {
   FileClaims claims;
   claims.scene(document, job.scene, job.frames);
   claims.output("--job", job.job_file);
-  claims.outputs("-o", job.output, job.frames);
+  claims.render({.output = job.output}, job.frames);
   for (const std::string& range : pass_ranges(job)) {
-    const std::string part = partial_path(job.output, range);
-    if (part != job.output)
-      claims.outputs("a part of -o", part, job.frames);
-    claims.outputs("a checkpoint of -o", side_file(part, "checkpoint"), job.frames);
+    const FrameFiles part{.output = partial_path(job.output, range)};
+    if (part.output == job.output)
+      continue;
+    check_output_paths(part, job.frames);
+    claims.render(part, job.frames, "a part of ");
   }
+}
+
+/// A job file may be written anew, but nothing else is replaced. Throws InputError.
+void check_job_file(const std::string& path) {
+  constexpr std::uint64_t longest = std::uint64_t(64) << 20;
+  if (path.empty() || !is_there(path))
+    return;
+  const std::string text = read_text(path, longest);
+  const JobFile found = text.empty() ? JobFile::ours : judge_job(text);
+  if (found == JobFile::changed)
+    throw InputError(one_line(path) + ": has been changed since vdbeam farm wrote it; give --job "
+                                      "another name, or remove it");
+  if (found == JobFile::other)
+    throw InputError(one_line(path) + ": is there already and is no job file by vdbeam farm; give "
+                                      "--job another name");
 }
 
 FarmJob make_job(const FarmOptions& options) {
   FarmJob job = options.job;
   const SceneDocument document = options.scene.open();
   job.frames = read_frames(options.frames);
-  check_output_path("-o", job.output, job.frames);
+  check_output_paths({.output = job.output}, job.frames);
   output_format(job.output);
   job.name = job_name(options.scene.path());
   job.folder = fs::current_path().string();
@@ -161,6 +178,7 @@ FarmJob make_job(const FarmOptions& options) {
     throw InputError("--splits: a frame can be cut in parts where its end is a number of passes "
                      "and nothing else; say e.g. --passes 64");
   check_clashes(job, document);
+  check_job_file(job.job_file);
   tell_missing(options, document, job.frames);
   if (render.threads > 0)
     job.threads = render.threads;
@@ -179,9 +197,12 @@ int run_farm(const FarmOptions& options, const FarmEngine& engine) {
   if (job.job_file.empty()) {
     print_output(text);
   } else {
+    const bool replaces = is_there(job.job_file);
     AtomicFile file(job.job_file);
     file.write(text.data(), text.size());
     file.commit();
+    if (replaces)
+      log("note: {}: the job file that was there is replaced", options.job.job_file);
   }
   const int tasks = task_count(job);
   log("{} frames in {} tasks{}, each of {} threads and {} MiB; submit with: {}", job.frames.size(),

@@ -4,8 +4,11 @@
 #include "text/text.h"
 #include "vdbeam/error.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include <set>
 #include <sys/stat.h>
 
 namespace vdbeam::cli {
@@ -95,9 +98,38 @@ void FileClaims::scene(const SceneDocument& document, const std::string& path,
                        const std::vector<int>& frames) {
   input("the scene", path);
   for (const SceneFile& file : document.files()) {
-    inputs(file.key, file.pattern, frames);
-    inputs(file.key, file.pattern, frames_on_disk(file.pattern));
+    scene_file(file, frames);
+    if (has_frame_pattern(file.pattern))
+      scene_file(file, frames_on_disk(file.pattern));
   }
+  if (const char* configuration = std::getenv("OCIO"))
+    input("OCIO", configuration);
+}
+
+/// With the files that it names in turn.
+void FileClaims::scene_file(const SceneFile& file, const std::vector<int>& frames) {
+  inputs(file.key, file.pattern, frames);
+  std::set<std::string> paths;
+  for (const int frame : frames)
+    paths.insert(substitute_frame(file.pattern, frame));
+  for (const std::string& path : paths)
+    for (const std::string& named : files_named_by(file.input, path))
+      input(fmt::format("what {} names, the file", file.key), named);
+}
+
+void FileClaims::render(const FrameFiles& files, const std::vector<int>& frames,
+                        const std::string& whose) {
+  std::vector<Output> all;
+  for (const OutputKind& kind : output_kinds())
+    all.push_back(kind.output);
+  outputs_of(files, all, frames, whose);
+}
+
+void FileClaims::outputs_of(const FrameFiles& files, const std::vector<Output>& wanted,
+                            const std::vector<int>& frames, const std::string& whose) {
+  for (const OutputKind& kind : output_kinds())
+    if (std::find(wanted.begin(), wanted.end(), kind.output) != wanted.end())
+      outputs(whose + kind.name, kind.pattern(files), frames);
 }
 
 } // namespace vdbeam::cli

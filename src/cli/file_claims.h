@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/frame_files.h"
 #include "scene/scene_document.h"
 
 #include <map>
@@ -10,10 +11,9 @@ namespace vdbeam::cli {
 
 /// The files that a command is going to read and to write. No output may be an input, nor another
 /// output. Two paths are the same file where they lead to the same inode (through links, hard
-/// links,
-/// "./" and ".."), or, for files that are not there yet, to the same name in the same folder. Names
-/// that differ only in the case of their letters count as the same there: some file systems do not
-/// tell them apart.
+/// links, "./" and ".."), or, for files that are not there yet, to the same name in the same
+/// folder. Names that differ only in the case of their letters count as the same there: some file
+/// systems do not tell them apart.
 class FileClaims {
 public:
   /// `name` stands for the file in messages, e.g. "the scene". Inputs may be the same file. Throws
@@ -28,7 +28,16 @@ public:
   void outputs(const std::string& option, const std::string& pattern,
                const std::vector<int>& frames);
 
-  /// The scene, and everything that it reads for these frames, and for those on the disk.
+  /// Everything that a render of these frames may write. `whose` begins the outputs' names, for
+  /// instance "a part of ".
+  void render(const FrameFiles& files, const std::vector<int>& frames,
+              const std::string& whose = "");
+  /// Some of it.
+  void outputs_of(const FrameFiles& files, const std::vector<Output>& wanted,
+                  const std::vector<int>& frames, const std::string& whose = "");
+
+  /// The scene, and everything that it reads for these frames, and for those on the disk: what its
+  /// keys name, what those files name in turn, and the configuration that OCIO names.
   void scene(const SceneDocument& document, const std::string& path,
              const std::vector<int>& frames);
 
@@ -39,6 +48,7 @@ private:
   };
 
   void claim(const Claim& claim);
+  void scene_file(const SceneFile& file, const std::vector<int>& frames);
   std::string identity(const std::string& path);
   std::string real_folder(const std::string& folder);
 

@@ -10,6 +10,7 @@
 #include "machine/stopwatch.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
+#include "report/side_files.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -75,8 +76,8 @@ std::string end_text(const RenderResult& result, const std::string& output) {
 std::string stop_text(const RenderResult& result, const std::string& checkpoint,
                       const std::string& snapshot) {
   if (result.quick_look)
-    return fmt::format("interrupted before the first pass was finished; {} is a quick look",
-                       snapshot);
+    return "interrupted before the first pass was finished" +
+           (snapshot.empty() ? snapshot : fmt::format("; {} is a quick look", snapshot));
   return fmt::format("interrupted after {}; the same command goes on from {}, which also shows "
                      "the image so far",
                      passes_text(result.passes.back().pass), checkpoint);
@@ -95,25 +96,25 @@ RenderSettings progress_settings(const Scene& scene, const std::optional<PassRan
 
 } // namespace
 
-std::string side_file(const std::string& output, const std::string& kind) {
-  std::filesystem::path path(output);
-  return path.replace_extension(kind + ".exr").string();
+std::string FrameRenderer::path(Output output, int frame) const {
+  return output_path(options_.files, output, frame);
 }
 
-std::string FrameRenderer::output(int frame) const {
-  return substitute_frame(options_.files.output, frame);
-}
-
-std::string FrameRenderer::checkpoint_path(int frame) const {
-  return side_file(output(frame), "checkpoint");
+void FrameRenderer::check_side_files(int frame) const {
+  // A snapshot can be done without, and whatever has its name is left alone then.
+  const std::string why = why_not_replaceable(path(Output::checkpoint, frame), Output::checkpoint);
+  if (!why.empty())
+    throw InputError(
+        fmt::format("{}, but -o {} needs its name; rename it, or the output", why, output(frame)));
 }
 
 void FrameRenderer::remove_side_files(int frame) const {
+  for (const Output kind : {Output::checkpoint, Output::snapshot})
+    remove_side_file(path(kind, frame), kind);
   std::error_code ignored; // one that stays does no harm
-  for (const char* kind : {"checkpoint", "snapshot"})
-    std::filesystem::remove(side_file(output(frame), kind), ignored);
-  for (const std::string& part : options_.parts)
-    std::filesystem::remove(substitute_frame(part, frame), ignored);
+  for (const std::string& pattern : options_.parts)
+    if (const std::string part = substitute_frame(pattern, frame); holds_film(part))
+      std::filesystem::remove(part, ignored);
 }
 
 std::string FrameRenderer::region_text() const {
@@ -157,7 +158,7 @@ std::string FrameRenderer::why_no_image(const std::string& path, const LoadedFra
   if (frame == image.numbers.end() || frame->second != loaded.frame())
     return "is of another frame";
   if (loaded.scene.image.deep)
-    check_deep_exr(side_file(path, "deep"));
+    check_deep_exr(output_path({.output = path}, Output::deep, loaded.frame()));
   return "";
 }
 
@@ -195,22 +196,27 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   }
   MergeSettings settings;
   settings.passes = loaded.scene.render.passes;
-  settings.deep = side_file(output(loaded.frame()), "deep");
+  settings.deep = path(Output::deep, loaded.frame());
   Image image = merge_partials(paths, settings);
   image.metadata["vdbeam:sceneHash"] = loaded.hash; // the parts' may have another number of passes
   if (options_.region)
     image.metadata["vdbeam:region"] = region_text();
   if (!options_.files.preview.empty())
-    write_image(image, substitute_frame(options_.files.preview, loaded.frame()),
-                {options_.exposure, options_.view});
+    write_image(image, path(Output::preview, loaded.frame()), {options_.exposure, options_.view});
   write_image(image, output(loaded.frame()), {options_.exposure, options_.view});
   remove_side_files(loaded.frame());
 }
 
 void FrameRenderer::write_preview(const Image& image, int frame) const {
   if (!options_.files.preview.empty())
-    write_image(image, substitute_frame(options_.files.preview, frame),
-                {options_.exposure, options_.view});
+    write_image(image, path(Output::preview, frame), {options_.exposure, options_.view});
+}
+
+void FrameRenderer::write_snapshot(const Image& image, int frame) const {
+  const std::string file = path(Output::snapshot, frame);
+  if (const std::string why = why_not_replaceable(file, Output::snapshot); !why.empty())
+    throw FrameError(why + ", and stays as it is");
+  write_image(image, file, {.links = Links::replace});
 }
 
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
@@ -233,21 +239,22 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
     }
     if (result.deep && !options_.pass_range)
       context.deep_bytes =
-          write_deep_exr(*result.deep, result.image, side_file(context.output, "deep"));
+          write_deep_exr(*result.deep, result.image, path(Output::deep, loaded.frame()));
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
     if (!result.quick_look)
       remove_side_files(loaded.frame());
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);
-    write_image(result.image, side_file(context.output, "snapshot"), {});
+    if (why_not_replaceable(path(Output::snapshot, loaded.frame()), Output::snapshot).empty())
+      write_snapshot(result.image, loaded.frame());
   } else if (options_.early_preview) {
     write_preview(result.image, loaded.frame()); // the quick look has served its time
   }
   result.statistics.write = watch.seconds();
   if (!files.report.empty())
     write_json_output(report_json(loaded.scene, result, context),
-                      substitute_frame(files.report, loaded.frame()));
+                      path(Output::report, loaded.frame()));
   if (lost_preview)
     throw *lost_preview;
 }
@@ -270,7 +277,7 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
     deep.width = result.image.width;
     deep.height = result.image.height;
     deep.counts.assign(result.image.channels.front().data.size(), 0);
-    write_deep_exr(deep, result.image, side_file(output(loaded.frame()), "deep"));
+    write_deep_exr(deep, result.image, path(Output::deep, loaded.frame()));
   }
   write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
   write_preview(result.image, loaded.frame());
@@ -295,7 +302,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   if (options_.pass_range)
     frame.partial = output(loaded.frame());
   frame.checkpoint = options_.checkpoint;
-  frame.checkpoint.path = checkpoint_path(loaded.frame());
+  frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
   frame.reference = reference ? &*reference : nullptr;
   frame.second_reference = second ? &*second : nullptr;
   RenderHooks hooks;
@@ -307,20 +314,20 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   hooks.stop = &stop_requested();
   hooks.snapshot = &snapshot_requested();
   hooks.on_snapshot = [&](RenderResult& so_far) {
-    const std::string path = side_file(output(loaded.frame()), "snapshot");
     add_image_metadata(so_far.image, scene, so_far, loaded.hash);
     so_far.image.numbers.erase("vdbeam:complete");
-    write_exr(so_far.image, path);
-    progress.note(
-        fmt::format("{}: the image after {}", path, passes_text(so_far.passes.back().pass)));
+    write_snapshot(so_far.image, loaded.frame());
+    progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
+                              passes_text(so_far.passes.back().pass)));
   };
   if (options_.early_preview && !options_.files.preview.empty())
     hooks.on_quick_look = [&](RenderResult& look) { write_preview(look.image, loaded.frame()); };
   RenderResult result = render(scene, loaded.prepared, frame, hooks);
   write_files(loaded, result);
   if (result.stopped_by == "stop") {
-    progress.finish(
-        stop_text(result, frame.checkpoint.path, side_file(output(loaded.frame()), "snapshot")));
+    const std::string snapshot = path(Output::snapshot, loaded.frame());
+    const bool taken = !why_not_replaceable(snapshot, Output::snapshot).empty();
+    progress.finish(stop_text(result, frame.checkpoint.path, taken ? "" : snapshot));
     return false;
   }
   if (result.quick_look)

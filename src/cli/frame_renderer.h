@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/progress.h"
+#include "report/frame_files.h"
 #include "scene/scene_document.h"
 #include "vdbeam/render.h"
 
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace vdbeam::cli {
-
-/// Where a frame's results go; each may hold a frame number's place, and all but the first be
-/// empty.
-struct FrameFiles {
-  std::string output, preview, report, reference, second_reference;
-};
 
 /// How frames are rendered and written.
 struct FrameOptions {
@@ -38,9 +33,6 @@ struct LoadedFrame {
 
   int frame() const { return scene.frame.number; }
 };
-
-/// "out.0007.exr" gives "out.0007.checkpoint.exr": beside the image, for any kind of output.
-std::string side_file(const std::string& output, const std::string& kind);
 
 /// Renders one frame after the other to files.
 class FrameRenderer {
@@ -66,17 +58,22 @@ public:
   /// where the image is there that it was to be merged into.
   std::string why_unfinished(const LoadedFrame& loaded) const;
 
-  /// Removes the frame's checkpoint, snapshot and parts, which a finished image has outlived.
+  /// Refuses a file that has the name of the frame's checkpoint and is none. Throws InputError.
+  void check_side_files(int frame) const;
+
+  /// Removes the frame's checkpoint, snapshot and parts, which a finished image has outlived; what
+  /// only has the name of one stays.
   void remove_side_files(int frame) const;
 
 private:
-  std::string output(int frame) const;
-  std::string checkpoint_path(int frame) const;
+  std::string path(Output output, int frame) const;
+  std::string output(int frame) const { return path(Output::image, frame); }
   std::string region_text() const;
   std::string why_no_image(const std::string& path, const LoadedFrame& loaded) const;
   std::string why_no_part(const std::string& path, const LoadedFrame& loaded) const;
   /// Nothing where no preview is asked for.
   void write_preview(const Image& image, int frame) const;
+  void write_snapshot(const Image& image, int frame) const;
   void write_files(const LoadedFrame& loaded, RenderResult& result) const;
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 

@@ -3,6 +3,7 @@
 #include "cli/streams.h"
 #include "cli/surface_info.h"
 #include "geometry/mesh_reader.h"
+#include "machine/input_file.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
 #include "text/text.h"
@@ -66,9 +67,14 @@ void print_file(const std::string& file) {
 /// The VDBs of a folder, in the order of their names.
 std::vector<std::string> volumes_in(const std::string& folder) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".vdb")
-      files.push_back(entry.path().string());
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().extension() == ".vdb")
+      files.push_back(entry->path().string());
+  if (error)
+    throw InputError(
+        fmt::format("{}: the folder cannot be read: {}", one_line(folder), error.message()));
   if (files.empty())
     throw InputError(one_line(folder + ": is a folder without a .vdb file"));
   std::sort(files.begin(), files.end());
@@ -95,7 +101,7 @@ std::vector<std::string> files_of(const std::string& word) {
   std::error_code error;
   if (std::filesystem::is_directory(word, error))
     return volumes_in(word);
-  if (std::filesystem::exists(word, error))
+  if (is_there(word))
     return {word};
   if (has_frame_pattern(word))
     return samples_of(word);

@@ -1,10 +1,10 @@
 #include "cli/commands.h"
 #include "cli/file_claims.h"
-#include "cli/frame_renderer.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
 #include "cli/view_option.h"
 #include "image/output_formats.h"
+#include "report/frame_files.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/render.h"
@@ -25,20 +25,19 @@ struct MergeOptions {
 };
 
 int run_merge(const MergeOptions& options) {
-  check_output_path("-o", options.output, {1});
+  const FrameFiles files{.output = options.output, .preview = options.preview};
+  check_output_paths(files, {1});
   output_format(options.output);
   check_output_path("--partial", options.settings.partial, {1});
-  check_output_path("--preview", options.preview, {1});
   FileClaims claims;
   for (const std::string& partial : options.partials)
     claims.input("the partial image", partial);
-  claims.output("-o", options.output);
+  claims.outputs_of(files, {Output::image, Output::deep, Output::preview}, {1});
   claims.output("--partial", options.settings.partial);
-  claims.output("--preview", options.preview);
   if (options.settings.passes && *options.settings.passes < 1)
     throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
   MergeSettings settings = options.settings;
-  settings.deep = side_file(options.output, "deep");
+  settings.deep = output_path(files, Output::deep, 1);
   const Image image = merge_partials(options.partials, settings);
   if (!options.preview.empty())
     write_image(image, options.preview, {options.exposure, options.view});

@@ -107,12 +107,7 @@ void check_clashes(const RenderOptions& options, const SceneDocument& document,
     claims.inputs("--from-parts", part, frames);
   if (options.batch.farm != FarmFormat::plain)
     claims.output("--progress", "-");
-  claims.output("--summary", options.batch.summary);
-  claims.outputs("-o", files.output, frames);
-  claims.outputs("the checkpoint of -o", side_file(files.output, "checkpoint"), frames);
-  claims.outputs("the snapshot of -o", side_file(files.output, "snapshot"), frames);
-  claims.outputs("--preview", files.preview, frames);
-  claims.outputs("--report", files.report, frames);
+  claims.render(files, frames);
 }
 
 /// Refuses what is wrong with every frame. What only some of them lack is told when their turn
@@ -135,15 +130,11 @@ void check_scenes(const RenderOptions& options, const SceneDocument& document,
 /// Everything that can be known to fail is refused before the first frame costs time.
 void check_before_rendering(const RenderOptions& options, const SceneDocument& document,
                             const std::vector<int>& frames) {
-  check_output_path("-o", options.batch.frame.files.output, frames);
-  output_format(options.batch.frame.files.output);
-  check_output_path("--preview", options.batch.frame.files.preview, frames);
-  if (!options.batch.frame.files.preview.empty())
-    output_format(options.batch.frame.files.preview);
-  if (!is_stdout(options.batch.frame.files.report))
-    check_output_path("--report", options.batch.frame.files.report, frames);
-  if (!is_stdout(options.batch.summary))
-    check_output_path("--summary", options.batch.summary, {frames.front()});
+  const FrameFiles& files = options.batch.frame.files;
+  check_output_paths(files, frames);
+  output_format(files.output);
+  if (!files.preview.empty())
+    output_format(files.preview);
   check_options(options);
   check_clashes(options, document, frames);
   check_scenes(options, document, frames);
@@ -222,7 +213,8 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
       app, "--missing", batch.missing,
       {{"error", MissingFile::error}, {"black", MissingFile::black}, {"hold", MissingFile::hold}},
       "A frame without its volume fails, is black, or shows the one before");
-  app.add_option("--summary", batch.summary, "Write what became of the frames as JSON; - is stdout")
+  app.add_option("--summary", batch.frame.files.summary,
+                 "Write what became of the frames as JSON; - is stdout")
       ->option_text("FILE.json");
   add_choice<FarmFormat>(
       app, "--progress", batch.farm,

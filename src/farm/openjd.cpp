@@ -1,4 +1,5 @@
 #include "farm/engines.h"
+#include "farm/job_seal.h"
 #include "farm/openjd_range.h"
 #include "vdbeam/error.h"
 
@@ -142,7 +143,7 @@ std::string openjd_template(const FarmJob& job) {
   json["specificationVersion"] = "jobtemplate-2023-09";
   json["extensions"] = {"TASK_CHUNKING"};
   json["name"] = literal(job.name.substr(0, name_limit));
-  json["description"] = "Written by vdbeam farm openjd";
+  json["description"] = job_mark("openjd");
   json["parameterDefinitions"] = parameters(job);
   Json step;
   step["name"] = "Render";
@@ -150,7 +151,7 @@ std::string openjd_template(const FarmJob& job) {
   step["parameterSpace"] = frame_space();
   step["script"]["actions"]["onRun"] = render_action(job);
   json["steps"] = Json::array({std::move(step)});
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return sealed_job(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 } // namespace vdbeam

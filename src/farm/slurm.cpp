@@ -1,4 +1,5 @@
 #include "farm/engines.h"
+#include "farm/job_seal.h"
 #include "text/frame_range.h"
 #include "vdbeam/error.h"
 
@@ -200,6 +201,7 @@ std::string slurm_script(const FarmJob& job) {
       fmt::format("# Submit with `{}`; options of sbatch may be added. Submitting again renders "
                   "what is missing.\n",
                   slurm_submission(job));
+  text += fmt::format("# {}\n", job_mark("slurm"));
   text += header(job);
   text += "set -uo pipefail\n\n" + settings(job);
   if (job.splits > 1)
@@ -207,7 +209,7 @@ std::string slurm_script(const FarmJob& job) {
   text += run_function;
   text += end_function();
   text += choose_frames;
-  return text + (job.splits > 1 ? render_splits : render_whole);
+  return sealed_job(text + (job.splits > 1 ? render_splits : render_whole));
 }
 
 } // namespace vdbeam

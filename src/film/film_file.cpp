@@ -104,7 +104,7 @@ bool FilmFileInfo::joins(const FilmFileInfo& other) const {
          header.full_height == other.header.full_height;
 }
 
-void write_film(const FilmFileInfo& info, Film& film, const std::string& path) {
+void write_film(const FilmFileInfo& info, Film& film, const std::string& path, Links links) {
   Image picture = info.header;
   picture.metadata.insert_or_assign("vdbeam:film", std::string(film_format));
   picture.metadata["vdbeam:passHash"] = info.pass_hash;
@@ -124,7 +124,7 @@ void write_film(const FilmFileInfo& info, Film& film, const std::string& path) {
   for (ImageChannel& channel : developed.channels)
     if (channel.name.size() == 1) // R, G, B and A: what viewers show
       picture.channels.push_back(std::move(channel));
-  write_planes(picture, file_planes(film), path);
+  write_planes(picture, file_planes(film), path, links);
 }
 
 FilmFileInfo read_film_info(const std::string& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "machine/atomic_file.h"
 
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ struct FilmFileInfo {
 
 /// Writes the film as an EXR that is complete or not there: R, G, B and A for viewers, and the
 /// film's planes under "film.", a double as two 32-bit integers. Throws FrameError.
-void write_film(const FilmFileInfo& info, Film& film, const std::string& path);
+void write_film(const FilmFileInfo& info, Film& film, const std::string& path,
+                Links links = Links::follow);
 
 /// The header of such a file. Throws InputError for any other, also a damaged one.
 FilmFileInfo read_film_info(const std::string& path);

@@ -190,7 +190,7 @@ bool is_gltf_file(const std::string& path) {
 }
 
 CameraTrack read_gltf_camera(const std::string& path, const std::string& name, double rate) {
-  const std::uint64_t bytes = open_input_file(path).bytes + bytes_of_gltf_files(path);
+  const std::uint64_t bytes = check_input_file(path) + bytes_of_gltf_files(path);
   GuardLimits limits;
   limits.cpu_seconds = 2 + 5e-6 * static_cast<double>(bytes);
   limits.bytes = std::min(free_memory(), (std::uint64_t(512) << 20) + 200 * bytes);

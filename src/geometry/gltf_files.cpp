@@ -2,13 +2,14 @@
 
 #include "machine/input_file.h"
 #include "text/text.h"
+#include "vdbeam/error.h"
 
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <fmt/format.h>
+#include <sstream>
 
 namespace vdbeam {
 namespace {
@@ -45,6 +46,20 @@ std::string percent_decoded(const std::string& uri) {
   return text;
 }
 
+bool has_extension(const std::string& path, const char* extension) {
+  return lower_case(std::filesystem::path(path).extension().string()) == extension;
+}
+
+/// A file that cannot be read names no other; whoever needs it will complain.
+template <class Read>
+std::string text_or_nothing(const Read& read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 } // namespace
 
 std::string named_by_uri(const std::string& path) {
@@ -53,14 +68,10 @@ std::string named_by_uri(const std::string& path) {
 }
 
 std::vector<std::string> gltf_files(const std::string& path) {
-  std::error_code failed;
   std::vector<std::string> files;
-  if (lower_case(std::filesystem::path(path).extension().string()) != ".gltf" ||
-      !std::filesystem::is_regular_file(path, failed) ||
-      std::filesystem::file_size(path, failed) > most_bytes)
+  if (!has_extension(path, ".gltf"))
     return files;
-  std::ifstream stream(path, std::ios::binary);
-  const std::string json{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string json = text_or_nothing([&] { return read_text(path, most_bytes); });
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const std::string key = "\"uri\"";
   for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at + 1))
@@ -72,12 +83,40 @@ std::vector<std::string> gltf_files(const std::string& path) {
 
 std::uint64_t bytes_of_gltf_files(const std::string& path) {
   std::uint64_t sum = 0;
-  for (const std::string& file : gltf_files(path)) {
-    std::error_code failed;
-    const std::uint64_t bytes = std::filesystem::file_size(file, failed);
-    sum += failed ? 0 : bytes;
-  }
+  for (const std::string& file : gltf_files(path))
+    try {
+      if (is_there(file))
+        sum += check_input_file(file, EmptyFile::accepted);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: names {}", path, error.what()));
+    }
   return sum;
+}
+
+std::vector<std::string> files_named_by_model(const std::string& path) {
+  if (!has_extension(path, ".obj"))
+    return gltf_files(path);
+  constexpr std::size_t head = std::size_t(1) << 20; // libraries stand before what uses them
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::vector<std::string> files;
+  std::istringstream lines(text_or_nothing([&] { return read_start(path, head); }));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word != "mtllib")
+      continue;
+    // A name with spaces, or several names.
+    if (std::string whole; std::getline(words >> std::ws, whole)) {
+      whole.erase(whole.find_last_not_of(" \t\r") + 1);
+      files.push_back((folder / whole).string());
+    }
+    words.clear();
+    words.str(line);
+    words >> word;
+    while (words >> word)
+      files.push_back((folder / word).string());
+  }
+  return files;
 }
 
 std::string model_identity(const std::string& path) {

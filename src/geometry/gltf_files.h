@@ -15,7 +15,12 @@ std::string named_by_uri(const std::string& path);
 /// read, which reading the mesh or camera will complain about.
 std::vector<std::string> gltf_files(const std::string& path);
 
-/// Bytes of the files that it names, as far as they are there.
+/// The files that a file of meshes or cameras names: those of gltf_files, and the libraries of
+/// materials at the head of an .obj file.
+std::vector<std::string> files_named_by_model(const std::string& path);
+
+/// Bytes of the files that a .gltf file names, as far as they are there. Throws InputError for what
+/// is not a regular file or may not be read.
 std::uint64_t bytes_of_gltf_files(const std::string& path);
 
 /// Tells one state of a file of meshes or cameras from another as file_identity does; a .gltf file

@@ -1,12 +1,12 @@
 #include "geometry/gltf_json.h"
 
+#include "machine/input_file.h"
 #include "text/text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace vdbeam {
 namespace {
@@ -28,7 +28,7 @@ std::string json_of_glb(std::istream& file) {
 } // namespace
 
 nlohmann::json read_gltf_json(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  InputStream file(path);
   if (lower_case(std::filesystem::path(path).extension().string()) == ".glb")
     return nlohmann::json::parse(json_of_glb(file), nullptr, false);
   return nlohmann::json::parse(file, nullptr, false);

@@ -7,8 +7,8 @@
 
 namespace vdbeam {
 
-/// The JSON of a .gltf or .glb file; what cannot be read gives a value that is_discarded(). For
-/// guarded processes: a file may ask for endless memory.
+/// The JSON of a .gltf or .glb file; what is no JSON gives a value that is_discarded(). Throws as
+/// open_input_file. For guarded processes: a file may ask for endless memory.
 nlohmann::json read_gltf_json(const std::string& path);
 
 /// How many values an accessor has. Throws nlohmann::json::exception where there is none.

@@ -40,7 +40,7 @@ namespace {
 
 /// Bytes of the file and of those that it names.
 std::uint64_t check_file(const std::string& path) {
-  const std::uint64_t bytes = open_input_file(path).bytes;
+  const std::uint64_t bytes = check_input_file(path);
   if (!is_mesh_file(path))
     throw InputError(fmt::format("{}: is not a mesh file: give {}", path, kinds));
   return bytes + bytes_of_gltf_files(path);

@@ -12,7 +12,6 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace vdbeam {
@@ -85,7 +84,7 @@ MeshSize foretell_gltf(const nlohmann::json& gltf) {
 
 MeshSize foretell(const std::string& path) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  std::ifstream file(path, std::ios::binary);
+  InputStream file(path);
   if (extension == ".ply")
     return foretell_ply(file);
   if (extension == ".obj")
@@ -102,7 +101,7 @@ MeshSize foretell(const std::string& path) {
 MeshSize foretell_mesh(const std::string& path) {
   MeshSize size;
   try {
-    open_input_file(path); // a pipe would never end
+    check_input_file(path);
     const MappedFile answer = run_guarded(path, limits, [&](int output) {
       const MeshSize found = foretell(path);
       write_all(output, &found, sizeof found);

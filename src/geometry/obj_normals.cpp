@@ -1,8 +1,9 @@
 #include "geometry/obj_normals.h"
 
+#include "machine/input_file.h"
+
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <string_view>
 
 namespace vdbeam {
@@ -31,7 +32,7 @@ std::int64_t normal_of(std::string_view corner) {
 /// a backslash goes on in the next.
 template <class Visit>
 void for_each_line(const std::string& path, const Visit& visit) {
-  std::ifstream file(path, std::ios::binary);
+  InputStream file(path);
   std::string line, kind;
   for (bool goes_on = false; std::getline(file, line);) {
     std::string_view rest = line;

@@ -1,5 +1,6 @@
 #include "image/color_conversion.h"
 
+#include "machine/input_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -59,6 +60,19 @@ std::string suggestion(const std::string& name, const ocio::ConstConfigRcPtr& co
   return near ? fmt::format("; did you mean {}?", one_line(*near)) : "";
 }
 
+/// Refuses a file that OpenColorIO would wait for. "ocio://..." is one that it brings with it.
+void check_configuration(const std::string& name, const std::string& file) {
+  if (file.starts_with("ocio://"))
+    return;
+  try {
+    check_input_file(file, EmptyFile::accepted);
+  } catch (const InputError& problem) {
+    throw InputError(
+        fmt::format("is \"{}\", but the configuration that OCIO names cannot be read: {}", name,
+                    problem.what()));
+  }
+}
+
 /// From scene-linear ACES2065-1 to a colour space of the configuration.
 ocio::ConstCPUProcessorRcPtr make_processor(const std::string& name) {
   const char* file = std::getenv("OCIO");
@@ -67,6 +81,7 @@ ocio::ConstCPUProcessorRcPtr make_processor(const std::string& name) {
                                  "of the OpenColorIO configuration that the environment variable "
                                  "OCIO names, which is not set; got \"{}\"{}",
                                  name, suggestion(name, nullptr)));
+  check_configuration(name, file);
   try {
     const ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file);
     if (!config->getColorSpace(name.c_str()))

@@ -2,6 +2,7 @@
 #include "image/exr_stream.h"
 #include "image/image_readers.h"
 #include "image/layer_names.h"
+#include "machine/input_file.h"
 #include "vdbeam/error.h"
 
 #include <ImathBox.h>
@@ -23,21 +24,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 namespace vdbeam {
 
 void check_attribute_sizes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::uint64_t file_size = std::filesystem::file_size(path);
+  InputStream file(path, EmptyFile::accepted);
   file.seekg(8); // magic number and version
   std::string text;
   while (std::getline(file, text, '\0') && !text.empty()) {
     std::uint32_t size = 0;
     std::getline(file, text, '\0');
     file.read(reinterpret_cast<char*>(&size), sizeof size);
-    if (!file || size > file_size)
+    if (!file || size > file.bytes())
       throw InputError(path + ": not a readable EXR: its header is damaged");
     file.seekg(size, std::ios::cur);
   }

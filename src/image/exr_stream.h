@@ -29,11 +29,15 @@ private:
 /// FrameError for attributes that cannot be stored; `path` is for its message.
 Imf::Header exr_header(const Image& image, const std::string& path);
 
+/// As the public write_exr.
+void write_exr(const Image& image, const std::string& path, Links links);
+
 /// The other way: text, numbers and matrices of a header into the image's maps.
 void copy_attributes(const Imf::Header& header, Image& image);
 
 /// Refuses a header whose attributes are longer than the file: OpenEXR would allocate the memory
-/// before it finds the file too short. Throws InputError.
+/// before it finds the file too short. Also what must stand before OpenEXR opens a path by itself:
+/// throws InputError for what is not a regular file.
 void check_attribute_sizes(const std::string& path);
 
 /// Runs OpenEXR and turns its errors into a `Failure` of one line.

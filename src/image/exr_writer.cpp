@@ -256,8 +256,12 @@ void write_channels(const Image& image, AtomicFile& file) {
 } // namespace
 
 void write_exr(const Image& image, const std::string& path) {
+  write_exr(image, path, Links::follow);
+}
+
+void write_exr(const Image& image, const std::string& path, Links links) {
   check_image(image, path);
-  AtomicFile file(path);
+  AtomicFile file(path, links);
   with_exr<FrameError>(path, "cannot be written", [&] { write_channels(image, file); });
   file.commit();
 }

@@ -1,4 +1,5 @@
 #include "image/image_readers.h"
+#include "machine/input_file.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 
 namespace vdbeam {
@@ -164,7 +164,7 @@ private:
 } // namespace
 
 Image read_hdr(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  InputStream file(path);
   const HdrHeader header = read_header(file, path);
   Image image;
   image.width = static_cast<int>(header.width);

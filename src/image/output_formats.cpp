@@ -1,6 +1,7 @@
 #include "image/output_formats.h"
 
 #include "image/color_conversion.h"
+#include "image/exr_stream.h"
 #include "image/layer_names.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -15,18 +16,18 @@ namespace {
 
 constexpr OutputFormat formats[] = {
     {".exr", "OpenEXR, every channel, linear", true,
-     [](const Image& image, const std::string& path, const WriteOptions&) {
+     [](const Image& image, const std::string& path, const WriteOptions& options) {
        const auto space = image.metadata.find("vdbeam:outputSpace");
        const auto names = image.metadata.find("vdbeam:layerNames");
        if (space == image.metadata.end() && names == image.metadata.end())
-         return write_exr(image, path);
+         return write_exr(image, path, options.links);
        Image converted = image;
        converted.metadata.erase("vdbeam:outputSpace");
        if (space != image.metadata.end())
          convert_to_output_space(converted, space->second);
        if (names != image.metadata.end())
          rename_layers(converted, names->second);
-       write_exr(converted, path);
+       write_exr(converted, path, options.links);
      }},
     {".png", "8-bit sRGB preview", false,
      [](const Image& image, const std::string& path, const WriteOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine/atomic_file.h"
 #include "vdbeam/image.h"
 
 #include <span>
@@ -12,6 +13,7 @@ namespace vdbeam {
 struct WriteOptions {
   double exposure = 0;         ///< stops, for 8-bit formats
   std::string view = "filmic"; ///< view transform of 8-bit formats
+  Links links = Links::follow; ///< of an EXR
 };
 
 /// One kind of output file.

@@ -68,8 +68,8 @@ void write_file(const Image& picture, const std::vector<ImagePlane>& planes, Ato
 } // namespace
 
 void write_planes(const Image& picture, const std::vector<ImagePlane>& planes,
-                  const std::string& path) {
-  AtomicFile file(path);
+                  const std::string& path, Links links) {
+  AtomicFile file(path, links);
   with_exr<FrameError>(path, "cannot be written", [&] { write_file(picture, planes, file); });
   file.commit();
 }
@@ -99,6 +99,7 @@ Image read_exr_header(const std::string& path) {
 bool read_planes(const std::string& path, int width, int height,
                  const std::vector<ImagePlane>& planes) {
   return with_exr<InputError>(path, "not a readable EXR", [&] {
+    check_attribute_sizes(path);
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
     bool whole = file.isComplete() && are_windows(window, file.header().displayWindow()) &&

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine/atomic_file.h"
 #include "vdbeam/image.h"
 
 #include <cstddef>
@@ -21,7 +22,7 @@ struct ImagePlane {
 /// Writes an EXR that is complete or not there: the picture's channels as float, and the planes bit
 /// for bit, a double as two 32-bit integers NAME.low and NAME.high. Throws FrameError.
 void write_planes(const Image& picture, const std::vector<ImagePlane>& planes,
-                  const std::string& path);
+                  const std::string& path, Links links = Links::follow);
 
 /// Windows, attributes and the names of the channels, which hold no data. The size is 0 where the
 /// windows are not those of a picture or of a part of one. Throws InputError.

@@ -1,4 +1,5 @@
 #include "image/image_readers.h"
+#include "machine/input_file.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -39,6 +40,7 @@ std::vector<T> read_pixels(png_image& png, png_uint_32 format, const std::string
 } // namespace
 
 Image read_png(const std::string& path) {
+  check_input_file(path);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   const PngPtr freed(&png);

@@ -1,13 +1,11 @@
 #include "image/image_readers.h"
 #include "image/picture_guard.h"
+#include "machine/input_file.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <string_view>
 
 namespace vdbeam {
@@ -37,15 +35,11 @@ void check_size_fits_file(const std::string& path, double bytes, double most_per
 }
 
 Image read_image(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  char start[4] = {};
-  if (!file.read(start, 1))
-    throw InputError(path + ": cannot be read: " + (errno ? std::strerror(errno) : "it is empty"));
-  file.read(start + 1, sizeof start - 1);
-  file.close();
+  const std::string start = read_start(path, 4);
+  if (start.empty())
+    throw InputError(path + ": is empty (0 bytes)");
   for (const InputFormat& format : input_formats)
-    if (std::string_view(start, sizeof start).substr(0, format.magic.size()) == format.magic)
+    if (start.starts_with(format.magic))
       return read_guarded_picture(path, format.read);
   throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr picture, nor a PNG");
 }

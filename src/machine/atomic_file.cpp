@@ -30,8 +30,10 @@ namespace {
 }
 
 /// The file behind `path` if it is a symbolic link, so that the link survives the rename.
-std::string resolve_target(const std::string& path) {
+std::string resolve_target(const std::string& path, Links links) {
   std::error_code error;
+  if (links == Links::replace && fs::is_symlink(path, error))
+    return path;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status))
     return path;
@@ -75,10 +77,10 @@ void sync_folder(const std::string& target) {
 
 } // namespace
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+AtomicFile::AtomicFile(const std::string& path, Links links) : path_(path) {
   if (path.empty())
     throw FrameError("an output file has an empty name; give a file name");
-  target_ = resolve_target(path);
+  target_ = resolve_target(path, links);
   const int descriptor = open_temporary(target_, temporary_);
   if (descriptor < 0)
     throw_unwritable(path_, errno);

@@ -6,14 +6,20 @@
 
 namespace vdbeam {
 
+/// What becomes of a symbolic link by the name of an output: it stays, and the file that it leads
+/// to is replaced, or the file takes its place.
+enum class Links { follow, replace };
+
 /// A file that appears under its name only when it is complete. Writes go to a temporary name in
 /// the same folder; commit() syncs it to the disk and renames it; without commit() it is removed.
 /// What killed processes have left in the folder is removed when a file is created there.
 class AtomicFile {
 public:
   /// Creates the temporary file. Throws FrameError where the folder is missing or not writable, or
-  /// where `path` names something other than a regular file.
-  explicit AtomicFile(const std::string& path);
+  /// where `path` names something other than a regular file. Links are followed where the user
+  /// gave the name; nobody should find another file replaced by a link planted under a name that
+  /// the program made up.
+  explicit AtomicFile(const std::string& path, Links links = Links::follow);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -31,7 +37,7 @@ private:
   [[noreturn]] void fail(int error);
 
   std::string path_;   ///< as the user gave it, for messages
-  std::string target_; ///< with symbolic links resolved
+  std::string target_; ///< with symbolic links resolved, if they are followed
   std::string temporary_;
   std::FILE* file_ = nullptr;
   int error_ = 0; ///< errno of the first failure

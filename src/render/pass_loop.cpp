@@ -11,6 +11,7 @@
 #include "render/pass_window.h"
 #include "render/quick_look.h"
 #include "report/image_metadata.h"
+#include "report/side_files.h"
 #include "scene/shutter.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -327,7 +328,10 @@ void PassLoop::attempt(F write) {
 void PassLoop::write_checkpoint() {
   if (frame_.checkpoint.path.empty() || film_.passes() == last_checkpoint_passes_)
     return;
-  write_film(file_info(), film_, frame_.checkpoint.path);
+  const std::string& path = frame_.checkpoint.path;
+  if (const std::string why = why_not_replaceable(path, Output::checkpoint); !why.empty())
+    throw FrameError(why + ", and stays as it is");
+  write_film(file_info(), film_, path, Links::replace);
   last_checkpoint_passes_ = film_.passes();
 }
 

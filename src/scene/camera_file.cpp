@@ -2,6 +2,7 @@
 
 #include "geometry/gltf_camera.h"
 #include "geometry/gltf_files.h"
+#include "machine/input_file.h"
 #include "scene/scene_enums.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -9,8 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 #include <vector>
@@ -18,6 +19,8 @@
 namespace vdbeam {
 namespace {
 
+/// Half a million lines, and a line of a thousand numbers: what has more is no camera.
+constexpr std::size_t longest_file = std::size_t(64) << 20, longest_line = std::size_t(64) << 10;
 constexpr std::size_t chan_numbers = 7, chan_numbers_with_fov = 8, matrix_numbers = 16;
 
 using CameraKey = CameraFile::Key;
@@ -27,7 +30,8 @@ using CameraKey = CameraFile::Key;
   throw InputError(one_line(fmt::format("{}{}: {}", path, place, text)));
 }
 
-/// The numbers of a line; brackets and commas, as programs print matrices, count as spaces.
+/// The numbers of a line; brackets and commas, as programs print matrices, count as spaces. Errors
+/// quote nothing: the file may be one that only the program may read, not who sees its messages.
 std::vector<double> numbers_of(std::string text, const std::string& path, int line) {
   for (char& c : text)
     if (c == ',' || c == ';' || c == '[' || c == ']' || c == '(' || c == ')')
@@ -35,15 +39,10 @@ std::vector<double> numbers_of(std::string text, const std::string& path, int li
   std::istringstream words(text);
   std::vector<double> numbers;
   for (std::string word; words >> word;) {
-    std::size_t used = 0;
-    double value = 0;
-    try {
-      value = std::stod(word, &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used != word.size() || !std::isfinite(value))
-      fail(path, line, fmt::format("must hold numbers, got {}", word));
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end); // also a number below 2.2e-308
+    if (end != word.c_str() + word.size() || !std::isfinite(value))
+      fail(path, line, "must hold finite numbers and nothing else");
     numbers.push_back(value);
   }
   return numbers;
@@ -63,13 +62,15 @@ CameraKey key_of(const std::vector<double>& numbers, const std::string& path, in
 
 /// The keys of a text file.
 std::vector<CameraKey> read_lines(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream)
-    throw InputError(one_line(path + ": cannot be opened: no permission to read it"));
+  std::istringstream stream(read_text(path, longest_file));
   std::vector<CameraKey> keys;
   int line = 0;
   for (std::string text; std::getline(stream, text);) {
     ++line;
+    if (text.size() > longest_line)
+      fail(path, line,
+           fmt::format("must have lines of at most {}",
+                       format_bytes(static_cast<double>(longest_line))));
     if (const auto comment = text.find('#'); comment != std::string::npos)
       text.erase(comment);
     const std::vector<double> numbers = numbers_of(text, path, line);

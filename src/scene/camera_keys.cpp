@@ -150,7 +150,7 @@ void add_camera_keys(KeyTable& table) {
   table
       .add("file", &C::file,
            "a .chan file, matrices or a glTF file with the camera, instead of position and look_at")
-      .kind(KeyKind::file);
+      .file(InputKind::camera);
   table.add(
       "name", &C::name,
       R"(glTF: name of the node that holds the camera (in Blender, the camera object); "": the first)");

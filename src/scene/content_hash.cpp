@@ -1,10 +1,9 @@
 #include "scene/content_hash.h"
 
-#include "vdbeam/error.h"
+#include "machine/input_file.h"
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <new>
@@ -34,16 +33,11 @@ std::uint64_t ContentHash::value() const {
 namespace {
 
 std::uint64_t hash_contents(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw InputError(path + ": cannot be opened");
+  const InputFile file = open_input_file(path, EmptyFile::accepted);
   ContentHash hash;
   std::vector<char> buffer(1 << 20);
-  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) ||
-         stream.gcount() > 0)
-    hash.add(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-  if (stream.bad())
-    throw InputError(path + ": cannot be read");
+  while (const std::size_t got = read_bytes(file, path, buffer.data(), buffer.size()))
+    hash.add(buffer.data(), got);
   return hash.value();
 }
 

@@ -1,5 +1,6 @@
 #include "scene/scene_document.h"
 
+#include "machine/input_file.h"
 #include "scene/default_scene.h"
 #include "scene/scene_reader.h"
 #include "scene/shutter.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <iterator>
 
 namespace vdbeam {
@@ -23,22 +23,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t longest_scene_file = 16u << 20;
 
-std::string read_text(const std::string& path) {
+std::string read_scene_text(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error))
     throw InputError(one_line(fmt::format("{}: is a folder, not a scene file or VDB", path)));
   if (fs::is_character_file(path, error))
     throw InputError(one_line(path + ": is a device, not a scene file or VDB"));
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw InputError(one_line(path + ": cannot be opened: no permission to read it"));
-  std::string text, chunk(1 << 16, '\0');
-  while (text.size() <= longest_scene_file &&
-         (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) ||
-          stream.gcount() > 0))
-    text.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > longest_scene_file)
-    throw InputError(one_line(fmt::format("{}: is too large for a scene file", path)));
+  std::string text = read_text(path, longest_scene_file);
   for (const auto& [magic, kind] :
        {std::pair("\x76\x2f\x31\x01", "an OpenEXR picture"), std::pair("\x89PNG", "a PNG picture"),
         std::pair("#?RADIANCE", "a Radiance picture")})
@@ -109,6 +100,15 @@ bool lists(const std::string& list, const std::string& name) {
   return ("," + bare + ",").find("," + name + ",") != std::string::npos;
 }
 
+/// Calls visit(key, index, path) for each file of a frame's scene.
+template <class Visit>
+void for_each_file(const Scene& scene, const Visit& visit) {
+  for (const SceneKey& key : scene_keys())
+    for (std::size_t i = 0; key.kind == KeyKind::file && i < section_count(scene, key.section); ++i)
+      if (const std::string path = std::get<std::string>(key.get(scene, i)); !path.empty())
+        visit(key, i, path);
+}
+
 /// The camera moves and all that it sees stands still: photons can serve many frames
 /// (docs/sequences.md) if they do not depend on the view.
 bool only_camera_moves(const toml::table& root) {
@@ -125,14 +125,16 @@ bool is_vdb_file(const std::string& path) {
   const std::string extension = lower_case(fs::path(path).extension().string());
   if (extension == ".vdb")
     return true;
-  char magic[4] = {};
-  std::ifstream(path, std::ios::binary).read(magic, 4);
-  return std::string_view(magic, 4) == " BDV";
+  try {
+    return read_start(path, 4) == " BDV";
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 SceneDocument::SceneDocument(const std::string& path, const std::vector<Override>& overrides)
     : path_(path), folder_(fs::path(path).parent_path()) {
-  if (std::error_code error; !fs::exists(path, error) && vdbeam::frames_on_disk(path).empty())
+  if (!is_there(path) && vdbeam::frames_on_disk(path).empty())
     throw InputError(missing_file_text(path));
   if (is_vdb_file(path)) {
     const Scene scene = make_default_scene(path, wishes_of(overrides));
@@ -140,7 +142,7 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
     root_ = parse_toml(scene_text(scene, fs::path(path).filename().string()),
                        path + " (default scene)");
   } else {
-    root_ = parse_toml(read_text(path), path);
+    root_ = parse_toml(read_scene_text(path), path);
   }
   for (const Override& entry : overrides)
     apply_override(root_, entry);
@@ -151,6 +153,7 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
     return SceneReader(path_, folder_, *camera_file_, moment, missing).read(root_);
   };
   Scene scene = at(frame);
+  check_named_files(scene);
   add_moments(scene, is_animated(root_) || !scene.camera.file.empty(),
               [&](double time) { return at(FrameTime(frame.number, time)); });
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
@@ -172,18 +175,25 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
 }
 
 std::vector<SceneFile> SceneDocument::files() const {
-  std::vector<SceneFile> files;
-  for (const auto& [list_name, key] :
-       {std::pair("volume", "file"), std::pair("mesh", "file"), std::pair("light", "image")}) {
-    const auto* list = root_.get_as<toml::array>(list_name);
-    for (std::size_t i = 0; list && i < list->size(); ++i)
-      if (const auto* table = (*list)[i].as_table())
-        if (const auto* file = table->get_as<std::string>(key))
-          files.push_back({fmt::format("{}.{}.{}", list_name, i, key),
-                           is_override(*file) ? file->get() : (folder_ / file->get()).string(),
-                           location_of(*file)});
-  }
-  return files;
+  return scene_files(root_, folder_);
+}
+
+std::string SceneDocument::where(const std::string& key) const {
+  for (const SceneFile& file : files())
+    if (file.key == key)
+      return fmt::format("{}: {}: ", file.location, key);
+  return "";
+}
+
+/// Of the files that the scene names; those themselves were checked as they were read.
+void SceneDocument::check_named_files(const Scene& scene) const {
+  for_each_file(scene, [&](const SceneKey& key, std::size_t index, const std::string& path) {
+    try {
+      check_named_inputs(key.input, path);
+    } catch (const InputError& error) {
+      throw InputError(where(key_path(key, index)) + error.what());
+    }
+  });
 }
 
 std::string SceneDocument::who_names(std::size_t volume, const std::string& line) const {
@@ -209,29 +219,22 @@ std::string SceneDocument::who_names(std::size_t volume, const std::string& line
 }
 
 std::string SceneDocument::whose_file(const Scene& scene, const std::string& line) const {
-  std::string key;
-  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-    if (const std::string file = scene.volumes[i].file + ":";
-        key.empty() && line.starts_with(file)) {
-      if (const std::string grid = who_names(i, line.substr(file.size())); !grid.empty())
-        return grid;
-      key = fmt::format("volume.{}.file", i);
-    }
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (key.empty() && !scene.lights[i].image.empty() &&
-        line.starts_with(scene.lights[i].image + ":"))
-      key = fmt::format("light.{}.image", i);
-  if (is_vdb_file(path_))
-    return "";
-  for (const SceneFile& file : files())
-    if (file.key == key)
-      return fmt::format("{}: {}: ", file.location, key);
-  return "";
+  std::string whose, grid;
+  for_each_file(scene, [&](const SceneKey& key, std::size_t index, const std::string& path) {
+    if (!whose.empty() || !line.starts_with(path + ":"))
+      return;
+    whose = key_path(key, index);
+    if (key.input == InputKind::volume)
+      grid = who_names(index, line.substr(path.size() + 1));
+  });
+  if (!grid.empty())
+    return grid;
+  return is_vdb_file(path_) ? "" : where(whose);
 }
 
 std::string SceneDocument::first_pattern() const {
   for (const SceneFile& file : files())
-    if (vdbeam::has_frame_pattern(file.pattern))
+    if (file.input != InputKind::camera && vdbeam::has_frame_pattern(file.pattern))
       return file.pattern;
   return "";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scene/overrides.h"
+#include "scene/scene_inputs.h"
 #include "scene/scene_reader.h"
 #include "vdbeam/scene.h"
 
@@ -11,13 +12,6 @@
 #include <vector>
 
 namespace vdbeam {
-
-/// A file that a scene reads.
-struct SceneFile {
-  std::string key;      ///< "volume.0.file"
-  std::string pattern;  ///< its path, with the placeholder of the frame number
-  std::string location; ///< "scene.toml:12", or the option that gives it
-};
 
 /// A scene file, or what stands for it for a bare VDB, from which the scene of each frame is made.
 class SceneDocument {
@@ -34,7 +28,7 @@ public:
   /// Frames of which the first file with a frame pattern exists.
   std::vector<int> frames_on_disk() const;
 
-  /// Every volume and image that the scene names.
+  /// Every file that the scene names by a key.
   std::vector<SceneFile> files() const;
 
   /// What is in front of a line about a file of this frame's scene: "scene.toml:12: volume.0.file:
@@ -44,6 +38,9 @@ public:
 
 private:
   std::string first_pattern() const;
+  /// "scene.toml:12: volume.0.file: "
+  std::string where(const std::string& key) const;
+  void check_named_files(const Scene& scene) const;
   /// Of the first name in quotes; empty where no key of the volume that the user wrote holds it.
   std::string who_names(std::size_t volume, const std::string& line) const;
 

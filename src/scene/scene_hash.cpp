@@ -1,11 +1,11 @@
 #include "estimators/plane_layers.h"
 #include "geometry/gltf_files.h"
+#include "machine/input_file.h"
 #include "scene/content_hash.h"
-#include "scene/scene_keys.h"
+#include "scene/scene_inputs.h"
 #include "vdbeam/scene_file.h"
 
 #include <bit>
-#include <filesystem>
 #include <fmt/format.h>
 
 namespace vdbeam {
@@ -31,10 +31,11 @@ void add(ContentHash& hash, const KeyValue& value) {
 }
 
 /// A file with those that it names.
-void add_file(ContentHash& hash, const std::string& path) {
+void add_file(ContentHash& hash, InputKind kind, const std::string& path) {
+  check_input(kind, path);
   hash.add_number(hash_file(path));
   for (const std::string& file : gltf_files(path))
-    if (std::filesystem::is_regular_file(file))
+    if (is_there(file)) // a picture that no mesh needs may be missing
       hash.add_number(hash_file(file));
 }
 
@@ -61,7 +62,7 @@ std::string hash_scene(const Scene& scene, bool with_stop_rule) {
       if (absent)
         hash.add_number(0);
       else if (key.kind == KeyKind::file && !std::get<std::string>(value).empty())
-        add_file(hash, std::get<std::string>(value));
+        add_file(hash, key.input, std::get<std::string>(value));
       else
         add(hash, value);
     }

@@ -41,6 +41,7 @@ struct KeyEntry {
 
   KeyEntry& unit(std::string text) { return set(key.unit, std::move(text)); }
   KeyEntry& kind(KeyKind k) { return set(key.kind, k); }
+  KeyEntry& file(InputKind input) { return set(key.kind, KeyKind::file).set(key.input, input); }
   KeyEntry& types(std::vector<std::string> t) { return set(key.types, std::move(t)); }
   KeyEntry& absent(std::string word) { return set(key.absent_word, std::move(word)); }
   KeyEntry& required() { return set(key.required, true); }

@@ -18,7 +18,7 @@ void add_volume(KeyTable& table) {
   using V = VolumeSettings;
   table.section(SceneSection::volume);
   table.add("file", &V::file, "the VDB; ####, %04d or $F4 stands for the frame number")
-      .kind(KeyKind::file)
+      .file(InputKind::volume)
       .required();
   table.add("density", &V::density, "name of the density grid").always_written();
   table.add("extinction", &V::extinction, "extinction coefficient where the density is 1")
@@ -122,7 +122,7 @@ void add_mesh(KeyTable& table) {
             "triangles of a file, or a shape: the sphere of radius 1 about the origin, the square "
             "from -1 to 1 in x and y, the disk of radius 1 in that plane; the latter two face +z");
   table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
-      .kind(KeyKind::file)
+      .file(InputKind::mesh)
       .types({"file"});
   table
       .add("file_normals", &S::file_normals,
@@ -152,7 +152,7 @@ void add_mesh(KeyTable& table) {
       .add(
           "texture", &M::texture,
           "EXR, HDR or PNG picture, by the surface's UV, that albedo or radiance are multiplied by")
-      .kind(KeyKind::file)
+      .file(InputKind::picture)
       .types({"diffuse", "shadow_catcher", "emissive"});
   table.add("texture_wrap", &M::texture_wrap, "what the texture shows beyond its edges")
       .types({"diffuse", "shadow_catcher", "emissive"});
@@ -212,7 +212,7 @@ void add_light(KeyTable& table) {
       .unit("W / m^2 / sr")
       .at_least(0);
   table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
-      .kind(KeyKind::file);
+      .file(InputKind::picture);
   table.add("rotation", &L::rotation, "turns the sky about the camera's up axis").unit("degrees");
   table.add("visible", &L::visible,
             "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");

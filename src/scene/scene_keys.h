@@ -39,6 +39,9 @@ enum class KeyKind {
   matrix
 };
 
+/// What a key of the kind `file` names.
+enum class InputKind { none, volume, picture, mesh, camera };
+
 /// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a
 /// boolean), a number, a text or choice, or a list of numbers.
 using KeyValue =
@@ -63,6 +66,7 @@ struct SceneKey {
   SceneSection section;
   std::string name;
   KeyKind kind;
+  InputKind input = InputKind::none; ///< of the kind `file`: which files
   std::string unit;
   NumberRange range;
   std::vector<std::string> choices;

@@ -1,5 +1,6 @@
 #include "scene/scene_reader.h"
 
+#include "machine/input_file.h"
 #include "scene/animation.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
@@ -250,12 +251,18 @@ std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
     number = *mapped;
   }
   std::string file = substitute_frame(pattern, number);
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (fs::exists(status) && !fs::is_directory(status))
-    return file;
   const std::string path = key_path(key, index);
-  if (fs::is_directory(status))
+  std::error_code error;
+  const bool is_folder = fs::is_directory(file, error);
+  if (!is_folder && is_there(file)) {
+    try {
+      check_input_file(file, EmptyFile::accepted);
+    } catch (const InputError& problem) {
+      throw InputError(fmt::format("{}: {}: {}", location_of(node), path, problem.what()));
+    }
+    return file;
+  }
+  if (is_folder)
     throw InputError(one_line(fmt::format("{}: {}: there is no file {}, which is a folder",
                                           location_of(node), path, file)));
   if (key.section == SceneSection::volume && missing_ == MissingFile::black &&

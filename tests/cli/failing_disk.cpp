@@ -1,8 +1,9 @@
 // Preloaded into vdbeam by failing_disk_test.py and tools/attack.
 // VDBEAM_TEST_FAULT, "FUNCTION ERRNO WORD", lets one function of the C library fail on output
 // files, as a full disk or a lost network mount would: files whose names hold WORD and end in
-// ".tmp". VDBEAM_TEST_KILL, "N FOLDER", kills the process before the N-th call that concerns a file
-// in FOLDER; VDBEAM_TEST_CALLS names a file that lists those calls.
+// ".tmp". An ERRNO of -1 makes the call say so on stderr and never return. VDBEAM_TEST_KILL,
+// "N FOLDER", kills the process before the N-th call that concerns a file in FOLDER;
+// VDBEAM_TEST_CALLS names a file that lists those calls.
 #include <atomic>
 #include <cerrno>
 #include <climits>
@@ -33,7 +34,15 @@ int fault(const char* function, const std::string& path) {
   if (!wanted || std::sscanf(wanted, "%31s %d %127s", name, &error, word) != 3 ||
       std::strcmp(name, function) != 0)
     return 0;
-  return is_output(path, word) ? error : 0;
+  if (!is_output(path, word))
+    return 0;
+  if (error == -1) {
+    const char text[] = "waiting\n";
+    if (::write(STDERR_FILENO, text, sizeof text - 1) > 0)
+      while (true)
+        ::pause();
+  }
+  return error;
 }
 
 std::string path_of(int descriptor) {

@@ -9,9 +9,11 @@ import errno
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 VDBEAM, SHIM = os.environ["VDBEAM_BINARY"], os.environ["VDBEAM_FAILING_DISK"]
@@ -40,6 +42,24 @@ class FailingDisk(unittest.TestCase):
             [VDBEAM, "render", str(SMOKE), "-o", f"{self.folder}/{output}", "--passes", str(passes),
              "--resolution", "16x9", "--set", "render.photons=500", "--threads", "1", *more],
             env=environment, capture_output=True, text=True, check=False)
+
+    def test_second_signal_kills(self):
+        """A disk that never answers cannot be interrupted."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            environment = {**os.environ, "LD_PRELOAD": SHIM, "VDBEAM_TEST_FAULT": "fsync -1 out.exr",
+                           "ASAN_OPTIONS": "verify_asan_link_order=0"}
+            with subprocess.Popen([VDBEAM, "render", str(SMOKE), "-o", f"{self.folder}/out.exr", "--passes", "1",
+                                   "--resolution", "16x9", "--set", "render.photons=500", "-q"],
+                                  env=environment, stderr=subprocess.PIPE, text=True) as process:
+                self.assertEqual(process.stderr.readline(), "waiting\n")
+                process.send_signal(number)
+                time.sleep(0.6)
+                self.assertIsNone(process.poll())
+                while process.poll() is None:  # signals that come too close to each other count as one
+                    process.send_signal(number)
+                    time.sleep(0.05)
+                self.assertEqual(process.returncode, -number)
+                self.assertNotIn("out.exr", self.names())
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())

@@ -1,5 +1,9 @@
 #include "cli_fixture.h"
 
+#include "report/frame_files.h"
+#include "scene/scene_keys.h"
+#include "vdbeam/image_file.h"
+
 #include <nlohmann/json.hpp>
 
 namespace vdbeam {
@@ -110,6 +114,116 @@ TEST_F(FileClaims, OtherCommandsKeepToItToo) {
                  "the partial image a.exr");
   expect_refused({"merge", "-o", "b.exr", "--partial", "b.exr", "a.exr"}, "--partial b.exr",
                  "-o b.exr");
+}
+
+/// Every key that names a file against every output that a render has: the tables know them.
+TEST_F(FileClaims, NoOutputReplacesAFileThatAKeyNames) {
+  int keys = 0;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.kind != KeyKind::file)
+      continue;
+    ++keys;
+    EXPECT_NE(key.input, InputKind::none) << key_path(key, 0);
+    for (const OutputKind& kind : output_kinds()) {
+      FrameFiles given{.output = "o.exr"};
+      given.*kind.option = "given.exr";
+      const std::string victim = output_path(given, kind.output, 1);
+      const std::string bytes = "the bytes of " + victim;
+      write(victim, bytes);
+      Names words{"render", "s.toml", "-f",         "1",     "--passes",
+                  "1",      "-o",     given.output, "--set", key_path(key, 0) + "=" + victim};
+      if (kind.option != &FrameFiles::output)
+        words.insert(words.end(), {kind.name, "given.exr"});
+      expect_refused(words, kind.name + std::string(" ") + victim, key_path(key, 0));
+      EXPECT_EQ(read(victim), bytes);
+      fs::remove(folder_ / victim);
+    }
+  }
+  EXPECT_GE(keys, 5);
+}
+
+TEST_F(FileClaims, WhatFilesNameIsAnInputToo) {
+  write("b.bin", "numbers");
+  write("m.gltf", R"({"buffers": [{"uri": "b.bin", "byteLength": 7}]})");
+  write("m.mtl", "newmtl a");
+  write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_render_refused({"--summary", "b.bin", "--set", "mesh.0.file=m.gltf"}, "--summary b.bin",
+                        "mesh.0.file");
+  expect_render_refused({"--summary", "b.bin", "--set", "camera.file=m.gltf"}, "--summary b.bin",
+                        "camera.file");
+  expect_render_refused({"--summary", "m.mtl", "--set", "mesh.0.file=m.obj"}, "--summary m.mtl",
+                        "mesh.0.file");
+  write("config.ocio", "ocio_profile_version: 2");
+  setenv("OCIO", file("config.ocio").c_str(), 1);
+  expect_render_refused({"--summary", "config.ocio"}, "--summary config.ocio", "OCIO");
+  unsetenv("OCIO");
+}
+
+TEST_F(FileClaims, MergeKeepsItsPartials) {
+  const auto part = [&](const char* range, const char* name) {
+    return render({cloud_vdb, "--pass-range", range, "-o", name, "-q"}).code;
+  };
+  ASSERT_EQ(part("0", "shot.deep.exr"), 0);
+  ASSERT_EQ(part("1", "p1.exr"), 0);
+  expect_refused({"merge", "-o", "shot.exr", "shot.deep.exr", "p1.exr"}, "the deep picture of -o",
+                 "the partial image shot.deep.exr");
+}
+
+TEST_F(FileClaims, FarmReplacesOnlyItsOwnJobFiles) {
+  const Names farm{"farm", "slurm", "s.toml", "-f", "1-2", "-o", "o.####.exr", "--passes", "4"};
+  const auto with_job = [&](const std::string& name) {
+    Names words = farm;
+    words.insert(words.end(), {"--job", name});
+    return words;
+  };
+  ASSERT_EQ(run(with_job("job.sh")).code, 0);
+  const auto again = run(with_job("job.sh"));
+  EXPECT_EQ(again.code, 0) << again.error;
+  EXPECT_NE(again.error.find("job.sh: the job file that was there is replaced"), std::string::npos)
+      << again.error;
+  write("job.sh", read("job.sh") + "# by hand\n");
+  expect_refused(with_job("job.sh"), "job.sh", "has been changed since vdbeam farm wrote it");
+  expect_refused(with_job("sky.exr"), "sky.exr", "is no job file by vdbeam farm");
+  Names openjd = with_job("job.json");
+  openjd[1] = "openjd";
+  EXPECT_EQ(run(openjd).code, 0);
+  EXPECT_EQ(run(openjd).code, 0);
+}
+
+/// What has the name of a checkpoint or snapshot is not always one.
+TEST_F(FileClaims, SideFilesOfOthersStay) {
+  for (const char* name : {"a.snapshot.exr", "b.checkpoint.exr"})
+    fs::copy_file(folder_ / "sky.exr", folder_ / name);
+  const std::string sky = read("sky.exr");
+  ASSERT_EQ(render({cloud_vdb, "-o", "a.exr", "--passes", "1", "-q"}).code, 0);
+  EXPECT_EQ(read("a.snapshot.exr"), sky);
+  ASSERT_EQ(render({cloud_vdb, "-o", "a.exr", "--passes", "1", "-q", "--skip-existing"}).code, 0);
+  EXPECT_EQ(read("a.snapshot.exr"), sky);
+  expect_refused({"render", cloud_vdb, "-o", "b.exr", "--passes", "1"},
+                 "b.checkpoint.exr: is no checkpoint by vdbeam", "-o b.exr needs its name");
+  // A planted link leads nowhere.
+  fs::create_symlink("sky.exr", folder_ / "c.checkpoint.exr");
+  expect_refused({"render", cloud_vdb, "-o", "c.exr", "--passes", "1"},
+                 "c.checkpoint.exr: is a link", "-o c.exr");
+  EXPECT_EQ(read("sky.exr"), sky);
+  // Nothing is lost with what is empty, and a partial image begins a frame.
+  write("d.checkpoint.exr", "");
+  EXPECT_EQ(render({cloud_vdb, "-o", "d.exr", "--passes", "1", "-q"}).code, 0);
+  ASSERT_EQ(render({cloud_vdb, "-o", "e.checkpoint.exr", "--pass-range", "0", "-q"}).code, 0);
+  EXPECT_EQ(render({cloud_vdb, "-o", "e.exr", "--passes", "1", "-q"}).code, 0);
+  EXPECT_FALSE(exists("e.checkpoint.exr"));
+}
+
+TEST_F(FileClaims, NamesThatAreTooLongAreRefusedBeforeRendering) {
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    const auto result = render({cloud_vdb, "--passes", "1", "-o", name});
+    EXPECT_EQ(result.code, 2) << result.error;
+    EXPECT_EQ(result.error_lines(), 1u) << result.error;
+    EXPECT_NE(result.error.find(text), std::string::npos) << result.error;
+  };
+  refused(std::string(260, 'x') + ".exr", "-o: a name of 264 bytes is too long, 255 are possible");
+  refused(std::string(245, 'x') + ".exr", "the checkpoint of -o: a name of 260 bytes is too long");
+  EXPECT_EQ(render({cloud_vdb, "--passes", "1", "-o", std::string(240, 'x') + ".exr"}).code, 0);
 }
 
 TEST_F(FileClaims, InputsMayBeTheSameFile) {

@@ -278,29 +278,6 @@ TEST_P(Interrupt, EndsWithinSecondsInsideAPass) {
   }
 }
 
-/// A reference that never comes cannot be interrupted; the second signal kills.
-TEST_P(Interrupt, SecondSignalKills) {
-  ASSERT_EQ(mkfifo(file("never.exr").c_str(), 0600), 0);
-  const pid_t child = start({"render", cloud, "--reference", "never.exr", "-o", "a.exr"});
-  int writer = -1; // can be opened once the child opens the other end, and keeps it waiting then
-  wait_until(child, [&] {
-    writer = open(file("never.exr").c_str(), O_WRONLY | O_NONBLOCK);
-    return writer >= 0;
-  });
-  kill(child, GetParam());
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));
-  EXPECT_FALSE(has_ended(child));
-  while (!has_ended(child)) { // signals that come too close to each other count as one
-    kill(child, GetParam());
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  const auto result = finish(child);
-  close(writer);
-  EXPECT_TRUE(result.killed);
-  EXPECT_EQ(result.code, 128 + GetParam());
-  EXPECT_EQ(files(), std::vector<std::string>{"never.exr"});
-}
-
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGTERM));
 
 } // namespace

@@ -25,7 +25,7 @@ TEST_F(Animation, LinearKeysHoldOutsideAndInterpolateInside) {
 
 /// An open shutter sees a frame at other times than its own.
 TEST_F(Animation, AFrameIsEvaluatedAtAnyOfItsTimes) {
-  write("s.0002.vdb", "two");
+  write("s.0002.vdb", " BDV two");
   const std::string text = "[[volume]]\nfile = 's.####.vdb'\n"
                            "extinction = { keys = [[1, 10], [5, 30]] }\n";
   const Scene scene = load(text, {}, {2, 2.75});
@@ -128,7 +128,7 @@ TEST_F(Animation, TimeChoosesTheFile) {
 }
 
 TEST_F(Animation, AClippedVolumeChangesTheHash) {
-  write("s.0001.vdb", "one");
+  write("s.0001.vdb", " BDV one");
   const std::string text =
       "[[volume]]\nfile = 's.####.vdb'\ntime = { out_of_range = 'clip' }\n[[light]]\ntype = "
       "'environment'\n";

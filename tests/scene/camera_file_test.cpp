@@ -213,7 +213,7 @@ TEST_F(CameraFileTest, TellsWhatIsWrong) {
   EXPECT_EQ(error("1 2 3\n"), "shot.cam:1: must hold frame, translation, rotation and field of "
                               "view (7 or 8 numbers), or a matrix (16, or 17 with the frame), got "
                               "3 numbers");
-  EXPECT_EQ(error("\n1 0 0 x 0 0 0\n"), "shot.cam:2: must hold numbers, got x");
+  EXPECT_EQ(error("\n1 0 0 x 0 0 0\n"), "shot.cam:2: must hold finite numbers and nothing else");
   EXPECT_EQ(error("2 0 0 0 0 0 0\n2 0 0 0 0 0 0\n"),
             "shot.cam:2: must have a greater frame number than the line before");
   EXPECT_EQ(error("1 0 0 0 0 0 0 200\n"),
@@ -221,6 +221,14 @@ TEST_F(CameraFileTest, TellsWhatIsWrong) {
   EXPECT_EQ(error("-1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1\n"),
             "shot.cam:1: must be a rotation (with scales above 0), neither mirrored nor flat");
   EXPECT_EQ(error("# nothing\n"), "shot.cam: holds no camera");
+  // A file that is no camera is not quoted, nor read for ever.
+  EXPECT_EQ(error("root:secret:19000\n"), "shot.cam:1: must hold finite numbers and nothing else");
+  EXPECT_EQ(error("1 0 0 1e999 0 0 0\n"), "shot.cam:1: must hold finite numbers and nothing else");
+  EXPECT_EQ(error("1 0 0 1e-310 0 0 0\n"), "");
+  EXPECT_EQ(error(std::string(100'000, '0')), "shot.cam:1: must have lines of at most 64 KiB");
+  std::filesystem::resize_file(file("shot.cam"), std::uintmax_t(20) << 30);
+  EXPECT_NE(error_of(scene_text).find("shot.cam: has 20.0 GiB, more than the 64 MiB"),
+            std::string::npos);
   write("shot.cam", "1 0 0 0 0 0 0\n");
   EXPECT_EQ(error_of("[camera]\nfile = \"shot.cam\"\nposition = [0, 0, 1]\n"),
             "s.toml:3: camera.position excludes camera.file, which says where the camera is");

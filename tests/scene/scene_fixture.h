@@ -30,7 +30,7 @@ protected:
   Scene load(const std::string& text, const std::vector<std::string>& overrides = {},
              const FrameTime& frame = {}) const {
     if (!std::filesystem::exists(file("cloud.vdb")))
-      write("cloud.vdb", "first");
+      write("cloud.vdb", " BDV first");
     return load_scene(write("s.toml", text), frame, overrides);
   }
   /// The message of the InputError that this text causes, without the folder's name; empty if none.

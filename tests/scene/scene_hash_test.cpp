@@ -55,7 +55,7 @@ TEST_F(SceneHash, EveryKeyThatChangesThePictureChangesIt) {
 
 TEST_F(SceneHash, NamesAndThreadsDoNotChangeIt) {
   const std::string hash = scene_hash(load(text));
-  write("copy.vdb", "first");
+  write("copy.vdb", " BDV first");
   EXPECT_EQ(scene_hash(load("# comment\n" + std::string(text),
                             {"render.threads=3", "volume.0.file=" + file("copy.vdb")})),
             hash);
@@ -63,7 +63,7 @@ TEST_F(SceneHash, NamesAndThreadsDoNotChangeIt) {
 
 TEST_F(SceneHash, ContentsOfTheVolumeChangeIt) {
   const std::string hash = scene_hash(load(text));
-  write("cloud.vdb", "First");
+  write("cloud.vdb", " BDV First");
   EXPECT_NE(scene_hash(load(text)), hash);
 }
 

@@ -52,6 +52,16 @@ class Checker(unittest.TestCase):
         self.refuses("include/vdbeam/a.h", "#pragma once\nnamespace tbb {}\n", "other library")
         self.accepts("include/vdbeam/a.h", "#pragma once\n#include <vector>\n// OpenVDB, tbb: words\n")
 
+    def test_one_door_for_inputs(self):
+        for line in ("std::ifstream file(path);", "std::FILE* f = std::fopen(path, \"r\");", "int d = ::open(path, 0);",
+                     "int d = open(path.c_str(), 0);"):
+            self.refuses("src/scene/a.cpp", line + "\n", "opened by machine/input_file")
+            self.accepts("src/machine/a.cpp", line + "\n")
+        self.accepts("src/cli/a.cpp", "const auto scene = options.open();\nSceneDocument open() const;\n")
+        opens = "Imf::InputFile file(path.c_str());\n"
+        self.refuses("src/image/a.cpp", opens, "has not checked")
+        self.accepts("src/image/a.cpp", "check_input_file(path);\n" + opens)
+
     def test_only_the_program_prints_and_exits(self):
         self.refuses("src/film/a.cpp", 'std::cerr << "x";\n', "prints")
         self.refuses("src/film/a.cpp", 'fmt::print("x");\n', "prints")

@@ -37,8 +37,8 @@ protected:
 
 TEST_F(ReadErrors, missing_and_unreadable_files) {
   EXPECT_EQ(refusal(folder_.file("no.vdb")), ": No such file or directory");
-  EXPECT_EQ(refusal("/tmp"), ": is not a regular file");
-  EXPECT_EQ(refusal("/dev/zero"), ": is not a regular file");
+  EXPECT_EQ(refusal("/tmp"), ": is a folder, not a regular file");
+  EXPECT_EQ(refusal("/dev/zero"), ": is a device, not a regular file");
   test::write_bytes(folder_.file("text.vdb"), "a text, not a volume");
   EXPECT_EQ(refusal(folder_.file("text.vdb")), ": is not a VDB file");
 }
