@@ -1,5 +1,6 @@
 #include "cli/batch_values.h"
 
+#include "film/film_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -38,11 +39,11 @@ std::optional<std::vector<int>> parse_numbers(const std::string& text, char sepa
 } // namespace
 
 PassRange parse_pass_range(const std::string& text) {
-  constexpr int most_passes = 1'000'000;
   const auto numbers = parse_numbers(text, '-');
   if (!numbers || numbers->empty() || numbers->size() > 2 || numbers->back() < numbers->front() ||
       numbers->back() >= most_passes)
-    fail("--pass-range", text, "look like 0-63: passes from 0, both ends included, below 1000000");
+    fail("--pass-range", text,
+         fmt::format("look like 0-63: passes from 0, both ends included, below {}", most_passes));
   return {numbers->front(), numbers->back()};
 }
 

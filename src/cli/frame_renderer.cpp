@@ -137,6 +137,10 @@ std::string FrameRenderer::why_no_part(const std::string& path, const LoadedFram
   if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame() ||
       info.passes != wanted)
     return "is of another scene, frame or pass range";
+  const ImageSettings& size = loaded.scene.image;
+  if (info.header.full_width != size.width || info.header.full_height != size.height ||
+      info.header.width > size.raster_width() || info.header.height > size.raster_height())
+    return "has another size";
   read_film(path, info); // all of it: the header does not tell a truncated file
   return "";
 }

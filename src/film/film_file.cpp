@@ -29,12 +29,11 @@ std::uint64_t parse_count(const std::string& text, const std::string& path) {
 std::vector<int> parse_passes(const std::string& text, const std::string& path) {
   try {
     const std::vector<int> passes = parse_frame_range(text);
-    if (passes.front() < 0)
-      fail_damaged(path);
-    return passes;
-  } catch (const InputError&) {
-    fail_damaged(path);
+    if (passes.front() >= 0 && passes.back() < most_passes)
+      return passes;
+  } catch (const InputError&) { // is no list of numbers
   }
+  fail_damaged(path);
 }
 
 /// The film's planes as the file names them.

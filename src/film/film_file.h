@@ -8,6 +8,10 @@
 
 namespace vdbeam {
 
+/// Passes are numbered from 0 to below this, in files as in --pass-range: merging lists all up to
+/// the last one.
+inline constexpr int most_passes = 1'000'000;
+
 /// What a film on disk belongs to.
 struct FilmFileInfo {
   Image header;           ///< windows and attributes of the picture, without channels

@@ -9,6 +9,8 @@
 #include <ImfIO.h>
 #include <fmt/format.h>
 
+#include <new>
+
 namespace vdbeam {
 
 /// OpenEXR's way into an AtomicFile.
@@ -40,13 +42,17 @@ void copy_attributes(const Imf::Header& header, Image& image);
 /// throws InputError for what is not a regular file.
 void check_attribute_sizes(const std::string& path);
 
-/// Runs OpenEXR and turns its errors into a `Failure` of one line.
+/// Runs OpenEXR and turns its errors into a `Failure` of one line; where memory runs out, into a
+/// FrameError.
 template <class Failure, class Body>
 auto with_exr(const std::string& path, const char* problem, const Body& body) {
   try {
     return body();
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw FrameError(path + ": there is not enough memory for its pixels; free some, or use a "
+                            "smaller picture");
   } catch (const std::exception& error) {
     throw Failure(fmt::format("{}: {}: {}", path, problem, one_line(error.what())));
   }

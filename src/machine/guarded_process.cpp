@@ -29,7 +29,15 @@ namespace vdbeam {
 
 namespace {
 
-enum class Outcome : std::uint32_t { done = 1, input_error, frame_error, no_memory, exception };
+enum class Outcome : std::uint32_t {
+  done = 1,
+  input_error,
+  frame_error,
+  no_memory,
+  no_room,
+  no_descriptors,
+  exception
+};
 
 /// The child's last words; small enough that a pipe takes them whole.
 struct Message {
@@ -51,16 +59,28 @@ int child_pipe = -1;
   ::_exit(written == sizeof message ? 0 : 1);
 }
 
+/// Whether the reader failed because no more files may be open (`ulimit -n`): what it had open
+/// still is, since nothing has been destroyed.
+bool lacks_descriptors() {
+  const Descriptor one_more(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  return one_more.get() < 0 && (errno == EMFILE || errno == ENFILE);
+}
+
 [[noreturn]] void report_exception() {
+  const bool no_descriptors = lacks_descriptors();
   try {
     std::rethrow_exception(std::current_exception());
   } catch (const InputError& error) {
     leave(Outcome::input_error, error.what());
+  } catch (const MemoryFileFull&) {
+    leave(Outcome::no_room, "");
   } catch (const FrameError& error) {
     leave(Outcome::frame_error, error.what());
   } catch (const std::bad_alloc&) {
     leave(Outcome::no_memory, "");
   } catch (const std::exception& error) {
+    if (no_descriptors)
+      leave(Outcome::no_descriptors, "");
     leave(Outcome::exception, error.what());
   } catch (...) {
     leave(Outcome::exception, "unknown");
@@ -215,6 +235,39 @@ std::string printable(std::string text) {
   return text;
 }
 
+/// What the user may change where the system refuses a process, a pipe or an open file.
+const char* remedy_for(int error) {
+  switch (error) {
+  case EMFILE:
+  case ENFILE:
+    return "; allow more open files (ulimit -n)";
+  case EAGAIN:
+    return "; allow more processes (ulimit -u)";
+  case ENOMEM:
+    return "; free some memory";
+  default:
+    return "";
+  }
+}
+
+[[noreturn]] void fail_to_start(const std::string& label, const char* what) {
+  const int error = errno;
+  throw FrameError(fmt::format("{}: cannot be read: {}: {}{}", label, what, std::strerror(error),
+                               remedy_for(error)));
+}
+
+/// What was read did not fit into the file in memory, which counts for `ulimit -f` too.
+[[noreturn]] void throw_no_room(const std::string& label, const GuardLimits& limits) {
+  rlimit own{};
+  if (::getrlimit(RLIMIT_FSIZE, &own) == 0 && own.rlim_max < limits.bytes)
+    throw FrameError(fmt::format("{}: reading needs files in memory of more than the {} bytes that "
+                                 "the limit on the size of files allows; raise it (ulimit -f)",
+                                 label, own.rlim_max));
+  throw FrameError(fmt::format("{}: reading gives more than {:.2f} GiB; the file is corrupt, or "
+                               "larger than the limit",
+                               label, static_cast<double>(limits.bytes) / (1 << 30)));
+}
+
 [[noreturn]] void throw_failure(const std::string& label, const GuardLimits& limits,
                                 const std::optional<Message>& message, bool died, int status) {
   const double gib = static_cast<double>(limits.bytes) / (1 << 30);
@@ -237,6 +290,11 @@ std::string printable(std::string text) {
     throw InputError(text);
   case Outcome::frame_error:
     throw FrameError(text);
+  case Outcome::no_room:
+    throw_no_room(label, limits);
+  case Outcome::no_descriptors:
+    throw FrameError(
+        fmt::format("{}: cannot be read: {}{}", label, std::strerror(EMFILE), remedy_for(EMFILE)));
   case Outcome::no_memory:
     throw FrameError(fmt::format("{}: reading needs more than {:.2f} GiB; the file is corrupt, or "
                                  "larger than the limit",
@@ -252,16 +310,17 @@ std::string printable(std::string text) {
 MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
                        const std::function<void(int)>& work) {
   const Descriptor output = create_memory_file();
+  if (output.get() < 0)
+    fail_to_start(label, "no file in memory");
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw FrameError(fmt::format("{}: cannot make a pipe: {}", label, std::strerror(errno)));
+    fail_to_start(label, "no pipe to its reader");
   Descriptor read_end(ends[0]), write_end(ends[1]);
 
   const pid_t parent = ::getpid();
   const pid_t id = ::fork();
   if (id < 0)
-    throw FrameError(
-        fmt::format("{}: cannot start a reader process: {}", label, std::strerror(errno)));
+    fail_to_start(label, "no process to read it in");
   if (id == 0) {
     child_work = &work;
     child_output = output.get();

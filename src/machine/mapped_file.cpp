@@ -26,10 +26,7 @@ Descriptor::~Descriptor() {
 }
 
 Descriptor create_memory_file() {
-  Descriptor file(::memfd_create("vdbeam-grid", MFD_CLOEXEC));
-  if (file.get() < 0)
-    fail("cannot create a file in memory");
-  return file;
+  return Descriptor(::memfd_create("vdbeam-grid", MFD_CLOEXEC));
 }
 
 void write_all(int descriptor, const void* bytes, std::size_t count) {
@@ -38,6 +35,8 @@ void write_all(int descriptor, const void* bytes, std::size_t count) {
     const ssize_t written = ::write(descriptor, next, count);
     if (written < 0 && errno == EINTR)
       continue;
+    if (written < 0 && errno == EFBIG)
+      throw MemoryFileFull("a file in memory may not grow as far as needed");
     if (written <= 0)
       fail("cannot keep the grid in memory");
     next += written;

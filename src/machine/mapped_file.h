@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vdbeam/error.h"
+
 #include <cstddef>
 #include <utility>
 
@@ -52,10 +54,17 @@ private:
   int number_;
 };
 
-/// Creates an empty memory file. Throws FrameError.
+/// Creates an empty memory file; the descriptor is negative, and errno set, where the system
+/// refuses.
 Descriptor create_memory_file();
 
-/// Writes all bytes; throws FrameError where the file may not grow (a limit) or memory is short.
+/// A file has reached the limit on its size (RLIMIT_FSIZE).
+struct MemoryFileFull : FrameError {
+  using FrameError::FrameError;
+};
+
+/// Writes all bytes; throws MemoryFileFull where the file may not grow, FrameError where memory is
+/// short.
 void write_all(int descriptor, const void* bytes, std::size_t count);
 
 } // namespace vdbeam

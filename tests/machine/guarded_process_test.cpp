@@ -8,8 +8,11 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <fcntl.h>
 #include <new>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
@@ -103,11 +106,56 @@ TEST(GuardedProcess, memory_is_limited) {
   EXPECT_EQ(failure(ample, grow), "label: reading needs more than 0.06 GiB; the file is corrupt, "
                                   "or larger than the limit");
   const std::string block(mib, 'x');
-  const std::string line = failure(ample, [&](int output) {
-    for (;;)
-      write_all(output, block.data(), block.size());
-  });
-  EXPECT_NE(line.find("File too large"), line.npos) << line;
+  EXPECT_EQ(
+      failure(ample,
+              [&](int output) {
+                for (;;)
+                  write_all(output, block.data(), block.size());
+              }),
+      "label: reading gives more than 0.06 GiB; the file is corrupt, or larger than the limit");
+}
+
+/// Runs in a process of its own, since a lowered limit stays: a limit of `ulimit`, and the line in
+/// which it ends.
+std::string failure_under(int resource, rlim_t most, const std::function<void(int)>& work) {
+  const Descriptor answer = create_memory_file();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit limit{most, most};
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+    std::string line = "no error";
+    try {
+      run_guarded("label", ample, work);
+    } catch (const std::exception& error) {
+      line = error.what();
+    }
+    ::_exit(::write(answer.get(), line.data(), line.size()) < 0 ? 1 : 0);
+  }
+  ::waitpid(child, nullptr, 0);
+  const MappedFile file(answer.get());
+  return {reinterpret_cast<const char*>(file.data()), file.size()};
+}
+
+TEST(GuardedProcess, limits_of_the_shell_are_named) {
+  EXPECT_EQ(
+      failure_under(RLIMIT_FSIZE, 1000,
+                    [](int output) {
+                      const std::string bytes(2000, 'x');
+                      write_all(output, bytes.data(), bytes.size());
+                    }),
+      "label: reading needs files in memory of more than the 1000 bytes that the limit on the "
+      "size of files allows; raise it (ulimit -f)");
+  const auto open_many = [](int) {
+    while (::open("/dev/null", O_RDONLY) >= 0) {
+    }
+    throw std::runtime_error("cannot open the file"); // as OpenVDB puts it
+  };
+  EXPECT_EQ(failure_under(RLIMIT_NOFILE, 64, open_many),
+            "label: cannot be read: Too many open files; allow more open files (ulimit -n)");
+  EXPECT_EQ(failure_under(RLIMIT_NOFILE, 3, [](int) {}),
+            "label: cannot be read: no file in memory: Too many open files; allow more open files "
+            "(ulimit -n)");
 }
 
 TEST(GuardedProcess, interrupts_are_the_parents_affair) {

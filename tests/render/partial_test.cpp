@@ -8,6 +8,7 @@
 #include "vdbeam/scene_file.h"
 
 #include <cstring>
+#include <limits>
 
 namespace vdbeam {
 namespace {
@@ -97,6 +98,22 @@ TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
   // Only the stop rule differs: they are passes of one picture.
   const std::string longer = render_range(2, 3, small_cloud({"render.passes=64"}));
   EXPECT_TRUE(error_of({a, longer}).empty());
+}
+
+/// A pass that no --pass-range could name: a list of all passes up to it would take gigabytes.
+TEST_F(Partial, PassesOfFilesAreBoundedLikeThoseOfOptions) {
+  const std::string path = render_range(0, 0), far = folder_.file("far.exr");
+  FilmFileInfo info = read_film_info(path);
+  Film film = read_film(path, info);
+  for (const int pass : {std::numeric_limits<int>::max(), most_passes}) {
+    info.passes = {pass};
+    write_film(info, film, far);
+    EXPECT_EQ(error_of({far}),
+              far + ": is a damaged partial image; delete it and render its passes again");
+  }
+  info.passes = {most_passes - 1};
+  write_film(info, film, far);
+  EXPECT_TRUE(error_of({far}, {true, std::nullopt, "", ""}).empty());
 }
 
 /// Confines this machine to a SIMD target without fused multiply-add, as an old one would have.
