@@ -1,7 +1,9 @@
 #include "cli/batch.h"
 
+#include "cli/heartbeat.h"
 #include "cli/signals.h"
 #include "cli/streams.h"
+#include "cli/terminal.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "text/frame_range.h"
@@ -15,6 +17,8 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
+#include <unistd.h>
 
 namespace vdbeam::cli {
 namespace {
@@ -86,6 +90,9 @@ std::future<Batch::Loaded> Batch::load_aside(int frame, const PreparedScenePtr& 
 }
 
 Batch::Loaded Batch::wait_for(std::future<Loaded>& future) const {
+  std::optional<Heartbeat> heartbeat;
+  if (!options_.frame.quiet && !is_smart_terminal(STDERR_FILENO))
+    heartbeat.emplace("reading the next frame, still working");
   while (future.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
     if (stop_requested()) {
       say("interrupted while a volume was read");

@@ -232,18 +232,28 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   context.reference = substitute_frame(files.reference, loaded.frame());
   context.second_reference = substitute_frame(files.second_reference, loaded.frame());
   const bool complete = result.stopped_by != "stop";
-  std::optional<FrameError> lost_preview;
+  std::optional<FrameError> lost;
+  const auto attempt = [&](const auto& write) { // of what is not worth an image
+    try {
+      write();
+    } catch (const FrameError& problem) {
+      lost = problem;
+    }
+  };
+  const auto write_report = [&] {
+    result.statistics.write = watch.seconds();
+    write_json_output(report_json(loaded.scene, result, context),
+                      path(Output::report, loaded.frame()));
+  };
   if (complete) {
     add_metadata(result.image, loaded, result);
-    // The image comes last, for it says that the frame is done; yet no preview is worth an image.
-    try {
-      write_preview(result.image, loaded.frame());
-    } catch (const FrameError& problem) {
-      lost_preview = problem;
-    }
+    // The image comes last, for it says that the frame is done.
+    attempt([&] { write_preview(result.image, loaded.frame()); });
     if (result.deep && !options_.pass_range)
       context.deep_bytes =
           write_deep_exr(*result.deep, result.image, path(Output::deep, loaded.frame()));
+    if (!files.report.empty() && !is_stdout(files.report))
+      attempt(write_report);
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
     if (!result.quick_look)
@@ -255,12 +265,10 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   } else if (options_.early_preview) {
     write_preview(result.image, loaded.frame()); // the quick look has served its time
   }
-  result.statistics.write = watch.seconds();
   if (!files.report.empty())
-    write_json_output(report_json(loaded.scene, result, context),
-                      path(Output::report, loaded.frame()));
-  if (lost_preview)
-    throw *lost_preview;
+    write_report(); // once more, with the time that writing the image took
+  if (lost)
+    throw *lost;
 }
 
 void FrameRenderer::write_black(const LoadedFrame& loaded) const {

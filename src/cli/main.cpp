@@ -30,8 +30,8 @@ Exit codes:
   1    a defect in vdbeam
   2    bad input: an option, a scene file or an image; one line says what and where
   3    a frame failed: unreadable volume, full disk, not enough memory
-  130  interrupted (SIGINT), 143 terminated (SIGTERM): the passes so far are in a checkpoint;
-       a second signal ends the program at once)";
+  130  interrupted (SIGINT), 143 terminated (SIGTERM), 129 hung up (SIGHUP): the passes so far
+       are in a checkpoint; a second signal ends the program at once)";
 
 std::string version_text() {
   std::string text;

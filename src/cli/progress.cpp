@@ -12,7 +12,6 @@
 namespace vdbeam::cli {
 namespace {
 
-constexpr std::chrono::seconds heartbeat_interval{10};
 constexpr std::chrono::milliseconds redraw_interval{100};
 /// Erases from the beginning of the line to the end of the screen.
 constexpr const char* erase_line = "\r\x1b[J";
@@ -103,17 +102,28 @@ void Progress::clear_bar() {
 void Progress::start(const std::string& text) {
   line(text);
   last_ = Clock::now();
+  if (!quiet_ && !terminal_)
+    heartbeat_.emplace(still_working("no pass yet"));
+}
+
+std::string Progress::still_working(const std::string& text) const {
+  return fmt::format("{}{}{}, still working", title_, title_.empty() ? "" : ": ", text);
 }
 
 void Progress::pass(const PassRecord& record) {
   const auto now = Clock::now();
+  if (heartbeat_)
+    heartbeat_->set(still_working(describe(record, settings_)));
   const bool due =
       terminal_ ? !bar_shown_ || now - last_ >= redraw_interval : now - last_ >= heartbeat_interval;
   if (quiet_ || !due)
     return;
   last_ = now;
-  if (!terminal_)
+  if (!terminal_) {
+    if (heartbeat_)
+      heartbeat_->begin_anew();
     return line(describe(record, settings_));
+  }
   // The cursor waits at the bar's beginning: a terminal that is made narrower wraps the bar and
   // keeps the cursor there, so all of it is still erased.
   log_text(fmt::format("{}{}\r", erase_line,
@@ -126,6 +136,7 @@ void Progress::note(const std::string& text) {
 }
 
 void Progress::finish(const std::string& text) {
+  heartbeat_.reset();
   line(text);
 }
 

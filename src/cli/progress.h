@@ -1,8 +1,10 @@
 #pragma once
 
+#include "cli/heartbeat.h"
 #include "vdbeam/render.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace vdbeam::cli {
@@ -54,12 +56,14 @@ private:
 
   void line(const std::string& text);
   void clear_bar();
+  std::string still_working(const std::string& text) const;
 
   std::string title_;
   RenderSettings settings_;
   bool quiet_, terminal_;
   bool bar_shown_ = false;
   Clock::time_point last_;
+  std::optional<Heartbeat> heartbeat_; ///< where lines are wanted: for passes that take long
 };
 
 } // namespace vdbeam::cli

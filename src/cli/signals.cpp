@@ -10,7 +10,7 @@ namespace {
 std::atomic<bool> stop{false};
 std::atomic<bool> snapshot{false};
 std::atomic<int> received{0};
-std::atomic<std::int64_t> received_at{0}; ///< milliseconds
+std::atomic<std::int64_t> received_at{0}; ///< milliseconds; 0: never
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
               std::atomic<std::int64_t>::is_always_lock_free);
 
@@ -21,7 +21,7 @@ constexpr std::int64_t same_signal = 500;
 std::int64_t milliseconds_now() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
+  return 1 + std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
 }
 
 extern "C" void on_signal(int number) {
@@ -29,10 +29,11 @@ extern "C" void on_signal(int number) {
     snapshot = true;
     return;
   }
+  // The time decides who came first, so that no thread finds a first signal without its time.
   const std::int64_t now = milliseconds_now();
-  int none = 0;
-  if (received.compare_exchange_strong(none, number)) {
-    received_at = now;
+  std::int64_t never = 0;
+  if (received_at.compare_exchange_strong(never, now)) {
+    received = number;
     stop = true;
   } else if (now - received_at > same_signal) {
     std::signal(number, SIG_DFL);
@@ -43,7 +44,7 @@ extern "C" void on_signal(int number) {
 } // namespace
 
 void handle_signals() {
-  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
     struct sigaction action {};
     sigaction(number, nullptr, &action);
     if (action.sa_handler == SIG_IGN)

@@ -13,8 +13,12 @@ namespace vdbeam::cli {
 void guard_standard_streams();
 
 /// Writes to the log, which is stderr. A log that is full, closed or broken loses lines; it never
-/// costs a frame.
+/// costs a frame. Nor does one that nobody reads, which loses them after a fifth of a second; once
+/// it is read again a line says how many are missing.
 void log_text(std::string_view text);
+
+/// The same for a signal handler: the line is lost where the log is in use or not ready at once.
+void log_from_signal(std::string_view line);
 
 /// One line for the log, whatever a library or a damaged file put in it.
 void log_line(std::string line);

@@ -4,6 +4,7 @@
 #include "estimators/kernel_pilot.h"
 #include "estimators/path.h"
 #include "estimators/tile_shading.h"
+#include "transport/similar_medium.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -74,6 +75,8 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
                      static_cast<std::uint64_t>(first_trial_pass + t)};
     image.resize(static_cast<int>(pixels.size()), 1, !input.world.medium.emitters.empty());
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+      if (in.stopped())
+        return;
       TileRays::PixelRay ray =
           TileRays::pixel_ray(in, key, static_cast<int>(pixels[i].pixel % width),
                               static_cast<int>(pixels[i].pixel / width));
@@ -131,10 +134,33 @@ double lead_of_beam(const EstimatorInput& beam_input, const PhotonPass& photons,
   return beam_error > 0 ? path_error / beam_error : 1;
 }
 
+/// Tentative collisions of a light path, the mean over a few: what the pilot of `beam`, which
+/// traces thousands of paths and stores their collisions, would cost.
+double collisions_of_light_paths(const EstimatorInput& input) {
+  constexpr std::uint64_t probe_paths = 64, probe_pass = pilot_pass - 64;
+  if (!input.plan.needs(Stage::photons) || input.world.medium.empty())
+    return 0;
+  const PhotonPlan plan = default_photon_plan(input);
+  PassWorlds worlds(input.world, plan.similar);
+  const EstimatorInput in = input.in(worlds.of(0));
+  PhotonPassSettings settings = pass_settings(in, plan, probe_pass);
+  settings.paths = probe_paths;
+  settings.store_probability = 0;
+  return trace_photons(in.world, settings).mean_collisions;
+}
+
 } // namespace
 
 EstimatorChoice choose_estimator(const EstimatorInput& beam_input,
                                  const EstimatorInput& path_input) {
+  // In such a medium the photons that are seen lie in a thin skin, and most paths end by chance.
+  constexpr double most_collisions = 4096;
+  if (const double collisions = collisions_of_light_paths(beam_input);
+      collisions > most_collisions && !beam_input.stopped())
+    return {EstimatorType::path,
+            fmt::format("a light path has some {:.1g} collisions, too many to trace photons",
+                        collisions),
+            0, nullptr};
   auto beam = std::make_unique<BeamEstimator>(beam_input);
   const PhotonPass& photons = beam->photons();
   if (!photons.plan().trial || photons.plan().trial->pixels.empty())

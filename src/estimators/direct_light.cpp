@@ -275,7 +275,8 @@ private:
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
                  std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep,
-                 const VolumeLights& volumes) {
+                 const VolumeLights& volumes, const StopToken* stop) {
+  constexpr int samples_per_check = 16;
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
@@ -283,6 +284,8 @@ Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile
   RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, volumes,
                        share);
   for (int i = 0; i < samples; ++i) {
+    if (i % samples_per_check == samples_per_check - 1 && stop && stop->stopped())
+      break;
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
     if (!shadows.empty())
       sum += lighting.by_shadow((static_cast<float>(i) + rng.uniform()) * share);

@@ -3,6 +3,7 @@
 #include "estimators/deep_ray.h"
 #include "estimators/ray_layers.h"
 #include "math/rng.h"
+#include "math/stop_token.h"
 #include "transport/depth_profile.h"
 #include "transport/shadow_lattice.h"
 #include "transport/world.h"
@@ -20,12 +21,14 @@ using ShadowLattices = std::vector<std::unique_ptr<const ShadowLattice>>;
 /// ray also get distances drawn by their 1 / r^2 (EquiAngular), combined by the balance heuristic.
 /// `sampled[i]` is true for the lights to include. Lights with a shadow lattice (grey media only)
 /// get distances of their own, drawn by what scatters times what of the light is expected there.
+/// Where `stop` asks to end meanwhile, the result is of no use.
 /// Adds the number of traced rays to `shadow_rays`, and takes down in `deep` where the light is
 /// scattered, and in `volumes` which volume scatters it.
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
                  const std::vector<bool>& sampled, int samples, Rng& rng,
                  std::uint64_t& shadow_rays, const ShadowLattices& shadows = {},
-                 const DeepRay& deep = {}, const VolumeLights& volumes = {});
+                 const DeepRay& deep = {}, const VolumeLights& volumes = {},
+                 const StopToken* stop = nullptr);
 
 /// A lattice for each light that is sampled and comes from one direction; `rays`: shadow rays to
 /// spend on each.

@@ -199,7 +199,7 @@ DeepLayout make_deep_layout(const EstimatorInput& input, double alpha, double de
     Row& row = rows[static_cast<std::size_t>(y)];
     PixelCurve curve(input);
     Cutter cutter(alpha, depth, !input.world.medium.emitters.empty());
-    for (int x = 0; x < camera.width(); ++x) {
+    for (int x = 0; x < camera.width() && !input.stopped(); ++x) {
       row.cosines.push_back(static_cast<float>(camera.depth_over_distance(x + 0.5, y + 0.5)));
       const bool wanted = x >= window.x0 && x < window.x1 && y >= window.y0 && y < window.y1;
       const std::size_t begin = row.edges.size();
@@ -219,6 +219,8 @@ DeepLayout make_deep_layout(const EstimatorInput& input, double alpha, double de
   };
   tbb::parallel_for(0, camera.height(), cut_row);
   DeepLayout layout;
+  if (input.stopped())
+    return layout;
   std::size_t pieces = 0;
   for (Row& row : rows) {
     std::size_t edge = layout.edges.size();

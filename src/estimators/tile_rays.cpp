@@ -38,7 +38,7 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
     out.profile = std::move(profile);
     out.inside = x < camera.width() && y < camera.height();
     Segment segment = out.camera.segment;
-    if (!out.inside)
+    if (!out.inside || input.stopped())
       segment.t_end = segment.t_begin;
     out.profile.build(input.world.medium, segment, static_cast<float>(input.settings.cutoff));
   }

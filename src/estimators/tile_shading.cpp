@@ -128,7 +128,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   image.direct[target] +=
       light_of_the_peak(world, ray, photons.plan().sampled_lights, deep, volumes) +
       direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights, samples,
-                   rng, counts.shadow_rays, photons.shadows(), deep, volumes);
+                   rng, counts.shadow_rays, photons.shadows(), deep, volumes, input.stop);
 }
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, bool refine,

@@ -14,11 +14,13 @@ namespace {
 constexpr int most_tiles = 120;
 
 /// What the tile's rays gather from each map.
-std::vector<std::vector<float>> gather(const std::vector<PhotonMap>& maps, BeamTile& tile) {
+std::vector<std::vector<float>> gather(const EstimatorInput& input,
+                                       const std::vector<PhotonMap>& maps, BeamTile& tile) {
   std::vector<std::vector<float>> pictures;
   for (const PhotonMap& map : maps) {
     tile.radiance.assign(static_cast<std::size_t>(map.channels()) * BeamTile::ray_count, 0);
-    map.query(tile);
+    if (!input.stopped())
+      map.query(tile);
     pictures.push_back(tile.radiance);
   }
   return pictures;
@@ -61,8 +63,8 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
   fill_beam_tile(world, input.camera, rays, weights, tile);
   TrialTile view;
   view.place = place;
-  view.narrow = gather(narrow, tile);
-  view.wide = gather(wide, tile);
+  view.narrow = gather(input, narrow, tile);
+  view.wide = gather(input, wide, tile);
   PassImage beside;
   beside.resize(TileRays::count, 1, !world.medium.emitters.empty());
   std::uint64_t shadow_rays = 0, emission_rays = 0;
@@ -70,7 +72,7 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
   const auto width = static_cast<std::size_t>(input.camera.width());
   for (std::size_t i = 0; i < TileRays::count; ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
-    if (!ray.inside || ray.profile.empty())
+    if (!ray.inside || ray.profile.empty() || input.stopped())
       continue;
     shade_profile(input, ray.camera, ray.profile, i, beside, emission_rays);
     // Also of lights that the camera does not see: hiding a sky must change no other pixel's plan.

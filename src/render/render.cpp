@@ -120,9 +120,11 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   DeepLayout deep;
   if (scene.image.deep) {
     deep = make_deep_layout(input, scene.image.deep_alpha, deep_depth(scene.image, world));
-    check_deep_memory(scene, deep.pieces() * DeepFilm::bytes_per_piece(), granted_memory());
-    loop.gather_deep(deep);
-    input.deep = &deep;
+    if (!deep.first.empty()) { // else there was no time for it, and there is none for passes
+      check_deep_memory(scene, deep.pieces() * DeepFilm::bytes_per_piece(), granted_memory());
+      loop.gather_deep(deep);
+      input.deep = &deep;
+    }
   }
   const RenderPlan path_plan = with_sizes(plan_paths(scene, volumes));
   const EstimatorInput path_input = input.with(path_plan);
