@@ -5,6 +5,7 @@
 #include "geometry/mesh_reader.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
+#include "text/printable.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "volume/vdb_reader.h"
@@ -33,8 +34,8 @@ std::string map_text(const GridSummary& grid) {
 }
 
 std::string grid_text(const GridSummary& grid) {
-  std::string text =
-      fmt::format("  {}\n    type        {}, {}\n", grid.name, grid.value_type, grid.grid_class);
+  std::string text = fmt::format("  {}\n    type        {}, {}\n", printable_line(grid.name),
+                                 grid.value_type, grid.grid_class);
   text += map_text(grid);
   text += fmt::format("    voxels      {} active, {} leaves, {} tiles\n", grid.active_voxels,
                       grid.leaf_count, grid.tile_count);
@@ -54,21 +55,25 @@ std::string grid_text(const GridSummary& grid) {
 void print_file(const std::string& file) {
   const std::vector<GridSummary> grids = summarize_vdb(file);
   std::string text =
-      fmt::format("{}: {} {}\n", file, grids.size(), grids.size() == 1 ? "grid" : "grids");
+      fmt::format("{}: {}\n", printable_line(file), count_text(grids.size(), "grid"));
   for (const GridSummary& grid : grids)
     text += grid_text(grid);
-  text += fmt::format("  rendered      {}\n", rendered_text(file, grids));
+  text += fmt::format("  rendered      {}\n", printable_line(rendered_text(file, grids)));
   for (const std::string& line : suspicious(grids))
-    text += fmt::format("  looks wrong   {}\n", line);
-  print_output(text);
+    text += fmt::format("  looks wrong   {}\n", printable_line(line));
+  print_text(text);
 }
 
 /// The VDBs of a folder, in the order of their names.
 std::vector<std::string> volumes_in(const std::string& folder) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".vdb")
-      files.push_back(entry.path().string());
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error))
+    if (it->path().extension() == ".vdb")
+      files.push_back(it->path().string());
+  if (error)
+    throw InputError(one_line(fmt::format("{}: cannot be listed: {}", folder, error.message())));
   if (files.empty())
     throw InputError(one_line(folder + ": is a folder without a .vdb file"));
   std::sort(files.begin(), files.end());
@@ -81,9 +86,9 @@ std::vector<std::string> samples_of(const std::string& pattern) {
   if (frames.empty())
     throw InputError(missing_file_text(pattern));
   const std::set<int> shown{frames.front(), frames[frames.size() / 2], frames.back()};
-  print_output(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
-                           shown.size() == 1 ? "is" : "are",
-                           format_frame_range({shown.begin(), shown.end()})));
+  print_text(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
+                         shown.size() == 1 ? "is" : "are",
+                         format_frame_range({shown.begin(), shown.end()})));
   std::vector<std::string> files;
   for (const int frame : shown)
     files.push_back(substitute_frame(pattern, frame));
@@ -120,9 +125,9 @@ int run_info(const InfoOptions& options) {
   for (const std::string& file : files) {
     try {
       if (is_mesh_file(file))
-        print_output(mesh_info(file));
+        print_text(mesh_info(file));
       else if (is_picture_file(file))
-        print_output(picture_info(file));
+        print_text(picture_info(file));
       else
         print_file(file);
     } catch (const Error& error) {
