@@ -3,6 +3,7 @@
 #include "vdbeam/deep_image.h"
 #include "vdbeam/image.h"
 #include "vdbeam/pass_record.h"
+#include "vdbeam/picture_facts.h"
 #include "vdbeam/pixel_region.h"
 #include "vdbeam/render_plan.h"
 #include "vdbeam/render_statistics.h"
@@ -26,6 +27,7 @@ struct RenderResult {
   RenderPlan plan;
   std::vector<std::string> notes; ///< for the user: repairs, empty grids, choices made
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
+  PictureFacts picture;           ///< of a whole picture; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
   bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
 };

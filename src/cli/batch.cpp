@@ -1,5 +1,6 @@
 #include "cli/batch.h"
 
+#include "cli/failure.h"
 #include "cli/heartbeat.h"
 #include "cli/signals.h"
 #include "cli/streams.h"
@@ -7,6 +8,7 @@
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "text/frame_range.h"
+#include "text/printable.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
@@ -48,7 +50,7 @@ std::string Batch::title(std::size_t index) const {
 
 void Batch::say(const std::string& line) const {
   if (!options_.frame.quiet)
-    log_text(line + '\n'); // a summary has several lines
+    log_text(printable_text(line) + '\n'); // a summary has several lines
 }
 
 Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
@@ -120,11 +122,7 @@ int Batch::run() {
 
 void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& outcome) {
   outcome.status = "failed";
-  outcome.reason = error.what();
-  if (dynamic_cast<const std::bad_alloc*>(&error))
-    outcome.reason = "not enough memory; a lower --resolution or fewer photons need less";
-  else if (!dynamic_cast<const Error*>(&error))
-    outcome.reason = fmt::format("internal error: {}", error.what());
+  outcome.reason = describe(error).line;
   farm_.failure(outcome.reason);
   farm_.frame_at(index, 1);
   summary_.outcomes.push_back(outcome);
@@ -188,6 +186,8 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
 }
 
 int Batch::finish() {
+  for (const std::string& line : renderer_.repeated_notes())
+    say(line);
   if (frames_.size() > 1)
     say(summary_.text());
   if (const FrameFiles& files = options_.frame.files; !files.summary.empty())

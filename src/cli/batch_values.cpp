@@ -62,7 +62,8 @@ CheckpointSettings parse_checkpoint(const std::string& text) {
   else
     settings.seconds = parse_duration(text).value_or(0);
   if (settings.passes == 0 && !(settings.seconds > 0))
-    fail("--checkpoint", text, "be a time like 300s or 5m, or a number of passes");
+    fail("--checkpoint", text,
+         "be a time like 300s or 5m, or a number of passes" + duration_remedy(text));
   return settings;
 }
 

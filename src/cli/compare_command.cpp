@@ -74,7 +74,7 @@ int compare_with_two(const CompareOptions& options) {
                   {"second", options.second}, {"rmse", error.rmse},
                   {"mrse", error.mrse},       {"mrse_error", error.mrse_error},
                   {"relmse", error.relmse},   {"bias", error.bias}};
-  print_output(options.json ? json_text(json) : text);
+  options.json ? print_output(json_text(json)) : print_text(text);
   return 0;
 }
 
@@ -83,7 +83,7 @@ int compare_stills(const CompareOptions& options) {
   const ImageError error =
       naming(options.image, options.reference, [&] { return compare_images(image, reference); });
   if (!options.json) {
-    print_output(error_text(error));
+    print_text(error_text(error));
     return 0;
   }
   Json json{{"image", options.image}, {"reference", options.reference}};
@@ -127,8 +127,8 @@ public:
                           sum_.bias / count, sum_.flip / count};
     const double temporal = temporal_ / (count - 1);
     if (!options_.json) {
-      print_output(fmt::format("means of {} frames:\n{}temporal error    {:.6g}\n", frames_.size(),
-                               error_text(mean), temporal));
+      print_text(fmt::format("means of {} frames:\n{}temporal error    {:.6g}\n", frames_.size(),
+                             error_text(mean), temporal));
       return;
     }
     Json json{{"image", options_.image}, {"reference", options_.reference}};

@@ -1,7 +1,9 @@
+#include "cli/check_render.h"
 #include "cli/commands.h"
 #include "cli/file_claims.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
+#include "cli/still_note.h"
 #include "cli/streams.h"
 #include "farm/engines.h"
 #include "farm/job_seal.h"
@@ -45,8 +47,8 @@ struct FarmOptions {
 double read_duration(const std::string& option, const std::string& text) {
   const auto seconds = parse_duration(text);
   if (!seconds || *seconds <= 0)
-    throw InputError(
-        one_line(fmt::format("{} {}: must look like 300s, 5m or 1h30m", option, text)));
+    throw InputError(one_line(fmt::format("{} {}: must look like 300s, 5m or 1h30m{}", option, text,
+                                          duration_remedy(text))));
   return *seconds;
 }
 
@@ -157,6 +159,33 @@ void check_job_file(const std::string& path) {
                                       "--job another name");
 }
 
+/// Refuses a job whose tasks `vdbeam render` would refuse, by that command's own checks.
+void check_tasks(const FarmJob& job, const SceneDocument& document,
+                 const std::vector<std::string>& scene_words) {
+  std::vector<std::string> words{job.scene};
+  words.insert(words.end(), job.options.begin(), job.options.end());
+  std::string list;
+  for (const int frame : job.frames)
+    list += (list.empty() ? "" : ",") + std::to_string(frame);
+  words.insert(words.end(), {"--frames=" + list, "--skip-existing", "--progress", "plain"});
+  std::vector<std::string> part = words, merge = words;
+  const std::string range = pass_ranges(job).front();
+  part.insert(part.end(), {"-o", partial_path(job.output, range), "--checkpoint",
+                           seconds_text(job.checkpoint)});
+  try {
+    if (!range.empty()) {
+      part.insert(part.end(), {"--pass-range", range, "--skip-merged", job.output});
+      merge.insert(merge.end(), {"-o", job.output});
+      for (const std::string& each : pass_ranges(job))
+        merge.push_back("--from-parts=" + partial_path(job.output, each));
+      check_render_command(merge, document, scene_words);
+    }
+    check_render_command(part, document, scene_words);
+  } catch (const InputError& error) {
+    throw InputError(one_line(fmt::format("the tasks of this job would fail: {}", error.what())));
+  }
+}
+
 FarmJob make_job(const FarmOptions& options) {
   FarmJob job = options.job;
   const SceneDocument document = options.scene.open();
@@ -186,8 +215,12 @@ FarmJob make_job(const FarmOptions& options) {
   if (!options.time_limit.empty())
     job.time_limit = read_duration("--time-limit", options.time_limit);
   job.memory_mib = job.merge_memory_mib = options.memory_mib;
+  check_tasks(job, document, options.scene.words());
   if (options.memory_mib == 0)
     plan_memory(job, document);
+  if (const std::string note = still_note(document, options.scene.path(), job.frames);
+      !note.empty())
+    log("note: {}", note);
   return job;
 }
 
@@ -205,9 +238,12 @@ int run_farm(const FarmOptions& options, const FarmEngine& engine) {
       log("note: {}: the job file that was there is replaced", options.job.job_file);
   }
   const int tasks = task_count(job);
-  log("{} frames in {} tasks{}, each of {} threads and {} MiB; submit with: {}", job.frames.size(),
-      tasks * job.splits, job.splits > 1 ? fmt::format(" and {} merges", tasks) : "", job.threads,
-      job.memory_mib, engine.how_to_submit(job));
+  const auto counted = [](auto count, const char* noun) {
+    return count_text(static_cast<std::uint64_t>(count), noun);
+  };
+  log("{} in {}{}, each of {} and {} MiB; submit with: {}", counted(job.frames.size(), "frame"),
+      counted(tasks * job.splits, "task"), job.splits > 1 ? " and " + counted(tasks, "merge") : "",
+      counted(job.threads, "thread"), job.memory_mib, engine.how_to_submit(job));
   if (tasks > usual_array_limit)
     log("note: Slurm takes arrays of {} tasks unless MaxArraySize was raised; --chunk {} "
         "makes few enough",

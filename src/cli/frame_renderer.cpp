@@ -57,6 +57,15 @@ std::string passes_text(int passes) {
   return count_text(static_cast<std::uint64_t>(passes), "pass");
 }
 
+/// What a picture shows, so that one that went wrong is noticed in the log.
+std::string picture_text(const PictureFacts& facts) {
+  if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
+    return {}; // of a part of the passes
+  return fmt::format(
+      "; optical depth up to {:.2g}, opacity {:.2g}, {:.0f} % black, {:.0f} % above 1",
+      facts.optical_depth, facts.opacity, 100 * facts.black, 100 * facts.over_one);
+}
+
 std::string end_text(const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
   std::string text =
@@ -70,7 +79,8 @@ std::string end_text(const RenderResult& result, const std::string& output) {
                         100 * last.bias_margin);
   if (last.has_reference)
     text += fmt::format(", MRSE {:.3g}, bias {:+.2f} %", last.mrse, 100 * last.bias);
-  return text + ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
+  text += ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
+  return text + picture_text(result.picture);
 }
 
 std::string stop_text(const RenderResult& result, const std::string& checkpoint,
@@ -306,8 +316,12 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   const std::optional<Image> reference = read("--reference", options_.files.reference),
                              second = read("--second-reference", options_.files.second_reference);
   progress.start(start_text(scene));
+  const auto tell = [&](const std::string& note) {
+    if (notes_->add(note, loaded.frame()))
+      progress.note(note);
+  };
   for (const std::string& note : scene.notes)
-    progress.note(note);
+    tell(note);
   FrameSettings frame;
   frame.pass_range = options_.pass_range;
   frame.region = options_.region;
@@ -322,7 +336,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     progress.pass(record);
     farm.frame_at(index, Progress::fraction(record, settings));
   };
-  hooks.on_note = [&](const std::string& note) { progress.note(note); };
+  hooks.on_note = tell;
   hooks.stop = &stop_requested();
   hooks.snapshot = &snapshot_requested();
   hooks.on_snapshot = [&](RenderResult& so_far) {

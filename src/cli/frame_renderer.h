@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/note_book.h"
 #include "cli/progress.h"
 #include "report/frame_files.h"
 #include "scene/scene_document.h"
@@ -38,6 +39,9 @@ struct LoadedFrame {
 class FrameRenderer {
 public:
   explicit FrameRenderer(FrameOptions options) : options_(std::move(options)) {}
+
+  /// Notes that several frames had, each with them.
+  std::vector<std::string> repeated_notes() const { return notes_->repeated(); }
 
   /// Renders, with progress on stderr, until the scene's limit or a signal ends it. The image is
   /// written only when it is complete, else a checkpoint; without a whole pass it is a quick look,
@@ -78,6 +82,7 @@ private:
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 
   FrameOptions options_;
+  std::shared_ptr<NoteBook> notes_ = std::make_shared<NoteBook>();
 };
 
 } // namespace vdbeam::cli

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/manual.h"
+#include "cli/streams.h"
 #include "report/versions.h"
 
 #include <fmt/format.h>
@@ -19,9 +20,9 @@ CommandRun add_generate(CLI::App& app) {
     const CLI::App& program = *app.get_parent();
     const auto versions = component_versions();
     const std::string version = versions.front().first + " " + versions.front().second;
-    fmt::print("{}", *kind == "man"    ? manual_page(program, version)
-                     : *kind == "bash" ? bash_completion(program)
-                                       : zsh_completion(program));
+    print_output(*kind == "man"    ? manual_page(program, version)
+                 : *kind == "bash" ? bash_completion(program)
+                                   : zsh_completion(program));
     return 0;
   };
 }

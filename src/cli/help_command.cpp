@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/streams.h"
-
+#include "cli/terminal.h"
+#include "scene/scene_keys.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 
@@ -9,6 +10,41 @@
 
 namespace vdbeam::cli {
 namespace {
+
+/// "volume.phase" and "phase" are names of one table.
+std::string last_name(SceneSection section) {
+  const std::string name = section_name(section);
+  return name.substr(name.find('.') + 1);
+}
+
+/// A table of a scene file by its name, or all of them where it is empty.
+std::string help_of_table(const std::string& program, const std::string& name) {
+  if (name.empty())
+    return key_tables_text(text_columns());
+  std::vector<std::string> known;
+  for (const SceneSection section : scene_sections()) {
+    if (name == section_name(section) || name == last_name(section))
+      return key_table_text(section, text_columns());
+    known.push_back(last_name(section));
+  }
+  const auto near = nearest_word(name, known);
+  throw InputError(one_line(fmt::format("{} help scene: there is no table {}{}", program, name,
+                                        near ? "; did you mean " + *near + "?"
+                                             : "; the tables are " + join_words(known, "and"))));
+}
+
+bool is_table(const std::string& name) {
+  for (const SceneSection section : scene_sections())
+    if (name == section_name(section) || name == last_name(section))
+      return true;
+  return false;
+}
+
+bool has_command(const CLI::App& program, const std::string& name) {
+  const auto found =
+      program.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+  return !found.empty();
+}
 
 /// `vdbeam help farm slurm` is `vdbeam farm slurm --help`.
 std::string help_of(const CLI::App& program, const std::vector<std::string>& names) {
@@ -21,6 +57,9 @@ std::string help_of(const CLI::App& program, const std::vector<std::string>& nam
       known.push_back(sub->get_name());
       found = sub->get_name() == name ? sub : found;
     }
+    if (!found && command == &program)
+      for (const SceneSection section : scene_sections())
+        known.push_back(last_name(section));
     const auto near = nearest_word(name, known);
     if (!found)
       throw InputError(one_line(fmt::format("{} help: there is no command {}{}", program.get_name(),
@@ -36,14 +75,25 @@ std::string help_of(const CLI::App& program, const std::vector<std::string>& nam
 
 CommandRun add_help(CLI::App& app) {
   const auto names = std::make_shared<std::vector<std::string>>();
-  app.add_option("command", *names, "Command to tell about; default: all of them")
-      ->option_text("COMMAND");
+  app.add_option("command", *names,
+                 "Command or table of a scene file to describe; default: all commands")
+      ->option_text("COMMAND|TABLE");
   app.footer(R"(Examples:
   vdbeam help
   vdbeam help render
-  vdbeam help farm slurm)");
+  vdbeam help farm slurm
+  vdbeam help light                             the keys of [[light]]
+  vdbeam help scene                             the keys of all tables of a scene file
+  vdbeam help scene render                      those of [render])");
   return [&app, names] {
-    print_output(help_of(*app.get_parent(), *names));
+    const CLI::App& program = *app.get_parent();
+    const bool scene = !names->empty() && names->front() == "scene";
+    // A command has the name first: "render" is one, and a table.
+    const bool table =
+        names->size() == 1 && is_table(names->front()) && !has_command(program, names->front());
+    print_output(scene   ? help_of_table(program.get_name(), names->size() > 1 ? (*names)[1] : "")
+                 : table ? help_of_table(program.get_name(), names->front())
+                         : help_of(program, *names));
     return 0;
   };
 }

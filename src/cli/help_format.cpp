@@ -1,41 +1,14 @@
 #include "cli/help_format.h"
 
+#include "text/wrap.h"
+
 #include <algorithm>
-#include <sstream>
 
 namespace vdbeam::cli {
 namespace {
 
 constexpr std::size_t line_width = 80, name_width = 26;
 constexpr const char* general_group = "Options";
-
-/// A name and its description in two columns, the description wrapped in its own.
-std::string two_columns(const std::string& name, const std::string& description) {
-  std::string text = "  " + name;
-  std::size_t column = text.size();
-  const auto new_line = [&] {
-    text += "\n" + std::string(name_width, ' ');
-    column = name_width;
-  };
-  if (column + 2 > name_width) {
-    new_line();
-  } else {
-    text.resize(name_width, ' ');
-    column = name_width;
-  }
-  std::istringstream words(description);
-  for (std::string word; words >> word;) {
-    if (column > name_width && column + 1 + word.size() > line_width)
-      new_line();
-    if (column > name_width) {
-      text += ' ';
-      ++column;
-    }
-    text += word;
-    column += word.size();
-  }
-  return text + "\n";
-}
 
 } // namespace
 
@@ -83,7 +56,7 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool /*is_positional*/) const {
-  return two_columns(option_usage(*option), option->get_description());
+  return two_columns(option_usage(*option), option->get_description(), name_width, line_width);
 }
 
 std::string HelpFormatter::make_option_usage(const CLI::Option* option) const {
@@ -92,7 +65,7 @@ std::string HelpFormatter::make_option_usage(const CLI::Option* option) const {
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* sub) const {
-  return two_columns(sub->get_name(), sub->get_description());
+  return two_columns(sub->get_name(), sub->get_description(), name_width, line_width);
 }
 
 } // namespace vdbeam::cli

@@ -6,6 +6,7 @@
 #include "machine/input_file.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
+#include "text/printable.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 #include "volume/vdb_reader.h"
@@ -34,8 +35,8 @@ std::string map_text(const GridSummary& grid) {
 }
 
 std::string grid_text(const GridSummary& grid) {
-  std::string text =
-      fmt::format("  {}\n    type        {}, {}\n", grid.name, grid.value_type, grid.grid_class);
+  std::string text = fmt::format("  {}\n    type        {}, {}\n", printable_line(grid.name),
+                                 grid.value_type, grid.grid_class);
   text += map_text(grid);
   text += fmt::format("    voxels      {} active, {} leaves, {} tiles\n", grid.active_voxels,
                       grid.leaf_count, grid.tile_count);
@@ -55,13 +56,13 @@ std::string grid_text(const GridSummary& grid) {
 void print_file(const std::string& file) {
   const std::vector<GridSummary> grids = summarize_vdb(file);
   std::string text =
-      fmt::format("{}: {} {}\n", file, grids.size(), grids.size() == 1 ? "grid" : "grids");
+      fmt::format("{}: {}\n", printable_line(file), count_text(grids.size(), "grid"));
   for (const GridSummary& grid : grids)
     text += grid_text(grid);
-  text += fmt::format("  rendered      {}\n", rendered_text(file, grids));
+  text += fmt::format("  rendered      {}\n", printable_line(rendered_text(file, grids)));
   for (const std::string& line : suspicious(grids))
-    text += fmt::format("  looks wrong   {}\n", line);
-  print_output(text);
+    text += fmt::format("  looks wrong   {}\n", printable_line(line));
+  print_text(text);
 }
 
 /// The VDBs of a folder, in the order of their names.
@@ -87,9 +88,9 @@ std::vector<std::string> samples_of(const std::string& pattern) {
   if (frames.empty())
     throw InputError(missing_file_text(pattern));
   const std::set<int> shown{frames.front(), frames[frames.size() / 2], frames.back()};
-  print_output(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
-                           shown.size() == 1 ? "is" : "are",
-                           format_frame_range({shown.begin(), shown.end()})));
+  print_text(fmt::format("{}: frames {}; shown {} {}\n", pattern, format_frame_range(frames),
+                         shown.size() == 1 ? "is" : "are",
+                         format_frame_range({shown.begin(), shown.end()})));
   std::vector<std::string> files;
   for (const int frame : shown)
     files.push_back(substitute_frame(pattern, frame));
@@ -126,9 +127,9 @@ int run_info(const InfoOptions& options) {
   for (const std::string& file : files) {
     try {
       if (is_mesh_file(file))
-        print_output(mesh_info(file));
+        print_text(mesh_info(file));
       else if (is_picture_file(file))
-        print_output(picture_info(file));
+        print_text(picture_info(file));
       else
         print_file(file);
     } catch (const Error& error) {

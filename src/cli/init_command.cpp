@@ -2,6 +2,7 @@
 #include "cli/file_claims.h"
 #include "cli/output_paths.h"
 #include "cli/streams.h"
+#include "farm/farm_job.h"
 #include "machine/atomic_file.h"
 #include "scene/scene_document.h"
 #include "text/frame_range.h"
@@ -41,7 +42,10 @@ int run_init(const InitOptions& options) {
   AtomicFile file(options.output);
   file.write(text.data(), text.size());
   file.commit();
-  log("{0}: written; render it with: vdbeam render {0}", options.output);
+  const std::vector<int> frames =
+      has_frame_pattern(options.volume) ? frames_on_disk(options.volume) : std::vector<int>{};
+  log("{}: written; render it with: vdbeam render {}{}", options.output, shell_word(options.output),
+      frames.empty() ? "" : " -f " + format_frame_range(frames));
   return 0;
 }
 

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/failure.h"
 #include "cli/help_format.h"
 #include "cli/streams.h"
 #include "cli/terminal.h"
@@ -9,7 +10,6 @@
 
 #include <exception>
 #include <fmt/format.h>
-#include <new>
 #include <sstream>
 
 namespace {
@@ -23,6 +23,7 @@ const char* const footer =
   vdbeam render cloud.toml -o cloud.exr --time 60s --preview cloud.png
   vdbeam render smoke.toml -f 1-24 -o smoke.####.exr
   vdbeam help COMMAND                           options and examples of a command
+  vdbeam help light                             the keys of one table of a scene file
   vdbeam --help-scene                           every key of a scene file
 
 Exit codes:
@@ -41,7 +42,7 @@ std::string version_text() {
 }
 
 int fail(const std::string& line, ExitCode code) {
-  cli::log_line(cli::error_line(line));
+  cli::log_error(line);
   return static_cast<int>(code);
 }
 
@@ -56,7 +57,7 @@ int run(int argc, char** argv) {
                        "Print the versions of vdbeam and its libraries");
   app.set_help_flag("-h,--help", "Print this help");
   app.add_flag_callback(
-      "--help-scene", [] { throw CLI::CallForVersion(key_table_text(), 0); },
+      "--help-scene", [] { throw CLI::CallForVersion(key_tables_text(cli::text_columns()), 0); },
       "Print every key of a scene file with its unit, range and default");
   std::vector<cli::CommandRun> runs;
   std::vector<CLI::App*> subcommands;
@@ -87,12 +88,8 @@ int main(int argc, char** argv) {
   cli::guard_standard_streams();
   try {
     return run(argc, argv);
-  } catch (const Error& error) {
-    return fail(error.what(), error.code());
-  } catch (const std::bad_alloc&) {
-    return fail("not enough memory; a lower --resolution or fewer photons need less",
-                ExitCode::frame_failed);
   } catch (const std::exception& error) {
-    return fail(fmt::format("internal error: {}", error.what()), ExitCode::internal_error);
+    const cli::Failure failure = cli::describe(error);
+    return fail(failure.line, failure.code);
   }
 }

@@ -67,7 +67,7 @@ std::string manual_page(const CLI::App& program, const std::string& version) {
   for (const CLI::App* command : visible_commands(program))
     text += command_section(*command, program.get_name() + " " + command->get_name());
   text += ".SH SCENE FILES\nA scene file is TOML with these tables and keys.\n.PP\n";
-  return text + preformatted(key_table_text()) +
+  return text + preformatted(key_tables_text(80)) +
          ".SH SEE ALSO\nThe folder of vdbeam's documentation, e.g. /usr/share/doc/vdbeam, has the "
          "whole documentation and sample scenes.\n";
 }

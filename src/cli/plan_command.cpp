@@ -69,7 +69,7 @@ int run_plan(const PlanOptions& options) {
     log("note: {}", note);
   const RenderPlan plan = make_plan(scene);
   if (!options.json) {
-    print_output(plan_text(scene, plan));
+    print_text(plan_text(scene, plan));
     return 0;
   }
   nlohmann::ordered_json json = plan_json(plan);

@@ -2,6 +2,7 @@
 
 #include "cli/streams.h"
 #include "cli/terminal.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 #include <algorithm>
@@ -33,12 +34,12 @@ void FarmProgress::frame_at(std::size_t index, double done) {
 
 void FarmProgress::status(const std::string& text) const {
   if (format_ == FarmFormat::openjd)
-    progress_text(fmt::format("openjd_status: {}\n", text));
+    progress_text(fmt::format("openjd_status: {}\n", printable_line(text)));
 }
 
 void FarmProgress::failure(const std::string& text) const {
   if (format_ == FarmFormat::openjd)
-    progress_text(fmt::format("openjd_fail: {}\n", text));
+    progress_text(fmt::format("openjd_fail: {}\n", printable_line(text)));
 }
 
 Progress::Progress(std::string title, const RenderSettings& settings, bool quiet)
@@ -58,8 +59,11 @@ double Progress::fraction(const PassRecord& record, const RenderSettings& settin
 }
 
 std::string Progress::describe(const PassRecord& record, const RenderSettings& settings) {
-  std::string text = settings.passes ? fmt::format("{}/{} passes", record.pass, *settings.passes)
-                                     : count_text(static_cast<std::uint64_t>(record.pass), "pass");
+  std::string text =
+      settings.passes
+          ? fmt::format("{}/{}", record.pass,
+                        count_text(static_cast<std::uint64_t>(*settings.passes), "pass"))
+          : count_text(static_cast<std::uint64_t>(record.pass), "pass");
   text += ", " + format_duration(record.seconds);
   const double done = fraction(record, settings);
   if (done > 0 && done < 1)

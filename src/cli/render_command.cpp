@@ -1,12 +1,17 @@
 #include "cli/batch.h"
 #include "cli/batch_values.h"
+#include "cli/check_render.h"
 #include "cli/commands.h"
 #include "cli/file_claims.h"
 #include "cli/help_format.h"
 #include "cli/output_paths.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
+#include "cli/still_note.h"
+#include "cli/streams.h"
+#include "cli/usage_error.h"
 #include "cli/view_option.h"
+#include "farm/farm_job.h"
 #include "image/output_formats.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -38,10 +43,12 @@ struct RenderOptions {
   bool no_resume = false, overwrite = false;
 };
 
-/// "cloud.toml" gives "cloud.exr"; several frames get a place for their number.
-std::string default_output(const std::string& scene, bool several) {
-  const std::string stem = std::filesystem::path(scene).stem().string();
-  return stem + (several && !has_frame_pattern(stem) ? ".####.exr" : ".exr");
+/// "cloud.toml" gives "cloud.exr"; several frames get a place for their number, and passes of a
+/// frame their range, so that nobody takes them for a finished picture.
+std::string default_output(const RenderOptions& options, bool several) {
+  const std::string stem = std::filesystem::path(options.scene.path()).stem().string();
+  return partial_path(stem + (several && !has_frame_pattern(stem) ? ".####.exr" : ".exr"),
+                      options.pass_range);
 }
 
 /// The number of "smoke.0020.vdb" or "smoke_0020.vdb"; 1 where the name has none.
@@ -140,13 +147,12 @@ void check_before_rendering(const RenderOptions& options, const SceneDocument& d
   check_scenes(options, document, frames);
 }
 
-/// Renders all frames.
-int run_render(RenderOptions& options) {
-  const SceneDocument document = options.scene.open();
-  const std::vector<int> frames = choose_frames(options, document);
+/// Fills in what the options say as text, and what they leave open; refuses what cannot work.
+std::vector<int> check_command(RenderOptions& options, const SceneDocument& document) {
+  std::vector<int> frames = choose_frames(options, document);
   FrameOptions& frame = options.batch.frame;
   if (frame.files.output.empty())
-    frame.files.output = default_output(options.scene.path(), frames.size() > 1);
+    frame.files.output = default_output(options, frames.size() > 1);
   if (!options.pass_range.empty())
     frame.pass_range = parse_pass_range(options.pass_range);
   if (!options.region.empty())
@@ -158,10 +164,21 @@ int run_render(RenderOptions& options) {
   if (options.overwrite)
     options.batch.skip_existing = false;
   check_before_rendering(options, document, frames);
+  return frames;
+}
+
+/// Renders all frames.
+int run_render(RenderOptions& options) {
+  const SceneDocument document = options.scene.open();
+  const std::vector<int> frames = check_command(options, document);
+  const FrameOptions& frame = options.batch.frame;
   const FrameFiles& files = frame.files;
+  if (const std::string note = still_note(document, options.scene.path(), frames);
+      !note.empty() && !frame.quiet)
+    log("note: {}", note);
   if (frame.exposure != 0 && files.preview.empty() &&
       output_format(files.output).extension == ".exr" && !frame.quiet)
-    fmt::print(stderr, "note: --exposure brightens only a --preview or a .png; there is none\n");
+    log("note: --exposure brightens only a --preview or a .png; there is none");
   handle_signals();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }
@@ -222,10 +239,7 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
       "Progress on stdout as farm engines parse it");
 }
 
-} // namespace
-
-CommandRun add_render(CLI::App& app) {
-  const auto options = std::make_shared<RenderOptions>();
+void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
   options->scene.declare(app);
   app.add_option("-o,--output", options->batch.frame.files.output,
                  "Image to write: " + output_extensions() +
@@ -255,8 +269,31 @@ CommandRun add_render(CLI::App& app) {
   group_options(app, "Sequences and farms",
                 {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
                  "--no-resume", "--pass-range", "--summary", "--progress"});
+}
+
+} // namespace
+
+CommandRun add_render(CLI::App& app) {
+  const auto options = std::make_shared<RenderOptions>();
+  declare(app, options);
   app.footer(examples);
   return [options] { return run_render(*options); };
+}
+
+void check_render_command(const std::vector<std::string>& words, const SceneDocument& document,
+                          const std::vector<std::string>& scene_words) {
+  CLI::App app("", "vdbeam render");
+  const auto options = std::make_shared<RenderOptions>();
+  declare(app, options);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(usage_error(app, words, error));
+  }
+  if (options->scene.words() == scene_words)
+    check_command(*options, document);
+  else
+    check_command(*options, options->scene.open());
 }
 
 } // namespace vdbeam::cli

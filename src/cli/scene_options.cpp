@@ -22,38 +22,50 @@ bool is_number(const std::string& text) {
          text.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// The options that set one key, in the order of --help.
+const std::vector<ShorthandRow>& shorthand_table() {
+  static const std::vector<ShorthandRow> table{
+      {"--passes", "render.passes", "N", "Passes to render"},
+      {"--time", "render.time", "T", "Rendering time: seconds, or like 90s, 5m, 1h30m"},
+      {"--target-error", "render.target_error", "E", "Estimated error (MRSE) to reach"},
+      {"--estimator", "render.estimator", "NAME", join_words(choice_names<EstimatorType>(), "or")},
+      {"--clamp", "render.clamp", "L",
+       "Dim pixels of passes above this radiance; the report tells what it took"},
+      {"--seed", "render.seed", "N", "Random numbers"},
+      {"--threads", "render.threads", "N", "Threads; never changes the picture"}};
+  return table;
+}
+
 } // namespace
 
-void SceneOptions::declare_shorthand(CLI::App& app, const std::string& option,
-                                     const std::string& key, const std::string& value_name,
-                                     const std::string& description) {
-  shorthands_.push_back({option, key, {}});
+std::string option_for_key(const std::string& key) {
+  if (key == "image.width" || key == "image.height")
+    return "--resolution WxH";
+  for (const ShorthandRow& row : shorthand_table())
+    if (row.key == key)
+      return row.option;
+  return fmt::format("--set {}=VALUE", key);
+}
+
+void SceneOptions::declare_shorthand(CLI::App& app, const ShorthandRow& row) {
+  shorthands_.push_back({row.option, row.key, {}});
   const std::size_t index = shorthands_.size() - 1;
   app.add_option_function<std::string>(
-         option, [this, index](const std::string& value) { shorthands_[index].value = value; },
-         description)
-      ->option_text(value_name)
-      ->group(is_stop_key(key) ? "When to stop" : "Scene");
+         row.option, [this, index](const std::string& value) { shorthands_[index].value = value; },
+         row.description)
+      ->option_text(row.value)
+      ->group(is_stop_key(row.key) ? "When to stop" : "Scene");
 }
 
 void SceneOptions::declare(CLI::App& app) {
   app.add_option("scene", path_, "Scene file, or a VDB (#### for the frame number)")
       ->required()
       ->option_text("SCENE|VDB");
-  declare_shorthand(app, "--passes", "render.passes", "N", "Passes to render");
-  declare_shorthand(app, "--time", "render.time", "T",
-                    "Rendering time: seconds, or like 90s, 5m, 1h30m");
-  declare_shorthand(app, "--target-error", "render.target_error", "E",
-                    "Estimated error (MRSE) to reach");
-  declare_shorthand(app, "--estimator", "render.estimator", "NAME",
-                    join_words(choice_names<EstimatorType>(), "or"));
+  for (const ShorthandRow& row : shorthand_table())
+    declare_shorthand(app, row);
   app.add_option("--resolution", resolution_, "Size of the picture in pixels")
       ->option_text("WxH")
       ->group("Scene");
-  declare_shorthand(app, "--clamp", "render.clamp", "L",
-                    "Dim pixels of passes above this radiance; the report tells what it took");
-  declare_shorthand(app, "--seed", "render.seed", "N", "Random numbers");
-  declare_shorthand(app, "--threads", "render.threads", "N", "Threads; never changes the picture");
   app.add_option("--set", sets_, "Set any key of the scene; may be repeated")
       ->option_text("KEY=VALUE")
       ->take_all()

@@ -8,6 +8,15 @@
 
 namespace vdbeam::cli {
 
+/// An option that sets one key of the scene.
+struct ShorthandRow {
+  std::string option, key, value, description;
+};
+
+/// How the command line sets a key: "--passes" for "render.passes", "--set image.fps=VALUE" for one
+/// that has no option of its own.
+std::string option_for_key(const std::string& key);
+
 /// The options that name a scene and change it, shared by the commands that take one.
 class SceneOptions {
 public:
@@ -22,8 +31,7 @@ public:
   std::vector<std::string> words() const;
 
 private:
-  void declare_shorthand(CLI::App& app, const std::string& option, const std::string& key,
-                         const std::string& value_name, const std::string& description);
+  void declare_shorthand(CLI::App& app, const ShorthandRow& row);
   void add_resolution(std::vector<Override>& overrides) const;
 
   struct Shorthand {

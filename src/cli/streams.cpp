@@ -1,5 +1,7 @@
 #include "cli/streams.h"
 
+#include "cli/terminal.h"
+#include "text/printable.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>
@@ -154,10 +156,12 @@ void log_from_signal(std::string_view line) {
   log_stream().write_at_once(line);
 }
 
-void log_line(std::string line) {
-  for (char& c : line)
-    c = c == '\n' || c == '\r' || c == '\v' || c == '\f' ? ' ' : c;
-  log_text(line + '\n');
+void log_line(std::string_view line) {
+  log_text(printable_line(line) + '\n');
+}
+
+void log_error(std::string_view line) {
+  log_text(error_line(printable_line(line)) + '\n');
 }
 
 void progress_text(std::string_view text) {
@@ -177,6 +181,10 @@ void print_output(std::string_view text) {
   }
   if (error != 0)
     throw_unwritable(error);
+}
+
+void print_text(std::string_view text) {
+  print_output(printable_text(text));
 }
 
 } // namespace vdbeam::cli

@@ -20,8 +20,11 @@ void log_text(std::string_view text);
 /// The same for a signal handler: the line is lost where the log is in use or not ready at once.
 void log_from_signal(std::string_view line);
 
-/// One line for the log, whatever a library or a damaged file put in it.
-void log_line(std::string line);
+/// One line for the log. Control characters that a file's name, a library or a damaged file put in
+/// it are shown, not sent to the terminal.
+void log_line(std::string_view line);
+/// The same for an error, in red on a terminal that shows colours.
+void log_error(std::string_view line);
 
 template <class... Args>
 void log(fmt::format_string<Args...> format, Args&&... args) {
@@ -38,6 +41,10 @@ void write_stdout(std::string_view text);
 /// Writes the output of a command whose output is stdout. Throws FrameError as write_stdout; a
 /// reader that has gone away (`vdbeam info ... | head -1`) ends the program without a word, as it
 /// does for every other program of a pipe.
+/// The bytes are written as they are: a scene, a job or JSON.
 void print_output(std::string_view text);
+/// The same for text that people read, which may hold names from files: control characters but line
+/// breaks are shown, not sent to the terminal.
+void print_text(std::string_view text);
 
 } // namespace vdbeam::cli

@@ -1,5 +1,6 @@
 #include "cli/terminal.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 #include <sys/ioctl.h>
@@ -16,6 +17,11 @@ int terminal_columns(int descriptor) {
   winsize size{};
   constexpr int usual = 80;
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
+std::size_t text_columns() {
+  constexpr int fewest = 80, most = 120;
+  return static_cast<std::size_t>(std::clamp(terminal_columns(STDOUT_FILENO), fewest, most));
 }
 
 std::string error_line(const std::string& line) {

@@ -10,6 +10,8 @@ bool is_smart_terminal(int descriptor);
 
 /// Columns of the terminal now, which a user may change at any time; 80 where it does not tell.
 int terminal_columns(int descriptor);
+/// Columns for text on stdout that people read: those of the terminal, 80 to 120.
+std::size_t text_columns();
 
 /// The line in red where stderr is a terminal with colours and NO_COLOR (no-color.org) is not set.
 std::string error_line(const std::string& line);

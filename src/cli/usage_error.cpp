@@ -1,6 +1,8 @@
 #include "cli/usage_error.h"
 
 #include "cli/help_format.h"
+#include "cli/scene_options.h"
+#include "scene/key_synonyms.h"
 #include "scene/scene_document.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -93,19 +95,90 @@ std::string sequence_of(const std::vector<std::string>& files) {
   return fmt::format("{} -f {}", pattern, format_frame_range(frames_on_disk(pattern)));
 }
 
+/// What sets the key that an unknown option means in other programs ("--samples"); empty where it
+/// means none, and for commands that take no scene.
+std::string option_meant_by(const std::string& option, const CLI::App& command) {
+  if (!command.get_option_no_throw("--set"))
+    return {};
+  std::string word = option.substr(option.find_first_not_of('-'));
+  std::replace(word.begin(), word.end(), '-', '_');
+  const std::string key = key_meant_by(word);
+  return key.empty() ? "" : option_for_key(key);
+}
+
+/// The option for a key of the scene that was written like an option ("--fov"); empty for any
+/// other.
+std::string option_of_key(const std::string& option, const CLI::App& command) {
+  if (!command.get_option_no_throw("--set"))
+    return {};
+  std::string word = option.substr(option.find_first_not_of('-'));
+  std::replace(word.begin(), word.end(), '-', '_');
+  for (const SceneSection section :
+       {SceneSection::render, SceneSection::image, SceneSection::camera})
+    if (find_key(section, word))
+      return option_for_key(section_name(section) + "." + word);
+  return {};
+}
+
+bool is_plain_number(const std::string& word) {
+  return word.find_first_not_of("+-0123456789.") == std::string::npos &&
+         word.find_first_of("0123456789") != std::string::npos;
+}
+
+/// A value of several numbers that was written with spaces: "--region 10 10 20 20". Empty where
+/// there is none.
+std::string spread_value(const Place& place, const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i + 2 < words.size(); ++i) {
+    const CLI::Option* option =
+        is_option(words[i]) ? place.command->get_option_no_throw(words[i]) : nullptr;
+    if (!option)
+      continue;
+    const std::size_t equals = words[i] == "--set" ? words[i + 1].find('=') : std::string::npos;
+    const bool sets = equals != std::string::npos;
+    const bool size = option->get_option_text() == "WxH";
+    if (!sets && !size && option->get_option_text().find(',') == std::string::npos)
+      continue;
+    std::string first = words[i + 1].substr(sets ? equals + 1 : 0);
+    if (first.ends_with(','))
+      first.pop_back();
+    if (!is_plain_number(first))
+      continue;
+    std::string value = first;
+    std::size_t count = 1;
+    for (std::size_t j = i + 2; j < words.size(); ++j, ++count) {
+      const std::string word =
+          words[j].ends_with(',') ? words[j].substr(0, words[j].size() - 1) : words[j];
+      if (!is_plain_number(word))
+        break;
+      value += (size ? "x" : ",") + word;
+    }
+    if (count < 2)
+      continue;
+    return fmt::format("{}: the value of {} is one word: {} {}", place.name, words[i], words[i],
+                       sets ? words[i + 1].substr(0, equals + 1) + "[" + value + "]" : value);
+  }
+  return {};
+}
+
 /// What a command cannot use: an option that it does not have, or one file too many.
 std::string surplus_words(const Place& place, const std::vector<std::string>& words,
                           const std::vector<std::string>& surplus) {
   const auto option = std::find_if(surplus.begin(), surplus.end(), is_option);
   if (option != surplus.end()) {
     const std::string name = option->substr(0, option->find('='));
+    std::string meant = option_meant_by(name, *place.command);
     // Of single letters every one is near to every other.
-    const auto near =
-        name.size() > 2 ? nearest_word(name, option_names(*place.command)) : std::nullopt;
+    if (const auto near = nearest_word(name, option_names(*place.command));
+        near && name.size() > 2 && meant.empty())
+      meant = *near;
+    if (meant.empty())
+      meant = option_of_key(name, *place.command);
     return fmt::format("{}: there is no option {}{}", place.name, name,
-                       near ? fmt::format("; did you mean {}?", *near)
-                            : fmt::format("; {} --help lists them all", place.name));
+                       meant.empty() ? fmt::format("; {} --help lists them all", place.name)
+                                     : fmt::format("; did you mean {}?", meant));
   }
+  if (const std::string spread = spread_value(place, words); !spread.empty())
+    return spread;
   const auto is_volume = [](const std::string& word) {
     return !is_option(word) && is_vdb_file(word);
   };
@@ -116,7 +189,8 @@ std::string surplus_words(const Place& place, const std::vector<std::string>& wo
                        volumes.size(), sequence);
   return fmt::format(
       "{}: cannot use \"{}\"{}; {} --help shows what it takes", place.name, surplus.front(),
-      surplus.size() > 1 ? fmt::format(" and {} more words", surplus.size() - 1) : "", place.name);
+      surplus.size() > 1 ? fmt::format(" and {} more", count_text(surplus.size() - 1, "word")) : "",
+      place.name);
 }
 
 /// The first thing that must be given and is not; empty where nothing is missing.

@@ -24,7 +24,7 @@ std::string first_reason(std::initializer_list<std::pair<bool, std::string>> rea
   for (const auto& [applies, reason] : reasons)
     if (applies)
       return reason;
-  return "the scene uses it";
+  return {};
 }
 
 /// The rules, one group of stages after the other. A stage that the estimator cannot run is left
@@ -87,13 +87,15 @@ private:
         first_reason(
             {{!needs_.scatters, no_scattering_},
              {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
-             {!needs_.photons, "single bounce, all by shadow rays"}}));
+             {!needs_.photons, "single bounce, all by shadow rays"},
+             {true, "light scatters in the medium: photons carry it"}}));
     const bool importance = needs_.photons && sees && by_view && !needs_.specular;
     add(Stage::photon_importance, importance,
         first_reason({{!needs_.photons, no_photons},
                       {!sees, "the estimator stores photons whatever the camera sees"},
                       {!by_view, "photons are stored evenly, as asked for"},
-                      {needs_.specular, "mirrors or glass show more than camera rays meet"}}));
+                      {needs_.specular, "mirrors or glass show more than camera rays meet"},
+                      {true, "photons are stored where the camera sees them"}}));
     // Where photons may serve frames with other views, kernels must not depend on the view either.
     const bool pilot = importance && runs(Stage::kernel_pilot) &&
                        render.kernel == KernelRadius::adaptive && render.neighbours == 0 &&
@@ -119,23 +121,30 @@ private:
     add(Stage::map, needs_.photons, needs_.photons ? "photons are gathered" : no_photons);
     const bool fixed = scene_.render.kernel == KernelRadius::fixed;
     add(Stage::neighbours, needs_.photons && !fixed,
-        first_reason({{!needs_.photons, no_photons}, {fixed, "the kernel's radius is fixed"}}));
+        first_reason({{!needs_.photons, no_photons},
+                      {fixed, "the kernel's radius is fixed"},
+                      {true, "kernels are as wide as photons are sparse"}}));
     add(Stage::photon_directions, needs_.photons && needs_.anisotropic,
         first_reason({{!needs_.photons, no_photons},
-                      {!needs_.anisotropic, "all phase functions are isotropic"}}));
+                      {!needs_.anisotropic, "all phase functions are isotropic"},
+                      {true, "how much a photon sends to the camera depends on its direction"}}));
     const bool grid = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
                                   [](const VolumeSettings& v) { return !v.color_grid.empty(); });
     add(Stage::photon_color, needs_.photons && needs_.colored,
         first_reason({{!needs_.photons, no_photons},
                       {grid, "a grid of colours multiplies the albedo"},
-                      {!needs_.colored, "all colours are grey"}}));
+                      {!needs_.colored, "all colours are grey"},
+                      {true, "albedo, extinction or lights differ between red, green and blue"}}));
   }
 
   void add_camera_rays() {
     add(Stage::spectral_tracking, needs_.scatters && needs_.chromatic,
         needs_.chromatic ? "extinction differs between channels" : "extinction is grey");
     add(Stage::depth_profiles, needs_.visible,
-        first_reason({{!needs_.medium, no_medium}, {!needs_.visible, out_of_view}}));
+        first_reason(
+            {{!needs_.medium, no_medium},
+             {!needs_.visible, out_of_view},
+             {true, "the medium dims what lies behind it: optical depth along each ray"}}));
     add(Stage::emission, needs_.glow_visible,
         first_reason({{!needs_.glows, "no volume glows"},
                       {!needs_.glow_visible, "the camera sees nothing of what glows"},
@@ -143,16 +152,22 @@ private:
     add(Stage::shadow_rays, needs_.shadow_rays(),
         first_reason(
             {{!needs_.scatters, no_scattering_},
-             {!needs_.shadow_rays(), "every light is left to photons or to escaping rays"}}));
+             {!needs_.shadow_rays(), "every light is left to photons or to escaping rays"},
+             {true, "light that scatters once is found from camera rays, towards the lights"}}));
   }
 
   void add_gathering() {
     for (const Stage stage : {Stage::beam_query, Stage::march})
       add(stage, needs_.photons && runs(stage),
-          first_reason({{!needs_.photons, no_photons}, {!runs(stage), other_estimator}}));
+          first_reason({{!needs_.photons, no_photons},
+                        {!runs(stage), other_estimator},
+                        {stage == Stage::march, "photons are gathered in steps along each ray"},
+                        {true, "photons are gathered along each whole camera ray"}}));
     const bool paths = runs(Stage::paths);
     add(Stage::paths, needs_.scatters && paths,
-        first_reason({{!paths, other_estimator}, {!needs_.scatters, no_scattering_}}));
+        first_reason({{!paths, other_estimator},
+                      {!needs_.scatters, no_scattering_},
+                      {true, "light that scatters more often is found by random walks"}}));
   }
 
   void add_bias() {

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <map>
 #include <utility>
 
 namespace vdbeam {
@@ -98,6 +100,23 @@ std::string moved_world_settings(const Scene& moment, const PreparedScene& prepa
 
 namespace {
 
+/// Notes a file whose Z is up in a scene whose Y is: nothing turns it, so it lies on its side.
+void note_axes(const Scene& scene, std::size_t i, const DensityGrid& grid,
+               std::vector<std::string>& notes) {
+  const std::array<double, 12>& m = scene.volumes[i].transform;
+  const Vec3d up = normalize(scene.camera.up), z{m[2], m[6], m[10]};
+  constexpr double along = 0.9; // cosine
+  if (!grid.from_mantaflow || !(length(z) > 0) || std::abs(normalize(z).z) < along ||
+      std::abs(up.y) < along)
+    return;
+  const std::string note =
+      fmt::format("{}: its Z is up, as in Blender, whose simulator wrote it, but camera.up is Y: "
+                  "turn it by volume.{}.rotate = [-90, 0, 0], or write camera.up = [0, 0, 1]",
+                  scene.volumes[i].file, i);
+  if (notes.empty())
+    notes.push_back(note);
+}
+
 /// The same of a scene whose colours are in its working space.
 PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   Stopwatch watch;
@@ -127,16 +146,30 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   }
   std::vector<DensityGrid> grids;
   std::vector<EmissionGrid> emissions;
+  std::map<std::string, std::size_t> readers; ///< the volume that was read, by what decides it
+  std::vector<std::string> axis_notes;
   int kept = 0;
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const VolumeSettings& volume = scene.volumes[i];
     ReadVolume read;
     take_velocity(scene, i, previous, read);
     keep_sources(volume, moments_of(scene, i), previous, read);
-    grids.push_back(take_grid(volume, previous, read));
-    take_colors(volume, previous, read, grids.back());
+    const std::string identity = volume.needs_density() ? density_identity(volume) : "";
+    const auto same = readers.find(identity);
+    if (!identity.empty() && stands_still(volume, read) && same != readers.end()) {
+      DensityGrid shared = grids[same->second]; // copies share the values
+      shared.notes.clear();                     // which are about the file, and are there once
+      grids.push_back(std::move(shared));
+      read.identity = identity;
+    } else {
+      grids.push_back(take_grid(volume, previous, read));
+      take_colors(volume, previous, read, grids.back());
+      if (!identity.empty() && stands_still(volume, read))
+        readers.try_emplace(identity, i);
+    }
+    note_axes(scene, i, grids.back(), axis_notes);
     keep_facts(grids.back(), read);
-    emissions.push_back(take_emission(volume, previous, read));
+    emissions.push_back(take_emission(volume, previous, prepared->volumes, read));
     read.emission = emissions.back();
     prepared->grids_read += std::exchange(read.grids_read, 0);
     // As build_world leaves volumes out.
@@ -151,6 +184,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
                   previous ? previous->world.get() : nullptr));
   prepared->seconds_build = watch.seconds();
+  prepared->facts.notes.insert(prepared->facts.notes.end(), axis_notes.begin(), axis_notes.end());
   note_velocities(scene, *prepared);
   for (ReadVolume& read : prepared->volumes)
     if (read.index >= 0 &&

@@ -131,6 +131,14 @@ DensityGrid take_emission_source(const VolumeSettings& volume, const std::string
 
 } // namespace
 
+std::string density_identity(const VolumeSettings& volume) {
+  return file_identity(volume.file) + density_text(volume);
+}
+
+bool stands_still(const VolumeSettings& volume, const ReadVolume& read) {
+  return !motion_of(volume, read);
+}
+
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion) {
   const Affine placed = Affine::from_matrix(volume.transform);
   if (!volume.box_lower || !volume.box_upper || !(std::abs(placed.determinant()) > 0))
@@ -170,7 +178,7 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
                       ReadVolume& read) {
   if (!volume.needs_density())
     return {};
-  read.identity = file_identity(volume.file) + density_text(volume);
+  read.identity = density_identity(volume);
   const auto motion = motion_of(volume, read);
   const bool edited = edits_of(volume, {}, true).changes();
   // What was edited cannot be moved: the box would move too.
@@ -194,12 +202,18 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
 }
 
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                           ReadVolume& read) {
+                           const std::vector<ReadVolume>& earlier, ReadVolume& read) {
   if (!volume.glows())
     return {};
   const auto motion = motion_of(volume, read);
   if (!motion) {
     read.emission_identity = emission_identity(volume);
+    for (const ReadVolume& known : earlier)
+      if (known.emission_identity == read.emission_identity) {
+        EmissionGrid shared = known.emission;
+        shared.notes.clear(); // which are about the file, and are there once
+        return shared;
+      }
     if (previous)
       for (const ReadVolume& known : previous->volumes)
         if (known.emission_identity == read.emission_identity)

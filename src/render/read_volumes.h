@@ -16,13 +16,18 @@ std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* 
 void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings>& moments,
                   const PreparedScenePtr& previous, ReadVolume& read);
 
+/// Everything that decides a volume's density and colours: volumes with the same share them.
+std::string density_identity(const VolumeSettings& volume);
+
 /// A volume's density as the scene wants it: read, or taken from `previous`, moved and edited.
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       ReadVolume& read);
 
-/// Likewise what glows.
+/// Likewise what glows; `earlier`: the volumes of this scene that were read before it.
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                           ReadVolume& read);
+                           const std::vector<ReadVolume>& earlier, ReadVolume& read);
+/// Whether a volume is read as it stands in its file, not moved to another moment.
+bool stands_still(const VolumeSettings& volume, const ReadVolume& read);
 
 /// Gives the density the colours of the volume's color_grid, moved like it.
 void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous, ReadVolume& read,

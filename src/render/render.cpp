@@ -16,6 +16,7 @@
 #include "render/plan.h"
 #include "render/prepared_scene.h"
 #include "render/shutter.h"
+#include "render/sight.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
 
@@ -152,9 +153,18 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
   }
   for (const std::string& line : limit_notes(scene, input))
     note(line);
+  const Sight sight = look_through(world, camera, window);
+  for (const std::string& line : sight_notes(scene, world, camera, sight))
+    note(line);
   if (scene.moments.empty())
     shutter.at(0, result.statistics); // its pilot does not count as part of a pass
   loop.run(shutter, path_input);
+  if (result.quick_look || frame.pass_range)
+    return result;
+  result.picture = picture_facts(result.image, sight);
+  if (!scene.lights.empty() || scene.glows()) // the scene's own note says that there is no light
+    for (const std::string& line : picture_notes(result.picture))
+      note(line);
   return result;
 }
 

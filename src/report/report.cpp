@@ -175,6 +175,10 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
     report["deep"] = {{"samples", result.deep->z.size()},
                       {"bytes", context.deep_bytes},
                       {"alpha_error", number(static_cast<double>(result.deep->alpha_error))}};
+  report["picture"] = {{"optical_depth", number(result.picture.optical_depth)},
+                       {"opacity", number(result.picture.opacity)},
+                       {"black", number(result.picture.black)},
+                       {"over_one", number(result.picture.over_one)}};
   report["stopped_by"] = result.stopped_by;
   report["quick_look"] = result.quick_look;
   report["resumed_passes"] = result.resumed_passes;

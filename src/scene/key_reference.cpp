@@ -1,7 +1,7 @@
 #include "scene/scene_keys.h"
 #include "text/text.h"
+#include "text/wrap.h"
 
-#include <array>
 #include <fmt/format.h>
 
 namespace vdbeam {
@@ -59,23 +59,38 @@ std::string key_table_markdown(SceneSection section) {
   return text;
 }
 
-std::string key_table_text() {
-  constexpr std::array sections{
+const std::vector<SceneSection>& scene_sections() {
+  static const std::vector<SceneSection> sections{
       SceneSection::image,    SceneSection::camera, SceneSection::volume,   SceneSection::phase,
       SceneSection::emission, SceneSection::mesh,   SceneSection::material, SceneSection::light,
       SceneSection::layer,    SceneSection::render};
+  return sections;
+}
+
+std::string key_table_text(SceneSection section, std::size_t width) {
+  constexpr std::size_t indent = 20;
+  std::string text = section_name(section) + "\n";
+  for (const SceneKey& key : scene_keys()) {
+    if (key.section != section)
+      continue;
+    const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
+    text += two_columns(key.name, owners(key) + key.doc, indent, width);
+    text += two_columns(
+        "", fmt::format("{}{}, default {}", values_text(key, ""), unit, key.default_text()), indent,
+        width);
+    for (std::size_t i = 0; i < key.choice_docs.size(); ++i)
+      text +=
+          two_columns("", fmt::format("{}: {}", key.choices[i], key.choice_docs[i]), indent, width);
+  }
+  return text;
+}
+
+std::string key_tables_text(std::size_t width) {
   std::string text;
-  for (const SceneSection section : sections) {
-    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section_name(section));
-    for (const SceneKey& key : scene_keys()) {
-      if (key.section != section)
-        continue;
-      const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
-      text += fmt::format("  {:<17} {}{}\n{:20}{}{}, default {}\n", key.name, owners(key), key.doc,
-                          "", values_text(key, ""), unit, key.default_text());
-      for (std::size_t i = 0; i < key.choice_docs.size(); ++i)
-        text += fmt::format("{:20}{}: {}\n", "", key.choices[i], key.choice_docs[i]);
-    }
+  for (const SceneSection section : scene_sections()) {
+    if (!text.empty())
+      text += '\n';
+    text += key_table_text(section, width);
   }
   return text;
 }

@@ -1,5 +1,6 @@
 #include "scene/overrides.h"
 
+#include "scene/toml_nesting.h"
 #include "scene/toml_value.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -35,6 +36,7 @@ std::optional<std::size_t> parse_index(const std::string& text) {
 /// string: nobody quotes twice in a shell.
 toml::table parse_value(const Override& entry) {
   const std::string source = override_source(entry.origin);
+  check_nesting(entry.value, "the value of " + entry.key);
   try {
     toml::table table = toml::parse("v = " + entry.value, source);
     if (table.size() == 1)
@@ -136,6 +138,8 @@ void apply_override(toml::table& root, const Override& entry) {
   for (const std::string& part : parts)
     if (part.empty())
       fail(entry, "must look like key.path=value, e.g. volume.0.extinction=80");
+  if (parts.size() > most_dotted_names)
+    fail(entry, "has more names between dots than any key of a scene");
   toml::table values = parse_value(entry);
   toml::node& parent = find_parent(root, parts, entry);
   const std::string& name = parts.back();

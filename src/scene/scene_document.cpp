@@ -1,9 +1,11 @@
 #include "scene/scene_document.h"
 
+#include "lights/light_table.h"
 #include "machine/input_file.h"
 #include "scene/default_scene.h"
 #include "scene/scene_reader.h"
 #include "scene/shutter.h"
+#include "scene/toml_nesting.h"
 #include "scene/toml_remedy.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
@@ -39,6 +41,7 @@ std::string read_scene_text(const std::string& path) {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& path) {
+  check_nesting(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
@@ -119,6 +122,35 @@ bool only_camera_moves(const toml::table& root) {
   return camera && !others;
 }
 
+/// A picture with nothing behind the medium is an element for compositing, which needs its A.
+void note_lost_alpha(Scene& scene) {
+  if (scene.layers.empty())
+    return;
+  const bool alpha = std::any_of(scene.layers.begin(), scene.layers.end(),
+                                 [](const LayerSettings& layer) { return layer.name == "alpha"; });
+  const bool sky =
+      std::any_of(scene.lights.begin(), scene.lights.end(), [](const LightSettings& light) {
+        return light_kind(light.type).surrounds && light.visible;
+      });
+  if (!alpha && !sky)
+    scene.notes.push_back(scene.path + ": the image will have no A, since no [[layer]] is "
+                                       "\"alpha\"; add one to lay it over a plate");
+}
+
+/// Whether a text of the tree holds a frame number's place.
+bool names_frames(const toml::node& node) {
+  bool found = false;
+  if (const toml::array* list = node.as_array())
+    for (const toml::node& item : *list)
+      found = found || names_frames(item);
+  if (const toml::table* table = node.as_table())
+    for (const auto& [name, value] : *table)
+      found = found || names_frames(value);
+  if (const auto* text = node.as_string())
+    found = has_frame_pattern(text->get());
+  return found;
+}
+
 } // namespace
 
 bool is_vdb_file(const std::string& path) {
@@ -141,6 +173,9 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
     notes_ = scene.notes;
     root_ = parse_toml(scene_text(scene, fs::path(path).filename().string()),
                        path + " (default scene)");
+    // The path itself need not be UTF-8, which TOML is.
+    if (auto* file = root_.at_path("volume[0].file").as_string())
+      *file = fs::path(path).filename().string();
   } else {
     root_ = parse_toml(read_scene_text(path), path);
   }
@@ -157,6 +192,7 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
   add_moments(scene, is_animated(root_) || !scene.camera.file.empty(),
               [&](double time) { return at(FrameTime(frame.number, time)); });
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
+  note_lost_alpha(scene);
   if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
       !has_frame_pattern())
     scene.render.thinning = PhotonThinning::even;
@@ -237,6 +273,10 @@ std::string SceneDocument::first_pattern() const {
     if (file.input != InputKind::camera && vdbeam::has_frame_pattern(file.pattern))
       return file.pattern;
   return "";
+}
+
+bool SceneDocument::depends_on_frame() const {
+  return is_animated(root_) || names_frames(root_) || root_.at_path("camera.file");
 }
 
 bool SceneDocument::has_frame_pattern() const {

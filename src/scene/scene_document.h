@@ -25,6 +25,9 @@ public:
 
   /// Where a path holds a frame number's place.
   bool has_frame_pattern() const;
+  /// Whether anything but random numbers may differ between two frames: a value with keys, a file
+  /// of a sequence, a camera from a file.
+  bool depends_on_frame() const;
   /// Frames of which the first file with a frame pattern exists.
   std::vector<int> frames_on_disk() const;
 

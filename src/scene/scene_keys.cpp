@@ -1,11 +1,11 @@
 #include "scene/scene_keys.h"
 
+#include "scene/key_synonyms.h"
 #include "text/text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <map>
 
 namespace vdbeam {
 namespace {
@@ -38,21 +38,6 @@ std::string format_list(const std::vector<double>& list, KeyKind kind) {
     text += (text.empty() ? "" : ", ") + number;
   }
   return "[" + text + "]";
-}
-
-/// What other programs call some of the choices.
-std::optional<std::string> synonym_of(const std::string& word,
-                                      const std::vector<std::string>& choices) {
-  static const std::map<std::string, std::string> synonyms{
-      {"sun", "distant"},         {"directional", "distant"},  {"dome", "environment"},
-      {"skydome", "environment"}, {"sky", "environment"},      {"hdri", "environment"},
-      {"omni", "point"},          {"hg", "henyey_greenstein"}, {"double_hg", "two_lobe"},
-      {"blackbody", "planck"},    {"epan", "epanechnikov"}};
-  const auto found = synonyms.find(word);
-  if (found == synonyms.end() ||
-      std::find(choices.begin(), choices.end(), found->second) == choices.end())
-    return std::nullopt;
-  return found->second;
 }
 
 } // namespace
@@ -100,11 +85,10 @@ std::optional<std::string> SceneKey::complaint(const KeyValue& value) const {
     return number_complaint(*number);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end()) {
-      auto near = nearest_word(*text, choices);
-      if (const auto synonym = synonym_of(*text, choices); !near)
-        near = synonym;
-      return fmt::format("must be {}{}{}", join_words(choices, "or"), got(),
-                         near ? "; did you mean " + *near + "?" : "");
+      std::string remedy = value_remedy(section, name, *text);
+      if (const auto near = nearest_word(*text, choices); near && remedy.empty())
+        remedy = "; did you mean " + *near + "?";
+      return fmt::format("must be {}{}{}", join_words(choices, "or"), got(), remedy);
     }
     if (required && text->empty())
       return "must not be empty";

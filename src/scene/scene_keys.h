@@ -121,7 +121,11 @@ std::size_t section_count(const Scene& scene, SceneSection section);
 
 /// The reference table of a section, as in docs/scene.md (Markdown).
 std::string key_table_markdown(SceneSection section);
-/// The same for a terminal, all sections.
-std::string key_table_text();
+/// The same for a terminal, in lines of at most `width` columns.
+std::string key_table_text(SceneSection section, std::size_t width);
+/// All sections one after the other.
+std::string key_tables_text(std::size_t width);
+/// All tables, in the order of the sections above.
+const std::vector<SceneSection>& scene_sections();
 
 } // namespace vdbeam

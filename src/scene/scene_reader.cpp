@@ -1,7 +1,9 @@
 #include "scene/scene_reader.h"
 
+#include "geometry/mesh_reader.h"
 #include "machine/input_file.h"
 #include "scene/animation.h"
+#include "scene/key_synonyms.h"
 #include "scene/toml_value.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
@@ -9,6 +11,7 @@
 #include "vdbeam/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <system_error>
 
@@ -57,14 +60,21 @@ std::string item_name(SceneSection section, std::size_t index) {
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
-/// What the user may have meant by an unknown key: a key of this table, or one of another table.
+/// What the user may have meant by an unknown key: what other programs call a key, a key of this
+/// table, or one of another table.
 std::string suggestion(SceneSection section, const std::string& name) {
+  if (const std::string remedy = synonym_remedy(section, name); !remedy.empty())
+    return remedy;
   if (const auto near = nearest_word(name, key_names(section)))
     return "; did you mean " + *near + "?";
   for (const SceneKey& key : scene_keys())
     if (key.name == name)
       return fmt::format("; {} is a key of {}", name, section_name(key.section));
-  return "; its keys are " + join_words(key_names(section), "and");
+  constexpr std::size_t few = 12;
+  const std::vector<std::string> names = key_names(section);
+  return names.size() <= few
+             ? "; its keys are " + join_words(names, "and")
+             : fmt::format("; vdbeam help scene {} lists its keys", section_name(section));
 }
 
 } // namespace
@@ -112,13 +122,31 @@ void SceneReader::note_idle_keys() {
         scene_.notes.push_back(
             fmt::format("{}: {} does nothing without a temperature grid", locate(path), path));
     }
+  note_units();
+}
+
+/// Reports values that are right in another unit than the key's.
+void SceneReader::note_units() {
+  const CameraSettings& camera = scene_.camera;
   // Nobody wants a picture of 1.6 degrees or less; half a turn is pi in radians.
   constexpr double narrow = 1.6, degrees = 180 / 3.14159265358979323846;
-  if (scene_.camera.fov < narrow)
+  if (camera.fov < narrow)
     scene_.notes.push_back(fmt::format("{}: camera.fov = {} is in degrees; if radians are meant, "
                                        "write {:.3g}",
-                                       locate("camera.fov"), scene_.camera.fov,
-                                       scene_.camera.fov * degrees));
+                                       locate("camera.fov"), camera.fov, camera.fov * degrees));
+  // No shutter is open for ten frames; 180 degrees are half a frame.
+  constexpr double longest_shutter = 10, turn = 360;
+  for (const auto& [name, value] : {std::pair("camera.shutter_open", camera.shutter_open),
+                                    std::pair("camera.shutter_close", camera.shutter_close)})
+    if (std::abs(value) > longest_shutter)
+      scene_.notes.push_back(fmt::format("{}: {} = {} is in frames; if degrees are meant, write "
+                                         "{:.3g}",
+                                         locate(name), name, value, value / turn));
+  constexpr double large_error = 0.1;
+  if (const auto& error = scene_.render.target_error; error && *error >= large_error)
+    scene_.notes.push_back(fmt::format("{}: render.target_error = {} is reached by almost any "
+                                       "picture after a few passes; a clean one has about 0.001",
+                                       locate("render.target_error"), *error));
 }
 
 void SceneReader::read_section(SceneSection section, const toml::node& node) {
@@ -251,6 +279,10 @@ std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
     number = *mapped;
   }
   std::string file = substitute_frame(pattern, number);
+  if (key.section == SceneSection::mesh && !is_mesh_file(file))
+    throw InputError(one_line(fmt::format("{}: {}: {} cannot be read: a mesh is an .obj, .ply, "
+                                          ".gltf or .glb file",
+                                          location_of(node), key_path(key, index), file)));
   const std::string path = key_path(key, index);
   std::error_code error;
   const bool is_folder = fs::is_directory(file, error);

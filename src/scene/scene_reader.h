@@ -32,6 +32,7 @@ public:
 
 private:
   void note_idle_keys();
+  void note_units();
   void read_section(SceneSection section, const toml::node& node);
   void read_list(SceneSection section, const toml::node& node);
   void read_table(SceneSection section, std::size_t index, const toml::table& table);

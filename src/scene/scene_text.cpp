@@ -1,5 +1,6 @@
 #include "scene/default_scene.h"
 #include "scene/scene_keys.h"
+#include "text/printable.h"
 #include "vdbeam/scene_file.h"
 
 #include <algorithm>
@@ -9,10 +10,10 @@
 namespace vdbeam {
 namespace {
 
-/// A TOML basic string.
+/// A TOML basic string, which is UTF-8.
 std::string quote(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     if (c == '"' || c == '\\')
       result += '\\';
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)

@@ -1,5 +1,7 @@
 #include "scene/toml_remedy.h"
 
+#include "text/text.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <regex>
@@ -40,6 +42,22 @@ std::string quoted_name(const std::string& reason) {
   return end == std::string::npos ? "" : reason.substr(begin + 1, end - begin - 1);
 }
 
+/// The tables that a scene may have several of.
+bool is_list_table(const std::string& name) {
+  return name == "volume" || name == "mesh" || name == "light" || name == "layer";
+}
+
+/// What stands between the = of a line and its comment or end, without spaces around it.
+std::string value_of(const std::string& line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos)
+    return {};
+  std::string value = line.substr(equals + 1, line.find('#', equals) - equals - 1);
+  value.erase(0, value.find_first_not_of(" \t"));
+  value.erase(value.find_last_not_of(" \t\r") + 1);
+  return value;
+}
+
 } // namespace
 
 std::string toml_remedy(const std::string& reason, const std::string& text, std::size_t line) {
@@ -48,6 +66,9 @@ std::string toml_remedy(const std::string& reason, const std::string& text, std:
       line >= 1 && line <= lines.size() && lines[line - 1].size() < 1000 ? lines[line - 1] : "";
   if (reason.starts_with("cannot redefine existing array") && reason.ends_with("as table"))
     return fmt::format("; write [[{}]], in double brackets", quoted_name(reason));
+  if (const std::string name = quoted_name(reason);
+      reason.starts_with("cannot redefine existing table") && is_list_table(name))
+    return fmt::format("; write [[{}]], in double brackets, for each of them", name);
   if (reason.starts_with("cannot redefine existing"))
     if (const std::size_t first = first_line_of(quoted_name(reason), lines, line); first > 0)
       return fmt::format("; it is there already, in line {}", first);
@@ -55,6 +76,11 @@ std::string toml_remedy(const std::string& reason, const std::string& text, std:
     return "; write a path with / or in single quotes: 'C:\\shot\\cloud.vdb'";
   if (std::smatch number; std::regex_search(here, number, std::regex(R"(=\s*(\d+),(\d+)\s*(#|$))")))
     return fmt::format("; decimals have a point: {}.{}", number[1].str(), number[2].str());
+  const std::string value = value_of(here);
+  if (const std::string list = bracketed_numbers(value); !list.empty())
+    return fmt::format("; a list needs brackets: {}", list);
+  if (const std::string word = lower_case(value); word == "true" || word == "false")
+    return fmt::format("; write {}, in small letters", word);
   if (reason.starts_with("could not determine value type"))
     return "; a text needs quotes: \"...\"";
   return {};

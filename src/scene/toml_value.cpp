@@ -11,6 +11,8 @@ namespace {
 
 constexpr char override_mark = '\x01'; // cannot begin a file's name that a user meant
 
+constexpr std::size_t longest_value = 200; ///< bytes of a value in a message
+
 std::optional<double> number_of(const toml::node& node) {
   if (const auto* whole = node.as_integer())
     return static_cast<double>(whole->get());
@@ -45,6 +47,24 @@ std::optional<std::vector<double>> list_of(const SceneKey& key, const toml::node
     list.push_back(*number);
   }
   return list;
+}
+
+/// What a value of the wrong type may have been meant to be: "; did you mean [0, 0, 5]?".
+std::string remedy(const SceneKey& key, const toml::node& node) {
+  const auto* text = node.as_string();
+  if (!text)
+    return {};
+  if (key.kind == KeyKind::duration)
+    return duration_remedy(text->get());
+  const bool wants_list =
+      key.kind == KeyKind::vector || key.kind == KeyKind::color || key.kind == KeyKind::matrix;
+  const std::string list = wants_list ? bracketed_numbers(text->get()) : "";
+  if (!list.empty())
+    return "; did you mean " + list + "?";
+  if (const std::string word = lower_case(text->get());
+      key.kind == KeyKind::boolean && (word == "true" || word == "false"))
+    return "; did you mean " + word + "?";
+  return {};
 }
 
 /// The value, or nothing where the node's type does not fit the key.
@@ -98,13 +118,13 @@ std::string location_of(const toml::node& node) {
     return "scene";
   }
   if (is_override(node))
-    return one_line(path->substr(1));
+    return shortened(one_line(path->substr(1)), longest_value);
   return fmt::format("{}:{}", *path, node.source().begin.line);
 }
 
 std::string node_text(const toml::node& node) {
   if (const auto* text = node.as_string())
-    return one_line("\"" + text->get() + "\"");
+    return shortened(one_line("\"" + text->get() + "\""), longest_value);
   if (const auto* whole = node.as_integer())
     return fmt::format("{}", whole->get());
   if (const auto* number = node.as_floating_point())
@@ -118,7 +138,7 @@ std::string node_text(const toml::node& node) {
       if (text.size() > 100)
         break;
     }
-    return one_line("[" + text + "]");
+    return shortened(one_line("[" + text + "]"), longest_value);
   }
   return node.is_table() ? "a table" : "a date or time";
 }
@@ -128,8 +148,8 @@ KeyValue read_key_value(const SceneKey& key, const std::string& path, const toml
   if (!value) {
     const std::string absent =
         key.absent_word.empty() ? "" : fmt::format(" or \"{}\"", key.absent_word);
-    throw InputError(fmt::format("{}: {} must be {}{}, got {}", location_of(node), path,
-                                 key.kind_text(), absent, node_text(node)));
+    throw InputError(fmt::format("{}: {} must be {}{}, got {}{}", location_of(node), path,
+                                 key.kind_text(), absent, node_text(node), remedy(key, node)));
   }
   if (const auto complaint = key.complaint(*value))
     throw InputError(one_line(fmt::format("{}: {} {}", location_of(node), path, *complaint)));

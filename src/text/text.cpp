@@ -1,6 +1,9 @@
 #include "text/text.h"
 
+#include "text/printable.h"
+
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -27,14 +30,16 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 } // namespace
 
-std::optional<std::string> nearest_word(const std::string& word,
+std::optional<std::string> nearest_word(const std::string& written,
                                         const std::vector<std::string>& candidates) {
   constexpr std::size_t longest = 64; // no key is longer, and the table above is quadratic
-  if (word.size() > longest)
+  if (written.size() > longest)
     return std::nullopt;
+  const std::string word = lower_case(written);
   std::optional<std::string> best;
   std::size_t best_distance = 0;
-  for (const std::string& candidate : candidates) {
+  for (const std::string& name : candidates) {
+    const std::string candidate = lower_case(name);
     const bool extends =
         word.size() >= 3 && (candidate.starts_with(word) || word.starts_with(candidate));
     // An ending that is missing is nearer than two wrong letters, and farther than one.
@@ -43,20 +48,38 @@ std::optional<std::string> nearest_word(const std::string& word,
     const std::size_t allowed =
         2 * std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
     if ((extends || distance <= allowed) && (!best || distance < best_distance)) {
-      best = candidate;
+      best = name;
       best_distance = distance;
     }
   }
   return best;
 }
 
+std::string shortened(const std::string& text, std::size_t most) {
+  if (text.size() <= most)
+    return text;
+  const auto inside_character = [&](std::size_t at) {
+    return (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80;
+  };
+  std::size_t head = most / 3, tail = text.size() - (most - 3 - head);
+  while (head > 0 && inside_character(head))
+    --head;
+  while (tail < text.size() && inside_character(tail))
+    ++tail;
+  return text.substr(0, head) + "..." + text.substr(tail);
+}
+
 std::string one_line(const std::string& text) {
-  constexpr std::size_t longest = 200;
-  std::string result = text.size() > longest ? text.substr(0, longest) + "..." : text;
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      c = ' ';
-  return result;
+  constexpr std::size_t longest_word = 300, longest = 1500;
+  std::string line;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \n", begin), text.size());
+    line += printable_line(shortened(text.substr(begin, end - begin), longest_word));
+    if (end < text.size())
+      line += ' ';
+    begin = end + 1;
+  }
+  return shortened(line, longest);
 }
 
 std::string lower_case(std::string text) {
@@ -104,6 +127,53 @@ std::optional<double> parse_duration(const std::string& text) {
     total += value * unit;
   }
   return total;
+}
+
+std::string bracketed_numbers(const std::string& text) {
+  constexpr std::size_t longest = 400; // of 12 numbers
+  std::string list;
+  int count = 0;
+  for (std::size_t at = 0; at < text.size() && text.size() <= longest;) {
+    if (text[at] == ' ' || text[at] == ',') {
+      ++at;
+      continue;
+    }
+    const std::size_t end = std::min(text.find_first_of(" ,", at), text.size());
+    double number = 0;
+    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, number);
+    if (error != std::errc{} || stop != text.data() + end)
+      return {};
+    list += (count++ > 0 ? ", " : "") + text.substr(at, end - at);
+    at = end;
+  }
+  return count > 1 ? "[" + list + "]" : "";
+}
+
+std::string duration_remedy(const std::string& text) {
+  std::string plain;
+  for (const char c : lower_case(text))
+    if (c != ' ')
+      plain += c;
+  std::string result;
+  for (std::size_t at = 0; at < plain.size();) {
+    const std::size_t end = std::min(plain.find_first_of("0123456789.", at), plain.size());
+    if (end == at) {
+      result += plain[at++];
+      continue;
+    }
+    const std::string unit = plain.substr(at, end - at);
+    constexpr std::array units{std::pair("seconds", 's'), std::pair("minutes", 'm'),
+                               std::pair("mins", 'm'), std::pair("hours", 'h'),
+                               std::pair("hrs", 'h')};
+    const auto found = std::find_if(units.begin(), units.end(), [&](const auto& known) {
+      return std::string_view(known.first).starts_with(unit);
+    });
+    if (found == units.end())
+      return {};
+    result += found->second;
+    at = end;
+  }
+  return parse_duration(result) ? "; did you mean " + result + "?" : "";
 }
 
 std::string format_duration(double seconds) {

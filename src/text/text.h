@@ -7,13 +7,16 @@
 
 namespace vdbeam {
 
-/// The candidate nearest to `word` by edit distance (insert, delete, replace, swap neighbours), or
-/// nothing where none is near enough to be what was meant.
-std::optional<std::string> nearest_word(const std::string& word,
+/// The candidate nearest to `written` by edit distance (insert, delete, replace, swap neighbours),
+/// capitals ignored, or nothing where none is near enough to be what was meant.
+std::optional<std::string> nearest_word(const std::string& written,
                                         const std::vector<std::string>& candidates);
 
-/// The text on one line, as messages need it: control characters become spaces, and what exceeds
-/// 160 bytes is cut off and marked by "...".
+/// At most `most` bytes of the text: "..." stands for what is cut out of its middle.
+std::string shortened(const std::string& text, std::size_t most);
+
+/// The text on one line, as messages need it: without control characters, long words (the paths
+/// that a message begins with) cut in their middle, so that the reason at its end is not lost.
 std::string one_line(const std::string& text);
 
 /// With small letters for the capitals of ASCII.
@@ -27,6 +30,13 @@ std::string count_text(std::uint64_t count, const std::string& noun);
 
 /// Seconds of "90", "60s", "5m", "1h" or "1h30m"; nothing where the text is no duration.
 std::optional<double> parse_duration(const std::string& text);
+
+/// "[0, 0, 5]" for a list of numbers without brackets, like "0,0,5" or "0 0 5"; empty for any other
+/// text.
+std::string bracketed_numbers(const std::string& text);
+
+/// "; did you mean 5m?" for a text like "5min" that means a duration; empty for any other.
+std::string duration_remedy(const std::string& text);
 
 /// "1h02m", "3m20s", "12.3s": how long something takes, for people.
 std::string format_duration(double seconds);

@@ -49,7 +49,8 @@ struct RawGridHeader {
   std::uint32_t level_set = 0;
   std::uint32_t staggered = 0; ///< of velocities: each component lies on its faces of the voxel
   std::uint32_t from_mantaflow = 0;
-  std::uint32_t cropped = 0; ///< leaves and tiles were left out that nothing needs
+  std::uint32_t cropped = 0;    ///< leaves and tiles were left out that nothing needs
+  std::array<char, 256> name{}; ///< of the grid in the file, ended by 0, or as much of it
 };
 
 /// The grid in a file of that layout; it refers to the file's memory. Trusts nothing, since a

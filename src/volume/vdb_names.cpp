@@ -1,5 +1,6 @@
 #include "volume/vdb_names.h"
 
+#include "text/printable.h"
 #include "text/text.h"
 
 #include <fmt/format.h>
@@ -32,7 +33,8 @@ std::size_t edit_distance(const std::string& one, const std::string& other) {
 std::string same_grid_name(const std::string& wanted, const std::vector<std::string>& names) {
   std::string found;
   for (const std::string& name : names) {
-    if (name == wanted)
+    // Scene files are UTF-8; names in VDBs need not be.
+    if (name == wanted || as_utf8(name) == wanted)
       return name;
     if (lower_case(name) != lower_case(wanted))
       continue;

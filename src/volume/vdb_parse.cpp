@@ -194,6 +194,8 @@ void write_grid(const std::string& path, const std::string& name, const Grid& gr
   const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
   header.level_set = level_set;
   header.cropped = cropped;
+  header.from_mantaflow = static_cast<bool>(grid["file_base_resolution"]);
+  name.copy(header.name.data(), header.name.size() - 1);
   if (const auto declared = grid.template getMetadata<openvdb::Int64Metadata>(
           openvdb::GridBase::META_FILE_VOXEL_COUNT))
     header.declared_voxels = declared->value();
@@ -231,7 +233,7 @@ void write_grid_names(const std::string& path, int descriptor) {
   auto& file = make_immortal<openvdb::io::File>(path);
   file.open(false);
   for (const std::string& name : grid_names(file))
-    write_all(descriptor, (name + '\n').data(), name.size() + 1);
+    write_all(descriptor, name.c_str(), name.size() + 1); // with the 0 that ends it
 }
 
 std::string require_density_grid(const std::string& path, const std::string& grid_name) {

@@ -3,6 +3,7 @@
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/stopwatch.h"
+#include "text/printable.h"
 #include "vdbeam/error.h"
 #include "volume/brick_builder.h"
 #include "volume/guarded_read.h"
@@ -57,14 +58,17 @@ std::string repairs_note(const std::string& label, const GridRepairs& repairs) {
   return fmt::format("{}: values replaced by 0: {}", label, list);
 }
 
-std::vector<std::string> notes(const std::string& label, const RawGridHeader& header,
-                               const DensityGrid& grid) {
+std::vector<std::string> notes(const std::string& label, const std::string& wanted,
+                               const RawGridHeader& header, const DensityGrid& grid) {
   std::vector<std::string> notes;
   const std::int64_t declared = header.declared_voxels;
   if (!header.cropped && declared >= 0 &&
       static_cast<std::uint64_t>(declared) != header.active_voxels)
     notes.push_back(fmt::format("{}: has {} active voxels, but its file says {}; it may be damaged",
                                 label, header.active_voxels, declared));
+  if (const std::string name(header.name.data(), strnlen(header.name.data(), header.name.size()));
+      !name.empty() && as_utf8(name) != wanted && name != wanted)
+    notes.push_back(fmt::format("{}: the file's grid \"{}\" is taken for it", label, name));
   if (header.level_set)
     notes.push_back(label + ": is a level set, made a fog volume");
   if (grid.repairs.nan + grid.repairs.infinite + grid.repairs.negative > 0)
@@ -108,7 +112,8 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   grid.repairs = bricked.repairs;
   grid.active_voxels = header.active_voxels;
   grid.index_to_world = Affine::from_matrix(header.index_to_world);
-  grid.notes = notes(label, header, grid);
+  grid.from_mantaflow = header.from_mantaflow != 0;
+  grid.notes = notes(label, grid_name, header, grid);
   return grid;
 }
 
@@ -127,12 +132,12 @@ std::vector<GridSummary> summarize_vdb(const std::string& path, const ReadLimits
   const MappedFile list =
       run_guarded(path, guard, [&](int output) { write_grid_names(path, output); });
   const std::string text(reinterpret_cast<const char*>(list.data()), list.size());
-  if (std::count(text.begin(), text.end(), '\n') > static_cast<std::ptrdiff_t>(maximum_grids))
+  if (std::count(text.begin(), text.end(), '\0') > static_cast<std::ptrdiff_t>(maximum_grids))
     throw FrameError(fmt::format("{}: holds more than {} grids", path, maximum_grids));
 
   // One process per grid, so that no more than one is in memory at a time.
   std::vector<GridSummary> summaries;
-  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
+  for (std::size_t begin = 0, end; (end = text.find('\0', begin)) != text.npos; begin = end + 1) {
     const std::string name = text.substr(begin, end - begin);
     guard.seconds = std::max(whole_seconds - watch.seconds(), 1.0);
     const MappedFile summary =

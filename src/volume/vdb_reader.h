@@ -30,6 +30,7 @@ struct DensityGrid {
   GridRepairs repairs;
   std::uint64_t active_voxels = 0; ///< tiles counted by the voxels they cover
   std::vector<std::string> notes; ///< one line each, for the user (repairs, emptiness, conversions)
+  bool from_mantaflow = false;    ///< as GridSummary has it
 };
 
 /// One grid of a file, as `vdbeam info` shows it.

@@ -79,6 +79,21 @@ TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
        "vdbeam render: there is no option --tiem; did you mean --time?\n"},
       {{"render", "--tiem", "5s"},
        "vdbeam render: there is no option --tiem; did you mean --time?\n"},
+      {{"render", cloud, "--samples", "4"},
+       "vdbeam render: there is no option --samples; did you mean --passes?\n"},
+      {{"render", cloud, "--spp=4"},
+       "vdbeam render: there is no option --spp; did you mean --passes?\n"},
+      {{"render", cloud, "--size", "640x360"},
+       "vdbeam render: there is no option --size; did you mean --resolution WxH?\n"},
+      {{"plan", cloud, "--fov", "30"},
+       "vdbeam plan: there is no option --fov; did you mean --set camera.fov=VALUE?\n"},
+      {{"render", cloud, "--region", "10", "10", "20", "20"},
+       "vdbeam render: the value of --region is one word: --region 10,10,20,20\n"},
+      {{"render", "--resolution", "64", "36", cloud},
+       "vdbeam render: the value of --resolution is one word: --resolution 64x36\n"},
+      {{"render", cloud, "--set", "camera.position=0", "0", "5"},
+       "vdbeam render: the value of --set is one word: --set camera.position=[0,0,5]\n"},
+      {{"help", "lihgt"}, "vdbeam help: there is no command lihgt; did you mean light?\n"},
       {{"render", cloud, "-x"},
        "vdbeam render: there is no option -x; vdbeam render --help lists them all\n"},
       {{"render"},
@@ -107,6 +122,21 @@ TEST_F(Usage, HelpIsACommandToo) {
   EXPECT_EQ(run({"help", "render"}).out, run({"render", "--help"}).out);
   EXPECT_EQ(run({"help", "farm", "slurm"}).out, run({"farm", "slurm", "--help"}).out);
   EXPECT_EQ(run({"-v"}).out, run({"--version"}).out);
+}
+
+TEST_F(Usage, HelpOfATableOfAScene) {
+  const std::string light = run({"help", "light"}).out;
+  EXPECT_TRUE(light.starts_with("light\n")) << light;
+  EXPECT_NE(light.find("\n  irradiance "), std::string::npos) << light;
+  EXPECT_EQ(light.find("\n  extinction "), std::string::npos) << light;
+  EXPECT_EQ(run({"help", "scene", "light"}).out, light);
+  EXPECT_EQ(run({"help", "phase"}).out, run({"help", "volume.phase"}).out);
+  EXPECT_EQ(run({"help", "scene"}).out, run({"--help-scene"}).out);
+  // A command has the name first.
+  EXPECT_NE(run({"help", "render"}).out, run({"help", "scene", "render"}).out);
+  std::stringstream lines(run({"help", "scene"}).out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_LE(line.size(), 80u) << line;
 }
 
 TEST_F(Usage, HelpFitsATerminal) {
@@ -142,6 +172,12 @@ TEST_F(Usage, BadValuesNameTheirOption) {
       {{"--time", "soon"},
        "--time soon: render.time must be seconds or a text like \"90s\", \"5m\" or \"1h30m\" or "
        "\"none\", got \"soon\"\n"},
+      {{"--time", "5min"},
+       "--time 5min: render.time must be seconds or a text like \"90s\", \"5m\" or \"1h30m\" or "
+       "\"none\", got \"5min\"; did you mean 5m?\n"},
+      {{"--set", "camera.position=0,0,5"},
+       "--set camera.position=0,0,5: camera.position must be 3 numbers, got \"0,0,5\"; did you "
+       "mean [0, 0, 5]?\n"},
       {{"--estimator", "beem"},
        "--estimator beem: render.estimator must be auto, beam, march or path, got \"beem\"; did "
        "you mean "

@@ -37,6 +37,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[[volume]]\nfile = \"C:\\shot\\cloud.vdb\"\n",
                  "s.toml:2: not valid TOML: unknown escape sequence '\\s'; write a path with / or "
                  "in single quotes: 'C:\\shot\\cloud.vdb'"},
+        BadScene{"[light]\ntype = 'point'\n[light]\ntype = 'point'\n",
+                 "s.toml:3: not valid TOML: cannot redefine existing table 'light'; write "
+                 "[[light]], in double brackets, for each of them"},
+        BadScene{"[[light]]\ntype = 'distant'\nirradiance = 5, 5, 5\n",
+                 "s.toml:3: not valid TOML: expected a comment or whitespace, saw ','; a list "
+                 "needs brackets: [5, 5, 5]"},
+        BadScene{"[[light]]\ntype = 'distant'\nvisible = False\n",
+                 "s.toml:3: not valid TOML: expected 'false', saw 'F'; write false, in small "
+                 "letters"},
         BadScene{"\n\n[image\n", "s.toml:3: not valid TOML: expected ']', saw '\\n'"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -53,9 +62,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nseed = 1\n",
                  "s.toml:2: unknown key camera.seed; seed is a key of render"},
         BadScene{"[image]\nzzz = 1\n",
-                 "s.toml:2: unknown key image.zzz; its keys are width, height, fps, compression, "
-                 "parts, tile, layer_names, time_code, attributes, working_space, output_space, "
-                 "cryptomatte, deep,..."},
+                 "s.toml:2: unknown key image.zzz; vdbeam help scene image lists its keys"},
+        BadScene{"[[layer]]\nzzz = 1\n",
+                 "s.toml:2: unknown key layer.0.zzz; its keys are name, precision and compression"},
+        BadScene{"[render]\nsamples = 4\n",
+                 "s.toml:2: unknown key render.samples; did you mean passes?"},
+        BadScene{"[render]\nspp = 4\n", "s.toml:2: unknown key render.spp; did you mean passes?"},
+        BadScene{"[image]\nSize = 4\n",
+                 "s.toml:2: unknown key image.Size; did you mean width and height?"},
+        BadScene{VOLUME "phase = { type = 'henyey_greenstein', anisotropy = 0.5 }\n",
+                 "s.toml:3: unknown key volume.0.phase.anisotropy; did you mean g?"},
+        BadScene{
+            "[[light]]\ntype = 'distant'\nkelvin = 5000\n",
+            "s.toml:3: unknown key light.0.kelvin; colour and strength of a light are one key: "
+            "irradiance of a distant light, intensity of a point or spot light, radiance of an "
+            "environment or sky, e.g. irradiance = [5, 4, 3]"},
+        BadScene{"[[light]]\ntype = 'distant'\nelevation = 50\n",
+                 "s.toml:3: unknown key light.0.elevation; direction = [x, y, z] is the way that a "
+                 "distant or spot light travels"},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
                               "mesh, light, layer and render"}));
 
@@ -69,6 +93,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nup = [0, 1]\n", "s.toml:2: camera.up must be 3 numbers, got [0, 1]"},
         BadScene{"[camera]\nup = [0, 1, 'x']\n",
                  "s.toml:2: camera.up must be 3 numbers, got [0, 1, \"x\"]"},
+        BadScene{"[camera]\nposition = '0,0,5'\n",
+                 "s.toml:2: camera.position must be 3 numbers, got \"0,0,5\"; did you mean [0, 0, "
+                 "5]?"},
+        BadScene{"[render]\ntime = '5min'\n",
+                 "s.toml:2: render.time must be seconds or a text like \"90s\", \"5m\" or "
+                 "\"1h30m\" or \"none\", got \"5min\"; did you mean 5m?"},
+        BadScene{"[image]\ndeep = 'True'\n",
+                 "s.toml:2: image.deep must be true or false, got \"True\"; did you mean true?"},
         BadScene{"[camera]\nup = 1\n", "s.toml:2: camera.up must be 3 numbers, got 1"},
         BadScene{VOLUME "albedo = 'white'\n",
                  "s.toml:3: volume.0.albedo must be 3 numbers (red, green, blue) or one for all, "
@@ -126,6 +158,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[[light]]\ntype = 'dome'\n",
                  "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
                  "\"dome\"; did you mean environment?"},
+        BadScene{"[[light]]\ntype = 'area'\n",
+                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
+                 "\"area\"; a light with an area is a [[mesh]] with material = { type = "
+                 "\"emissive\", radiance = 10 }"},
+        BadScene{"[[mesh]]\ntype = 'plane'\n",
+                 "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"plane\"; did you "
+                 "mean quad?"},
+        BadScene{"[[mesh]]\ntype = 'cube'\n",
+                 "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"cube\"; solids "
+                 "come from files (.obj, .ply, .gltf, .glb)"},
+        BadScene{"[image]\nworking_space = 'ACEScg'\n",
+                 "s.toml:2: image.working_space must be rec709, rec2020, acescg or aces2065_1, got "
+                 "\"ACEScg\"; did you mean acescg?"},
         BadScene{VOLUME "phase = 'hg'\n",
                  "s.toml:3: volume.0.phase.type must be isotropic, henyey_greenstein, rayleigh, "
                  "two_lobe or mie, got \"hg\"; did you mean henyey_greenstein?"}));
@@ -152,6 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2: volume.0.file: there is no file shot/cloud.vdb, nor its folder"},
         BadScene{"[[volume]]\nfile = '.'\n",
                  "s.toml:2: volume.0.file: there is no file ., which is a folder"},
+        BadScene{
+            "[[mesh]]\nfile = 'ship.abc'\n",
+            "s.toml:2: mesh.0.file: ship.abc cannot be read: a mesh is an .obj, .ply, .gltf or "
+            ".glb file"},
         BadScene{"[[light]]\ntype = 'environment'\nimage = 'sky.exr'\n",
                  "s.toml:3: light.0.image: there is no file sky.exr"},
         BadScene{"[[light]]\ntype = 'distant'\nintensity = 3\n",
@@ -235,6 +284,17 @@ TEST_F(SceneErrors, WhatCannotBeMeantIsNoted) {
   EXPECT_EQ(notes(volume + light + "[camera]\nfov = 24\n"), "");
   EXPECT_EQ(notes(volume + light + "[camera]\nfov = 0.42\n"),
             "s.toml:6: camera.fov = 0.42 is in degrees; if radians are meant, write 24.1\n");
+  EXPECT_EQ(notes(volume + light + "[camera]\nshutter_close = 180\n"),
+            "s.toml:6: camera.shutter_close = 180 is in frames; if degrees are meant, write 0.5\n");
+  EXPECT_EQ(notes(volume + light + "[camera]\nshutter_open = -0.25\nshutter_close = 0.25\n"), "");
+  EXPECT_EQ(
+      notes(volume + light + "[render]\ntarget_error = 1\n"),
+      "s.toml:6: render.target_error = 1 is reached by almost any picture after a few passes; "
+      "a clean one has about 0.001\n");
+  EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n"),
+            "s.toml: the image will have no A, since no [[layer]] is \"alpha\"; add one to lay it "
+            "over a plate\n");
+  EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n[[layer]]\nname = 'alpha'\n"), "");
   EXPECT_EQ(notes(volume + "time = { speed = 2 }\n" + light),
             "s.toml:2: volume.0.time does nothing: file names a single file, not a sequence like "
             "smoke.####.vdb\n");
@@ -259,6 +319,39 @@ TEST_F(SceneErrors, UnreadableFiles) {
     noise += static_cast<char>(i * 37 % 251);
   EXPECT_THROW(load_scene(write("noise.toml", noise)), InputError);
   EXPECT_THROW(load_scene(write("deep.toml", "a = " + std::string(100000, '['))), InputError);
+}
+
+TEST_F(SceneErrors, KeysOfManyDotsAreRefusedBeforeTheyAreParsed) {
+  std::string dots = "a";
+  for (int i = 0; i < 200000; ++i)
+    dots += ".a";
+  const std::string refused =
+      "a key has more than 16 names between dots; no key of a scene has more than 4";
+  EXPECT_EQ(error_of("# x\n" + dots + " = 1\n"), "s.toml:2: " + refused);
+  EXPECT_EQ(error_of("[" + dots + "]\n"), "s.toml:1: " + refused);
+  EXPECT_EQ(error_of("x = \"\"\"\n\n\"\"\"\ny = { " + dots + " = 1 }\n"), "s.toml:4: " + refused);
+  const std::string scene = write("s.toml", "[render]\npasses = 1\n");
+  EXPECT_THROW(load_scene(scene, 1, {dots + "=1"}), InputError);
+  EXPECT_THROW(load_scene(scene, 1, {"volume.0={" + dots + "=1}"}), InputError);
+  // Dots of texts, comments and numbers are none of keys.
+  EXPECT_NO_THROW(load("# " + std::string(1000, '.') +
+                       "\n[[volume]]\nfile = 'cloud.vdb'\nname = '" + std::string(1000, '.') +
+                       "'\nalbedo = [0.5, 0.5, 0.5]\n"));
+}
+
+TEST_F(SceneErrors, ReasonsOutliveLongPaths) {
+  const std::string folder(200, 'f');
+  std::filesystem::create_directory(folder_ / folder);
+  const std::string path = write(folder + "/s.toml", "[render]\nseed = -1\n");
+  try {
+    load_scene(path);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what())
+                    .ends_with("s.toml:2: render.seed must be at least 0, got "
+                               "-1"))
+        << error.what();
+  }
 }
 
 TEST_F(SceneErrors, MessagesAreOneLine) {

@@ -109,7 +109,7 @@ TEST(ToyEstimator, IsInKeysAndHelp) {
   EXPECT_TRUE(holds(key(SceneSection::render, "estimator").choices, "toy"));
   EXPECT_EQ(key(SceneSection::render, "step").estimators,
             (std::vector<std::string>{"march", "toy"}));
-  EXPECT_NE(key_table_text().find("toy: a quarter everywhere"), std::string::npos);
+  EXPECT_NE(key_tables_text(100).find("toy: a quarter everywhere"), std::string::npos);
   EXPECT_NE(key_table_markdown(SceneSection::render).find("`toy`"), std::string::npos);
 }
 
@@ -157,7 +157,7 @@ TEST(ToyLight, IsInKeysAndHelp) {
   EXPECT_TRUE(holds(key(SceneSection::light, "position").types, "lantern"));
   EXPECT_FALSE(holds(key(SceneSection::light, "irradiance").types, "lantern"));
   EXPECT_TRUE(key(SceneSection::light, "direct").types.empty());
-  EXPECT_NE(key_table_text().find("lantern: a point that shines twice"), std::string::npos);
+  EXPECT_NE(key_tables_text(100).find("lantern: a point that shines twice"), std::string::npos);
 }
 
 TEST(ToyLight, IsValidated) {
