@@ -75,9 +75,10 @@ std::string key_table_text(SceneSection section, std::size_t width) {
       continue;
     const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
     text += two_columns(key.name, owners(key) + key.doc, indent, width);
-    text += two_columns(
-        "", fmt::format("{}{}, default {}", values_text(key, ""), unit, key.default_text()), indent,
-        width);
+    text += two_columns("",
+                        fmt::format("{}{}, {}{}", values_text(key, ""), unit,
+                                    key.required ? "" : "default ", key.default_text()),
+                        indent, width);
     for (std::size_t i = 0; i < key.choice_docs.size(); ++i)
       text +=
           two_columns("", fmt::format("{}: {}", key.choices[i], key.choice_docs[i]), indent, width);

@@ -74,6 +74,7 @@ protected:
       return child;
     // Root may write anywhere, which would hide what permissions do; others need not drop this.
     prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE, 0, 0, 0);
+    prctl(PR_CAPBSET_DROP, CAP_DAC_READ_SEARCH, 0, 0, 0);
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
     std::vector<char*> words{const_cast<char*>(VDBEAM_BINARY)};

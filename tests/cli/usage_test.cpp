@@ -131,7 +131,7 @@ TEST_F(Usage, HelpOfATableOfAScene) {
   EXPECT_EQ(light.find("\n  extinction "), std::string::npos) << light;
   EXPECT_EQ(run({"help", "scene", "light"}).out, light);
   EXPECT_EQ(run({"help", "phase"}).out, run({"help", "volume.phase"}).out);
-  EXPECT_EQ(run({"help", "scene"}).out, run({"--help-scene"}).out);
+  EXPECT_EQ(run({"help", "scene"}).out + "\n", run({"--help-scene"}).out);
   // A command has the name first.
   EXPECT_NE(run({"help", "render"}).out, run({"help", "scene", "render"}).out);
   std::stringstream lines(run({"help", "scene"}).out);
