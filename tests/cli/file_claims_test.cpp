@@ -246,7 +246,7 @@ TEST_F(FileClaims, DashIsTheStandardOutput) {
   ASSERT_EQ(summary.code, 0) << summary.error;
   EXPECT_EQ(Json::parse(summary.out)["done"], Json::array({1, 2}));
   EXPECT_FALSE(exists("-"));
-  expect_render_refused({"--summary", "-", "--report", "-"}, "--report -", "--summary");
+  expect_render_refused({"--summary", "-", "--report", "-"}, "--summary -", "--report");
   expect_render_refused({"--summary", "-", "--progress", "openjd"}, "--summary -", "--progress");
 }
 
