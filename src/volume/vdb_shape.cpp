@@ -24,6 +24,9 @@ public:
     auto metadata = std::make_shared<openvdb::io::StreamMetadata>();
     openvdb::io::setStreamMetadataPtr(stream, metadata, false);
     readHeader(stream);
+    setFormatVersion(stream);
+    setLibraryVersion(stream);
+    setDataCompression(stream);
     openvdb::MetaMap file_metadata;
     file_metadata.readMeta(stream);
     std::map<std::string, openvdb::io::GridDescriptor> descriptors;
