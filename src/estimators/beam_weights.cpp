@@ -22,8 +22,9 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
     tile.du[i] = static_cast<float>(dot(rays[i].eye.direction, u));
     tile.dv[i] = static_cast<float>(dot(rays[i].eye.direction, v));
     tile.dw[i] = static_cast<float>(dot(rays[i].eye.direction, w));
-    tile.end[static_cast<std::size_t>(i)] =
-        rays[i].camera.hit ? rays[i].camera.hit->t : static_cast<double>(infinity);
+    const auto at = static_cast<std::size_t>(i);
+    tile.end[at] = rays[i].camera.hit ? rays[i].camera.hit->t : static_cast<double>(infinity);
+    tile.shift[at] = static_cast<double>(rays[i].camera.shift);
   }
   tile.own_origins = camera.has_own_origins();
   for (int i = 0; i < TileRays::count && tile.own_origins; ++i) {
@@ -31,6 +32,25 @@ void fill_frame(const World& world, const Camera& camera, const TileRays& rays, 
     tile.ou[i] = static_cast<float>(dot(start, u));
     tile.ov[i] = static_cast<float>(dot(start, v));
     tile.ow[i] = static_cast<float>(dot(start, w));
+  }
+}
+
+/// Lets the rays of a wide lens start where they are as far from the reference as the others, so
+/// that the knots, which rays of a sub-tile share, are no farther apart than they need be.
+void align_starts(BeamTile& tile, int subtile) {
+  const auto in_frame = [](const float* u, const float* v, const float* w, int i) {
+    return Vec3d{u[i], v[i], w[i]};
+  };
+  for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i) {
+    const Vec3d d = in_frame(tile.du, tile.dv, tile.dw, i);
+    const Vec3d start = in_frame(tile.ou, tile.ov, tile.ow, i);
+    const double slide = dot(Vec3d{0, 0, tile.camera_distance} - start, d) - tile.camera_distance;
+    const Vec3d moved = start + d * slide;
+    tile.ou[i] = static_cast<float>(moved.x);
+    tile.ov[i] = static_cast<float>(moved.y);
+    tile.ow[i] = static_cast<float>(moved.z);
+    tile.end[static_cast<std::size_t>(i)] -= slide;
+    tile.shift[static_cast<std::size_t>(i)] -= slide;
   }
 }
 
@@ -121,9 +141,10 @@ public:
     return table;
   }
 
-  void write_ray(const CameraRay& camera, const DepthProfile& profile, const KnotRange& range,
-                 const WeightTable& table, int ray) {
-    const float begin = static_cast<float>(range.begin - camera.shift);
+  /// `shift`: what the table's distances have more than the profile's.
+  void write_ray(const CameraRay& camera, const DepthProfile& profile, double shift,
+                 const KnotRange& range, const WeightTable& table, int ray) {
+    const float begin = static_cast<float>(range.begin - shift);
     const float end = camera.hit ? camera.segment.t_end : infinity;
     const std::size_t volumes = world_.medium.volumes.size();
     ProfileCursor cursor(profile);
@@ -251,9 +272,11 @@ void fill_beam_tile(const World& world, const Camera& camera, const TileRays& ra
   for (int subtile = 0; subtile < BeamTile::subtile_count; ++subtile) {
     BeamTile::Profile& profile = tile.profiles[subtile];
     profile = {};
+    if (tile.own_origins && !lie_in_cone(tile, subtile))
+      align_starts(tile, subtile);
     KnotRange range;
     for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i)
-      range.add(rays[i].profile, rays[i].camera.shift);
+      range.add(rays[i].profile, tile.shift[static_cast<std::size_t>(i)]);
     if (range.empty())
       continue;
     range.choose(settings);
@@ -263,9 +286,10 @@ void fill_beam_tile(const World& world, const Camera& camera, const TileRays& ra
     profile.step = table.step;
     profile.knots = table.knots;
     for (int ray = 0; ray < 16; ++ray) {
-      const TileRays::PixelRay& pixel = rays[16 * subtile + ray];
-      if (!pixel.profile.empty())
-        writer.write_ray(pixel.camera, pixel.profile, range, table, ray);
+      const int i = 16 * subtile + ray;
+      if (!rays[i].profile.empty())
+        writer.write_ray(rays[i].camera, rays[i].profile, tile.shift[static_cast<std::size_t>(i)],
+                         range, table, ray);
     }
   }
 }
@@ -279,7 +303,7 @@ PhotonMap::RayProfile ray_weights(const World& world, const CameraRay& camera,
   WeightWriter writer(world, settings);
   weights.clear();
   const WeightTable table = writer.make_table(range, 1, weights);
-  writer.write_ray(camera, profile, range, table, 0);
+  writer.write_ray(camera, profile, camera.shift, range, table, 0);
   PhotonMap::RayProfile result;
   result.ray = camera.ray();
   result.t_begin = static_cast<float>(table.t_begin - camera.shift);

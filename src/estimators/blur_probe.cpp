@@ -29,10 +29,11 @@ Rgb BlurProbe::compared(const TileRays::PixelRay& ray, const BeamTile& tile, int
     weights[k] = tile.weights[knots.offset + k * BeamTile::rays_per_subtile + lane];
   PhotonMap::RayProfile profile;
   profile.ray = ray.camera.ray();
-  profile.t_begin = static_cast<float>(knots.t_begin - ray.camera.shift);
+  const double shift = tile.shift[static_cast<std::size_t>(index)];
+  profile.t_begin = static_cast<float>(knots.t_begin - shift);
   profile.step = knots.step;
   profile.knots = knots.knots;
-  profile.t_end = static_cast<float>(tile.end[static_cast<std::size_t>(index)] - ray.camera.shift);
+  profile.t_end = static_cast<float>(tile.end[static_cast<std::size_t>(index)] - shift);
   profile.weights = weights.data();
   profile.weight_channels = tile.weight_channels;
   profile.phases = tile.phases;

@@ -28,13 +28,13 @@ Rgb unobstructed(const World& world, Vec3d origin, const IncidentSample& sample)
 
 } // namespace
 
-float caught_shadow(const World& world, const CameraRay& camera, Rng& rng) {
+float caught_shadow(const World& world, const LightSet& lights, const CameraRay& camera, Rng& rng) {
   const SurfaceHit& hit = *camera.hit;
   const Vec3f& direction = camera.ray().direction;
   const Vec3f normal = hit.normal * std::copysign(1.0f, -dot(hit.normal, direction));
   Rgb lit, expected;
-  for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    const Light& light = world.lights[i];
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
     const int samples = light.is_delta() ? 1 : samples_per_light;
     for (int s = 0; s < samples; ++s) {
       const float u = (static_cast<float>(s) + rng.uniform()) / static_cast<float>(samples);

@@ -63,7 +63,7 @@ void gather_pieces(const World& world, const PhotonMap& map, const TileRays& ray
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || ray.profile.empty())
       continue;
-    cut[i] = {DeepRay(world, ray.camera, ray.pixel, image), ray.camera.shift};
+    cut[i] = {DeepRay(world, ray.camera, ray.pixel, image), tile.shift[i]};
     pieces = std::max(pieces, cut[i].deep ? cut[i].deep.count() : 0);
   }
   const std::vector<float> whole = tile.weights;

@@ -43,6 +43,9 @@ struct EstimatorTask {
   /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
   /// each group of its lights, one after the other; null: it makes plans of its own.
   const ScenePhotons* of_scene = nullptr;
+  /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
+  /// belong to the matte, which groups do not change. Null: the world has them all.
+  const LightSet* all_lights = nullptr;
 };
 
 /// What every estimator is made from; the references must outlive it.
@@ -72,6 +75,7 @@ struct EstimatorInput : EstimatorTask {
   }
   /// Channels of the photons' power.
   int photon_channels() const { return plan.needs(Stage::photon_color) ? 3 : 1; }
+  const LightSet& lights_of_matte() const { return all_lights ? *all_lights : world.lights; }
   std::size_t object_count() const { return objects ? objects->names.size() : 0; }
   std::size_t plane_count() const { return layers ? layers->planes() : 0; }
   bool stopped() const { return stop && stop->stopped(); }

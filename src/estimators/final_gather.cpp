@@ -15,8 +15,6 @@ namespace {
 /// Walks end after so many scatterings at the latest, wherever they are: in very dense media
 /// kernels are far wider than walks could go in reasonable time.
 constexpr int most_scatterings = 8;
-/// Weight under which Russian roulette begins.
-constexpr float roulette_below = 0.1f;
 /// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth
 /// rest by which the camera sees may be negative, where the table of directions has next to none.
 constexpr float evenly_drawn = 0.25f;

@@ -13,8 +13,9 @@ namespace {
 constexpr const char* rest = "rest";
 
 /// What is asked of a group: its photons are its own, also those that it follows.
-EstimatorTask task_of(const EstimatorTask& of_all, std::size_t group) {
+EstimatorTask task_of(const EstimatorInput& of_all, std::size_t group) {
   EstimatorTask task = of_all;
+  task.all_lights = &of_all.world.lights;
   task.photons = nullptr;
   if (task.of_scene)
     task.of_scene += group;

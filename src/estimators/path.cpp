@@ -97,7 +97,7 @@ SeenSurface PathEstimator::seen_surface(const CameraRay& camera, const RngKey& k
   constexpr int paths = 4;
   if (input_.world.surfaces->material(*camera.hit).is_shadow_catcher()) {
     Rng rng(key, RngStage::surface, pixel * paths);
-    return {{}, caught_shadow(input_.world, camera, rng)};
+    return {{}, caught_shadow(input_.world, input_.lights_of_matte(), camera, rng)};
   }
   Rgb sum;
   for (int i = 0; i < paths; ++i) {

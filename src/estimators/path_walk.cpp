@@ -6,8 +6,6 @@ namespace vdbeam {
 
 namespace {
 
-/// Weight under which Russian roulette begins.
-constexpr float roulette_below = 0.1f;
 /// The same of walks that branch, in parts of the weight with which they began. They become many
 /// where they matter; with 0.1 they would be many elsewhere too.
 constexpr float roulette_of_branches_below = 0.6f;

@@ -60,7 +60,7 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);
   statistics.neighbourhoods += adaptive ? maps_.medium.size() : 0;
-  statistics.neighbours = adaptive ? plan_.neighbours : 0;
+  statistics.neighbours = adaptive ? static_cast<double>(radii.neighbours) : 0;
   statistics.directions += maps_.medium.has_directions() ? maps_.medium.size() : 0;
   if (maps_.medium.size() > 0)
     statistics.bytes_per_photon = maps_.medium.bytes() / maps_.medium.size();

@@ -9,12 +9,7 @@
 
 namespace vdbeam {
 
-namespace {
-
-/// Weight under which Russian roulette begins.
-constexpr float roulette_below = 0.1f;
-
-} // namespace
+namespace {} // namespace
 
 /// A path on its way; its ray begins at its last vertex.
 struct SceneTracer::Path {

@@ -19,8 +19,6 @@ namespace {
 constexpr int paths_per_ray = 4;
 /// Lamps are looked for behind rough glass by as many times more rays, which gather nothing else.
 constexpr int lamp_rays = 12;
-/// Weight under which Russian roulette begins.
-constexpr float roulette_below = 0.1f;
 /// Interfaces beyond the first at which a path goes both ways.
 constexpr int most_splits = 1;
 /// A smaller share of the light is not worth a path of its own.
@@ -119,7 +117,8 @@ private:
 
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                                GatherAlong gather)
-    : world_(photons.world()), photons_(photons), gather_(std::move(gather)),
+    : world_(photons.world()), lights_of_matte_(input.lights_of_matte()), photons_(photons),
+      gather_(std::move(gather)),
       tracer_(world_, lights_of_surfaces(input), input.settings.max_bounces),
       photons_on_surfaces_(input.plan.needs(Stage::surface_photons)),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
@@ -134,7 +133,7 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
     Rng rng = path_rng(0);
-    return {{}, caught_shadow(world_, camera, rng)};
+    return {{}, caught_shadow(world_, lights_of_matte_, camera, rng)};
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};

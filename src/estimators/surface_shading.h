@@ -54,6 +54,7 @@ private:
                    RenderStatistics& counts) const;
 
   const World& world_;
+  const LightSet& lights_of_matte_;
   const PhotonPass& photons_;
   GatherAlong gather_;
   SceneTracer tracer_;

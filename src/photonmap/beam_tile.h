@@ -32,6 +32,8 @@ struct BeamTile {
   /// Distance at which a ray ends at a surface; infinite where it does not. What lies beyond does
   /// not count, whatever the weights.
   std::array<double, ray_count> end = endless();
+  /// What is added to a distance along a ray of render space for the t of this tile.
+  std::array<double, ray_count> shift{};
 
   /// What the medium makes of a photon at distance t on each ray, per sub-tile at uniform knots
   /// t_k = t_begin + k * step, linear in between, 0 before the first and after the last knot:
@@ -62,6 +64,10 @@ private:
     return ends;
   }
 };
+
+/// Whether the rays of a sub-tile lie in a cone around their mean direction. Those of a lens that
+/// is wider than its focus is far may not; they are gathered ray by ray. True without any ray.
+bool lie_in_cone(const BeamTile& tile, int subtile);
 
 /// What a query did, for the report and for tuning.
 struct QueryCounts {

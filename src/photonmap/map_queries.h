@@ -17,7 +17,9 @@ struct MapView {
 
 /// PhotonMap::query, query_ray and query_point on the best SIMD target of this machine.
 QueryCounts query_tile(const MapView& map, BeamTile& tile);
-QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance);
+/// `first_flight`, unless it is null, takes the part of photons on their first flight too.
+QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance,
+                      Rgb* first_flight = nullptr);
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
                         const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                         Rgb* first_flight = nullptr);

@@ -158,9 +158,11 @@ HWY_INLINE V16 phase_lanes(const PhotonLanes& photons, const PhaseFunction& phas
 
 class RayWalk {
 public:
-  RayWalk(const MapView& map, const PhotonMap::RayProfile& profile, const NearRay& ray)
+  RayWalk(const MapView& map, const PhotonMap::RayProfile& profile, const NearRay& ray,
+          bool first_flights)
       : map_(map), profile_(profile), ray_(ray), kernel_(disc_polynomial(map.shape)),
-        channels_(std::max(map.blocks.channels(), profile.weight_channels)) {}
+        channels_(std::max(map.blocks.channels(), profile.weight_channels)),
+        first_flights_(first_flights && map.blocks.has_first_flights()) {}
 
   void run() {
     walk_tree(
@@ -178,7 +180,7 @@ public:
         });
   }
 
-  LaneSums sums;
+  LaneSums sums, first_sums;
   QueryCounts counts;
 
 private:
@@ -231,6 +233,8 @@ private:
           value = hn::Mul(common, hn::MulAdd(fraction, hn::Sub(high, low), low));
         }
         photons.add(value, c, sums);
+        if (first_flights_)
+          photons.add_first_flight(value, c, first_sums);
       }
     }
   }
@@ -240,13 +244,16 @@ private:
   const NearRay& ray_;
   const KernelPolynomial kernel_;
   const int channels_;
+  const bool first_flights_;
 };
 
 QueryCounts ray_on_target(const MapView& map, const PhotonMap::RayProfile& profile,
-                          const NearRay& ray, LaneSums& sums) {
-  RayWalk walk(map, profile, ray);
+                          const NearRay& ray, LaneSums& sums, LaneSums* first_sums) {
+  RayWalk walk(map, profile, ray, first_sums != nullptr);
   walk.run();
   sums = walk.sums;
+  if (first_sums)
+    *first_sums = walk.first_sums;
   return walk.counts;
 }
 
@@ -311,15 +318,21 @@ namespace vdbeam {
 HWY_EXPORT(ray_on_target);
 HWY_EXPORT(point_on_target);
 
-QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance) {
+QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance,
+                      Rgb* first_flight) {
   if (map.tree.levels.empty() || profile.knots < 2 || !(profile.step > 0) || !profile.phases)
     return {};
   const NearRay ray = near_ray(profile, map.tree.bounds);
-  LaneSums sums;
-  const QueryCounts counts = HWY_DYNAMIC_DISPATCH(ray_on_target)(map, profile, ray, sums);
+  LaneSums sums, first_sums;
+  const QueryCounts counts = HWY_DYNAMIC_DISPATCH(ray_on_target)(
+      map, profile, ray, sums, first_flight ? &first_sums : nullptr);
   const Rgb total = sums.total();
   const bool grey = map.blocks.channels() == 1 && profile.weight_channels == 1;
   radiance += grey ? Rgb(total.x) : total;
+  if (first_flight) {
+    const Rgb straight = first_sums.total();
+    *first_flight += grey ? Rgb(straight.x) : straight;
+  }
   return counts;
 }
 

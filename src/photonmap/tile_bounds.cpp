@@ -2,6 +2,24 @@
 
 namespace vdbeam {
 
+bool lie_in_cone(const BeamTile& tile, int subtile) {
+  // Tangents and knots keep their digits up to here.
+  constexpr double least_cosine = 0.2;
+  const int first = subtile * BeamTile::rays_per_subtile;
+  Vec3d mean;
+  bool any = false;
+  for (int r = first; r < first + BeamTile::rays_per_subtile; ++r)
+    if (const Vec3d d = ray_direction(tile, r); is_live(d)) {
+      mean += d;
+      any = true;
+    }
+  const double size = length(mean);
+  for (int r = first; any && r < first + BeamTile::rays_per_subtile; ++r)
+    if (const Vec3d d = ray_direction(tile, r); is_live(d) && !(dot(d, mean) > least_cosine * size))
+      return false;
+  return true;
+}
+
 RayBounds bound_directions(const BeamTile& tile, int first_ray, int rays) {
   RayBounds box;
   if (tile.own_origins)

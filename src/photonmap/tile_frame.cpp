@@ -171,13 +171,17 @@ bool end_rays(const BeamTile& tile, int index, SubtileFrame& s) {
 void make_subtile(const BeamTile& tile, int index, float mean_radius, float reach,
                   bool has_directions, SubtileFrame& s) {
   const BeamTile::Profile& profile = tile.profiles[index];
-  s.active = false;
+  s.active = s.single = false;
   if (profile.knots < 2 || !(profile.step > 0) || !tile.phases || tile.phases->empty())
     return;
   s.weights = tile.weights.data() + profile.offset;
   s.knots = profile.knots;
   if (!trim_knots(tile.phases->size() * static_cast<std::size_t>(tile.weight_channels), s))
     return;
+  if (!lie_in_cone(tile, index)) {
+    s.single = true;
+    return;
+  }
   const double spread = fill_rays(tile, index, s);
   if (spread < 0)
     return;

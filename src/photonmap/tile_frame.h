@@ -31,6 +31,7 @@ struct SubtileFrame {
   const float* weights; ///< [(group * channels + c)][knot][16]
   int knots;
   bool active;
+  bool single;      ///< gathered ray by ray; not active then
   bool per_ray;     ///< knots looked up and distances taken exactly per ray
   bool own_origins; ///< then per_ray too
   PhaseMode phase;

@@ -1,4 +1,5 @@
 #include "photonmap/map_queries.h"
+#include "photonmap/tile_bounds.h"
 #include "photonmap/tile_frame.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -8,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "photonmap/tile_shade-inl.h"
@@ -226,6 +228,77 @@ namespace vdbeam {
 
 HWY_EXPORT(query_tile_on_target);
 
+namespace {
+
+/// A ray of a tile as a query of its own.
+class TileRay {
+public:
+  TileRay(const BeamTile& tile, int ray) : tile_(tile), ray_(ray), d_(ray_direction(tile, ray)) {
+    const BeamTile::Profile& knots = tile.profiles[ray / BeamTile::rays_per_subtile];
+    const std::size_t rows = tile.phases->size() * static_cast<std::size_t>(tile.weight_channels);
+    weights_.resize(rows * static_cast<std::size_t>(knots.knots));
+    for (std::size_t k = 0; k < weights_.size(); ++k)
+      weights_[k] = tile.weights[knots.offset + k * BeamTile::rays_per_subtile +
+                                 static_cast<std::size_t>(ray % BeamTile::rays_per_subtile)];
+  }
+
+  bool sees_anything() const {
+    return is_live(d_) &&
+           std::any_of(weights_.begin(), weights_.end(), [](float w) { return w != 0; });
+  }
+  PhotonMap::RayProfile profile() const {
+    const BeamTile::Profile& knots = tile_.profiles[ray_ / BeamTile::rays_per_subtile];
+    // From the first knot on, in double precision, since the lens may be far away.
+    const Vec3d start =
+        ray_start(tile_, ray_) - Vec3d{0, 0, tile_.camera_distance} + d_ * knots.t_begin;
+    PhotonMap::RayProfile profile;
+    profile.ray = {tile_.reference + Vec3f(in_render_space(start)), Vec3f(in_render_space(d_))};
+    profile.step = knots.step;
+    profile.knots = knots.knots;
+    profile.t_end = static_cast<float>(tile_.end[static_cast<std::size_t>(ray_)] - knots.t_begin);
+    profile.weights = weights_.data();
+    profile.weight_channels = tile_.weight_channels;
+    profile.phases = tile_.phases;
+    return profile;
+  }
+
+private:
+  Vec3d in_render_space(const Vec3d& v) const {
+    return Vec3d(tile_.axis_u) * v.x + Vec3d(tile_.axis_v) * v.y + Vec3d(tile_.axis_w) * v.z;
+  }
+
+  const BeamTile& tile_;
+  int ray_;
+  Vec3d d_;
+  std::vector<float> weights_;
+};
+
+/// Gathers a sub-tile ray by ray.
+void query_rays(const MapView& map, BeamTile& tile, int subtile, int channels,
+                QueryCounts& counts) {
+  const int first = subtile * BeamTile::rays_per_subtile;
+  for (int r = first; r < first + BeamTile::rays_per_subtile; ++r) {
+    const TileRay ray(tile, r);
+    if (!ray.sees_anything())
+      continue;
+    Rgb radiance, straight;
+    const bool flights = map.blocks.has_first_flights();
+    const QueryCounts found =
+        query_ray(map, ray.profile(), radiance, flights ? &straight : nullptr);
+    counts.contributions += found.contributions;
+    counts.candidates += found.candidates;
+    counts.blocks += found.blocks;
+    for (int c = 0; c < channels; ++c) {
+      const auto at = static_cast<std::size_t>(c * BeamTile::ray_count + r);
+      tile.radiance[at] += radiance[c];
+      if (flights)
+        tile.first_flight[at] += straight[c];
+    }
+  }
+}
+
+} // namespace
+
 QueryCounts query_tile(const MapView& map, BeamTile& tile) {
   const int channels = std::max(map.blocks.channels(), tile.weight_channels);
   const std::size_t size = static_cast<std::size_t>(channels) * BeamTile::ray_count;
@@ -240,9 +313,13 @@ QueryCounts query_tile(const MapView& map, BeamTile& tile) {
   TileFrame frame;
   make_tile_frame(tile, map.mean_radius, length(max(far_side, Vec3f(0))),
                   map.blocks.has_directions(), frame);
-  if (frame.active == 0)
-    return {};
-  return HWY_DYNAMIC_DISPATCH(query_tile_on_target)(map, frame, tile, channels);
+  QueryCounts counts;
+  if (frame.active != 0)
+    counts = HWY_DYNAMIC_DISPATCH(query_tile_on_target)(map, frame, tile, channels);
+  for (int s = 0; s < BeamTile::subtile_count; ++s)
+    if (frame.subtiles[s].single)
+      query_rays(map, tile, s, channels, counts);
+  return counts;
 }
 
 } // namespace vdbeam

@@ -38,15 +38,32 @@ double flattest(const World& world) {
   return static_cast<double>(ratio);
 }
 
-double narrowest(const World& world) {
-  double g = 0;
+/// Mean cosine of the narrowest lobe that photons have to meet. Forward peaks are none where they
+/// are taken out of the medium; backward ones always stay.
+double narrowest(const World& world, bool forward) {
+  double narrowest = 0;
   for (const PhaseFunction& phase : world.medium.phases)
-    for (int i = 0; i < phase.lobe_count(); ++i)
-      g = std::max(g, std::abs(static_cast<double>(phase.lobe(i).g)));
-  return g;
+    for (int i = 0; i < phase.lobe_count(); ++i) {
+      const auto g = static_cast<double>(phase.lobe(i).g);
+      if ((g < 0 || forward) && std::abs(g) > std::abs(narrowest))
+        narrowest = g;
+    }
+  return narrowest;
 }
 
 } // namespace
+
+std::optional<std::string> starved_note(const Scene& scene, const RenderPlan& plan,
+                                        const RenderStatistics& counts) {
+  if (!plan.needs(Stage::photons) || !scene.surfaces.empty() || counts.lookups == 0 ||
+      counts.contributions >= counts.lookups)
+    return {};
+  return fmt::format(
+      "{} rays gathered {} photons in all, less than one each: light that the medium "
+      "scatters is missing, or lies in single bright pixels; a larger render.radius, "
+      "render.max_radius, render.keep or render.photons gathers more",
+      counts.lookups, counts.contributions);
+}
 
 std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& input) {
   const World& world = input.world;
@@ -72,10 +89,11 @@ std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& i
                                 "in the skin that is seen, so parts may be dark or noisy; "
                                 "render.estimator = \"path\" has no such limit",
                                 depth));
-  if (narrowest(world) > narrowest_lobe && !default_photon_plan(input).similar)
+  if (const double g = narrowest(world, !default_photon_plan(input).similar);
+      std::abs(g) > narrowest_lobe)
     notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
                                 "from where it looks; render.estimator = \"path\" has less noise",
-                                narrowest(world)));
+                                g));
   if (const double sheet = flattest(world); sheet < thinnest_sheet)
     notes.push_back(fmt::format("a medium is a sheet {:.2g} times as thick as it is wide: seen "
                                 "aslant, kernels reach through it and darken it until passes or "

@@ -8,6 +8,7 @@
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"
 #include "render/error_record.h"
+#include "render/limit_notes.h"
 #include "render/pass_window.h"
 #include "render/quick_look.h"
 #include "report/image_metadata.h"
@@ -135,6 +136,8 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
     note(fmt::format("the open shutter was seen at {} only, one in each pass: blur may show as "
                      "steps; render at least {} passes",
                      count_text(static_cast<std::uint64_t>(film_.passes()), "moment"), times));
+  if (const auto starved = starved_note(scene_, result_.plan, result_.statistics))
+    note(*starved);
   if (film_.invalid_values() > 0)
     note(fmt::format("{} pixel values were not finite and count as 0", film_.invalid_values()));
   if (scene_.render.clamp)

@@ -1,6 +1,7 @@
 #include "render/plan_needs.h"
 
 #include "lights/light_table.h"
+#include "materials/throws_light.h"
 #include "math/color.h"
 #include "phase/phase_function.h"
 
@@ -54,9 +55,7 @@ void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator,
                   !is_grey(material.reflectance) || !is_grey(material.absorption) ||
                   !is_grey(material.radiance);
   needs.specular = needs.specular || is_specular(material);
-  needs.throws_light = needs.throws_light || material.type == MaterialType::mirror ||
-                       material.type == MaterialType::conductor ||
-                       material.type == MaterialType::dielectric;
+  needs.throws_light = needs.throws_light || throws_light(*make_material(material, 1));
   needs.receiver = needs.receiver || takes_photons(material);
   if (shines(material))
     needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||

@@ -4,10 +4,12 @@
 #include "lights/volume_light.h"
 #include "math/color.h"
 #include "transport/build_surfaces.h"
+#include "vdbeam/error.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 namespace vdbeam {
 
@@ -23,6 +25,24 @@ Affine local_to_world(const Vec3<std::int64_t>& origin, const Affine& index_to_w
 
 Boxd mapped_bounds(const Affine& map, const Boxf& box) {
   return map.bounds({Vec3d(box.lower), Vec3d(box.upper)});
+}
+
+/// Light must not leave single precision: sums of photons would be infinite.
+void check_lights(const Scene& scene, const World& world) {
+  const auto finite = [](const Rgb& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (!finite(world.lights[i].power()))
+      throw InputError(fmt::format(
+          "light.{}: it sends more power into the scene than single precision holds (3.4e38): give "
+          "all lights less by the same factor, and expose the picture by it",
+          i));
+  for (const Emitter& emitter : world.medium.emitters)
+    if (!finite(emitter.strength))
+      throw InputError(fmt::format("volume.{}.emission.scale: it glows more than single precision "
+                                   "holds (3.4e38 per unit of length): give a smaller one",
+                                   emitter.setting));
 }
 
 /// Moves the bounds' centre to 0 and scales by the power of two that brings the size to [1, 2).
@@ -101,7 +121,11 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
   Volume volume;
   volume.field = std::move(grid.field);
   const float strongest = max_component(settings.extinction_scale);
-  volume.extinction = static_cast<float>(settings.extinction * strongest / scale);
+  // With an extinction beyond single precision all densities are limited anyway.
+  constexpr double greatest = std::numeric_limits<float>::max();
+  const double extinction =
+      std::min(settings.extinction * static_cast<double>(strongest) / scale, greatest);
+  volume.extinction = static_cast<float>(extinction);
   limit_density(volume, settings, scale, notes);
   volume.majorants = MajorantGrid(volume.field);
   volume.to_local = Affinef(local_to_render.inverse());
@@ -248,6 +272,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   const OccupiedRegion lit =
       world.surfaces ? lit_region(world.region, *world.surfaces->set) : world.region;
   world.lights = LightSet(scene.lights, scene.camera.up, world.space, lit, &found.notes);
+  check_lights(scene, world);
   if (world.surfaces)
     add_surface_lights(scene.surfaces, world);
   add_volume_lights(world);

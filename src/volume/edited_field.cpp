@@ -135,6 +135,10 @@ private:
 
 } // namespace
 
+/// What edits make of a density is kept below this, so that sums of a few of them stay finite in
+/// single precision; no medium that is denser looks different.
+constexpr double greatest_density = 1e37;
+
 float remapped(const DensityRemap& remap, float value) {
   if (remap.curve.empty())
     return remapped(remap, nullptr, value);
@@ -154,8 +158,7 @@ float remapped(const DensityRemap& remap, const Curve* curve, float value) {
     x = std::pow(x, remap.power);
   if (curve)
     x = curve->at(x);
-  const auto result = static_cast<float>(x);
-  return std::isfinite(result) ? result : 0;
+  return x > 0 ? static_cast<float>(std::min(x, greatest_density)) : 0;
 }
 
 DensityField edited_field(const DensityField& field, const GridEdits& edits) {

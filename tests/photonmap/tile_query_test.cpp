@@ -104,6 +104,10 @@ INSTANTIATE_TEST_SUITE_P(
                  {.distance = 0.5, .pixel = 0.03, .smooth = false, .lens = 0.3, .focus = 1},
                  {},
                  exact_edges},
+        TileCase{"lens_wider_than_its_focus",
+                 {.t_end = 30, .knots = 300, .smooth = false, .lens = 25, .focus = 6},
+                 {},
+                 exact_edges},
         TileCase{"parallel", {.distance = 3, .lens = 0.5}, {}, exact_edges},
         TileCase{"few_photons", {.pixel = 0.03}, {.count = 3, .greatest_radius = 1}, exact_edges}),
     [](const auto& test) { return test.param.name; });

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -193,6 +194,41 @@ TEST_F(RayLayersTest, HoldoutAndShadow) {
   EXPECT_NEAR(at(image, "depth.Z", 18, 8), 14, 1e-3);
   EXPECT_NEAR(at(image, "position.Z", 18, 8), -4, 1e-3);
   EXPECT_EQ(at(image, "samples.Y", 3, 3), 4);
+}
+
+/// The matte, and all that is no light, belong to the scene and not to a group of its lights; the
+/// groups' light adds up to the beauty.
+TEST_P(LayersOfVolumes, GroupsOfLightsDoNotChangeTheMatte) {
+  const std::string scene =
+      cube +
+      "[[mesh]]\ntype = \"sphere\"\nscale = 0.4\ntranslate = [-2, 0, -3]\nmaterial = \"holdout\"\n"
+      "[[mesh]]\ntype = \"quad\"\nscale = 9\ntranslate = [0, 0, -4]\n"
+      "material = \"shadow_catcher\"\n"
+      "[[light]]\ntype = \"distant\"\ndirection = [0.2, 0, -1]\nirradiance = 9\n";
+  std::vector<std::string> options = layers({"holdout", "shadow", "depth", "alpha", "samples"});
+  options.push_back(std::string("render.estimator=") + GetParam());
+  options.emplace_back("image.cryptomatte=true");
+  const Image plain = render(load(scene, options)).image;
+  options.emplace_back("light.0.group=fill");
+  options.emplace_back("light.1.group=key");
+  const Image grouped = render(load(scene, options)).image;
+  double shadow = 0;
+  for (const ImageChannel& channel : plain.channels) {
+    const bool is_light = channel.name.size() == 1
+                              ? channel.name != "A"
+                              : channel.name.ends_with(".R") || channel.name.ends_with(".G") ||
+                                    channel.name.ends_with(".B");
+    if (is_light && !channel.name.starts_with("crypto"))
+      continue;
+    EXPECT_EQ(plane(grouped, channel.name), channel.data) << channel.name;
+    if (channel.name == "shadow.Y")
+      shadow = *std::max_element(channel.data.begin(), channel.data.end());
+  }
+  EXPECT_GT(shadow, 0.2);
+  for (std::size_t i = 0; i < plane(grouped, "G").size(); ++i) {
+    const float sum = plane(grouped, "light_fill.G")[i] + plane(grouped, "light_key.G")[i];
+    ASSERT_NEAR(sum, plane(grouped, "G")[i], 1e-5f * sum) << i;
+  }
 }
 
 const std::vector<std::string> everything{"depth_near",       "depth_far", "position", "motion",

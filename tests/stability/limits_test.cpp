@@ -138,6 +138,80 @@ TEST(Limits, KernelWiderThanTheMediumIsNoted) {
   EXPECT_TRUE(noted(scene, "render.radius"));
 }
 
+TEST(Limits, KernelsThatMeetNoPhotonsAreNoted) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  scene.render.estimator = EstimatorType::beam;
+  scene.render.passes = 1;
+  EXPECT_FALSE(noted(scene, "less than one each"));
+  Scene narrow = scene;
+  narrow.render.kernel = KernelRadius::fixed;
+  narrow.render.radius = 1e-4;
+  EXPECT_TRUE(noted(narrow, "less than one each"));
+  scene.render.keep = 1e-9;
+  EXPECT_TRUE(noted(scene, "less than one each"));
+}
+
+/// No forward peak is taken out of these: photons have to meet the lobe.
+TEST(Limits, NarrowBackwardLobesAreNoted) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  scene.render.estimator = EstimatorType::beam;
+  scene.render.passes = 1;
+  scene.volumes[0].phase.type = PhaseType::henyey_greenstein;
+  scene.volumes[0].phase.g = -0.9999;
+  EXPECT_TRUE(noted(scene, "g = -1 is so narrow"));
+}
+
+/// Mean of the picture's red.
+double brightness(const Scene& scene) {
+  const std::vector<float> values = render(scene).image.find("R")->data;
+  double sum = 0;
+  for (const float value : values)
+    sum += static_cast<double>(value);
+  return sum / static_cast<double>(values.size());
+}
+
+/// What is denser than all that single precision tells apart looks like what just about is.
+TEST(Limits, ExtinctionAndDensityBeyondSinglePrecision) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  scene.render.estimator = EstimatorType::path;
+  scene.render.passes = 2;
+  scene.volumes[0].albedo = Rgb(0.5f);
+  scene.volumes[0].extinction = 1e8;
+  const double expected = brightness(scene);
+  EXPECT_GT(expected, 0.05);
+  scene.volumes[0].extinction = 1e39;
+  EXPECT_NEAR(brightness(scene), expected, 0.1 * expected);
+  EXPECT_FALSE(noted(scene, "not finite"));
+  scene.volumes[0].extinction = 1;
+  scene.volumes[0].remap.scale = 1e308;
+  EXPECT_NEAR(brightness(scene), expected, 0.1 * expected);
+  EXPECT_FALSE(noted(scene, "not finite"));
+}
+
+void add_sun_to(Scene& scene, float irradiance) {
+  LightSettings sun;
+  sun.type = LightType::distant;
+  sun.direction = {0, 0, -1};
+  sun.irradiance = Rgb(irradiance);
+  scene.lights.push_back(sun);
+}
+
+TEST(Limits, PowerBeyondSinglePrecisionIsRefusedByName) {
+  const TempFolder folder;
+  Scene scene = file_scene(folder);
+  add_sun_to(scene, 3e38f);
+  try {
+    render(scene);
+    FAIL() << "rendered";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("light.1: it sends more power"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Limits, SheetsAreNoted) {
   const TempFolder folder;
   Scene scene = file_scene(folder);

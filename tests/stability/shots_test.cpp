@@ -43,6 +43,16 @@ protected:
   }
 };
 
+/// Of a lens far wider than its focus is distant, rays of neighbouring pixels come from all sides.
+TEST_F(Shots, LensesWiderThanTheirFocusLoseNoLight) {
+  for (const char* radius : {"20", "100", "10000"}) {
+    SCOPED_TRACE(radius);
+    expect_one(render_with({std::string("camera.lens_radius=") + radius, "render.estimator=beam",
+                            "render.final_gather=never"})
+                   .image);
+  }
+}
+
 TEST_F(Shots, VelocitiesOf1e6) {
   for (const char* scale : {"1e6", "-1e6", "1e30", "1e3", "-1e2"}) {
     SCOPED_TRACE(scale);
