@@ -9,8 +9,6 @@
 
 namespace vdbeam {
 
-namespace {} // namespace
-
 /// A path on its way; its ray begins at its last vertex.
 struct SceneTracer::Path {
   Rng& rng;
