@@ -11,7 +11,7 @@ FILES = {"SCENE|VDB": ("scene", "volume"), "VDB": ("volume",), "FILE...": ("volu
          "IMAGE": ("film", "picture"), "REFERENCE": ("film", "picture"), "PARTIAL...": ("film",), "PARTIAL": ("film",),
          "FILE.exr": ("film", "picture"), "FILE": ("film",), "FILE.png": (), "FILE.json": (), "FILE.toml": (), "FOLDER": ()}
 VALUES = {"N", "T", "E", "L", "NAME", "WxH", "KEY=VALUE", "RANGE", "STOPS", "A-B", "X0,Y0,X1,Y1", "T|N", "MIB", "OPTION",
-          "PATH", "COMMAND"}
+          "PATH"}
 
 
 def printed(*words):
@@ -40,23 +40,27 @@ class Key:
         return [self.default, *numbers] if self.default else numbers
 
 
+# What follows a key's meaning: its values, unit and default; lines are wrapped anywhere.
+VALUE_TEXT = re.compile(r'''((?:"[^"]*"(?:, "[^"]*")*|true or false|path|text|(?:whole number|number|3 numbers|RGB|duration|12 numbers)
+(?: in [\[(][^])]*[])]| [<>]=? \S+)?))(?: \[[^],]*\])?, (?:required|default ("[^"]*"|\[[^]]*\]|\S+))'''.replace("\n", ""))
+
+
 @functools.cache
 def keys():
     """Every row of the table of keys."""
     found, section = [], ""
-    lines = printed("--help-scene").splitlines()
-    for i, line in enumerate(lines):
-        if line and not line.startswith(" "):
-            section = line.strip("[]")
-        elif row := re.match(r"  (\w+) +(.*)", line):
-            name, doc = row.groups()
-            j = i + 1
-            while ", default" not in lines[j]:
-                j += 1
-            values, _, default = lines[j].strip().rpartition(", default")
-            owners = re.match(r"([\w, ]+): ", doc)
-            owners = re.split(r", | and ", owners.group(1)) if owners else []
-            found.append(Key(section, name, owners, re.sub(r" \[[^],]*\]$", "", values), default.strip()))
+    for block in re.split(r"\n(?=\S|  \S)", printed("--help-scene")):
+        if not block.startswith(" "):
+            section = block.strip()
+            continue
+        name, text = block.split(maxsplit=1)
+        text = " ".join(text.split())
+        owners = re.match(r"([\w, ]+): ", text)
+        owners = re.split(r", | and ", owners.group(1)) if owners else []
+        row = VALUE_TEXT.search(text)
+        if not row:
+            raise SystemExit(f"{section}.{name} has values of a new kind: add it to VALUE_TEXT in tools/attack/tables.py")
+        found.append(Key(section, name, owners, row.group(1), row.group(2) or ""))
     return found
 
 
