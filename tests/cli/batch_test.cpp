@@ -263,8 +263,9 @@ TEST_F(BatchCommand, SnapshotOnUserSignal) {
 
 TEST_F(BatchCommand, AFinishedFrameLeavesNothingBesideIt) {
   // Damaged files of an earlier run, recognised by the names of their attributes.
-  write("o.0001.checkpoint.exr", "vdbeam:film");
-  write("o.0001.snapshot.exr", "vdbeam:stoppedBy");
+  const std::string begin = "\x76\x2f\x31\x01 vdbeam:sceneHash ";
+  write("o.0001.checkpoint.exr", begin + "vdbeam:film");
+  write("o.0001.snapshot.exr", begin + "vdbeam:stoppedBy");
   ASSERT_EQ(render({cloud_vdb, "-f", "1", "-o", "o.####.exr", "--passes", "1", "-q"}).code, 0);
   EXPECT_EQ(files(), Names{"o.0001.exr"});
 }
