@@ -7,4 +7,4 @@ from pathlib import Path
 TOOL = Path(__file__).resolve().parents[2] / "tools/attack"
 
 if __name__ == "__main__":
-    sys.exit(subprocess.run([sys.executable, "-B", str(TOOL), "--mutants", "350"]).returncode)
+    sys.exit(subprocess.run([sys.executable, "-B", str(TOOL), "--mutants", "60"]).returncode)
