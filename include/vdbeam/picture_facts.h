@@ -2,7 +2,7 @@
 
 namespace vdbeam {
 
-/// What a picture shows, in numbers that tell whether it is what was meant.
+/// Numbers that describe what a picture shows, so that a wrong one is noticed.
 struct PictureFacts {
   /// Of the medium, along the deepest of a grid of camera rays, in the channel with most.
   double optical_depth = 0;

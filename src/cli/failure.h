@@ -7,7 +7,7 @@
 
 namespace vdbeam::cli {
 
-/// What the user is told about an exception, and the exit code that it means.
+/// The message for an exception, and the exit code that it means.
 struct Failure {
   std::string line;
   ExitCode code;

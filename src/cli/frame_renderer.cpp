@@ -316,12 +316,12 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   const std::optional<Image> reference = read("--reference", options_.files.reference),
                              second = read("--second-reference", options_.files.second_reference);
   progress.start(start_text(scene));
-  const auto tell = [&](const std::string& note) {
+  const auto report_note = [&](const std::string& note) {
     if (notes_->add(note, loaded.frame()))
       progress.note(note);
   };
   for (const std::string& note : scene.notes)
-    tell(note);
+    report_note(note);
   FrameSettings frame;
   frame.pass_range = options_.pass_range;
   frame.region = options_.region;
@@ -336,7 +336,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     progress.pass(record);
     farm.frame_at(index, Progress::fraction(record, settings));
   };
-  hooks.on_note = tell;
+  hooks.on_note = report_note;
   hooks.stop = &stop_requested();
   hooks.snapshot = &snapshot_requested();
   hooks.on_snapshot = [&](RenderResult& so_far) {
