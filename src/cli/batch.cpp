@@ -5,8 +5,10 @@
 #include "cli/signals.h"
 #include "cli/streams.h"
 #include "cli/terminal.h"
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
+#include "render/memory_check.h"
 #include "text/frame_range.h"
 #include "text/printable.h"
 #include "vdbeam/error.h"
@@ -53,9 +55,30 @@ void Batch::say(const std::string& line) const {
     log_text(printable_text(line) + '\n'); // a summary has several lines
 }
 
-Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
+/// Reads a frame's files. `before`: the frame before it, which is being rendered unless this one is
+/// read `alone`.
+void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone) const {
+  const Scene& scene = loaded.frame.scene;
+  const std::uint64_t granted = granted_memory();
+  const std::uint64_t beside = before && !alone ? std::min(before->bytes, granted) : 0;
+  if (const std::optional<MemoryPlan> plan = plan_large_frame(scene, granted - beside)) {
+    check_planned_memory(scene, *plan, granted);
+    loaded.bytes = std::max(plan->rendering, plan->writing);
+    loaded.kept_bytes = plan->kept;
+    const std::uint64_t reading = plan->reading - plan->program;
+    loaded.deferred = before && !alone && beside + reading > granted;
+    loaded.fits_after = !before || before->kept_bytes + plan->reading <= granted;
+  } else {
+    loaded.bytes = (granted - beside) / 2;
+  }
+  const PreparedScenePtr previous = before ? before->frame.prepared : nullptr;
+  loaded.frame.prepared = loaded.deferred ? nullptr : prepare_scene(scene, previous);
+}
+
+Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone) const {
   Loaded loaded;
-  loaded.frame.prepared = previous;
+  if (before)
+    loaded.frame.prepared = before->frame.prepared;
   try {
     loaded.frame.scene = document_.scene_at(frame, options_.missing);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -67,7 +90,7 @@ Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
     }
     if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty()) {
       renderer_.check_side_files(frame);
-      loaded.frame.prepared = prepare_scene(loaded.frame.scene, previous);
+      read(loaded, before, alone);
     }
   } catch (const InputError& error) {
     const std::string line = error.what();
@@ -80,10 +103,10 @@ Batch::Loaded Batch::load(int frame, const PreparedScenePtr& previous) const {
 }
 
 /// Reads on another thread: one thread beside a frame that is being rendered, all of them `alone`.
-std::future<Batch::Loaded> Batch::load_aside(int frame, const PreparedScenePtr& previous,
+std::future<Batch::Loaded> Batch::load_aside(int frame, const SharedLoaded& before,
                                              bool alone) const {
   const auto task = std::make_shared<std::packaged_task<Loaded()>>(
-      [this, frame, previous] { return load(frame, previous); });
+      [this, frame, before, alone] { return load(frame, before, alone); });
   std::future<Loaded> future = task->get_future();
   // Of all threads one waits here, and has no part in reading.
   tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, alone ? 1 : 0);
@@ -104,12 +127,20 @@ Batch::Loaded Batch::wait_for(std::future<Loaded>& future) const {
 }
 
 int Batch::run() {
+  SharedLoaded loaded;
   std::future<Loaded> next = load_aside(frames_[0], nullptr, true);
   for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const Loaded loaded = wait_for(next);
+    Loaded read_ahead = wait_for(next);
+    if (read_ahead.deferred) {
+      if (!read_ahead.fits_after)
+        loaded.reset();
+      next = load_aside(frames_[i], loaded, true);
+      read_ahead = wait_for(next);
+    }
+    loaded = std::make_shared<const Loaded>(std::move(read_ahead));
     if (i + 1 < frames_.size())
-      next = load_aside(frames_[i + 1], loaded.frame.prepared, false);
-    const bool go_on = process(i, loaded);
+      next = load_aside(frames_[i + 1], loaded, false);
+    const bool go_on = process(i, *loaded);
     if (go_on && !stop_requested())
       continue;
     const int code = finish();

@@ -16,8 +16,8 @@ struct BatchOptions {
   FarmFormat farm = FarmFormat::plain;
 };
 
-/// Renders frames one after the other. While one is rendered, the next is read: at most two are in
-/// memory.
+/// Renders frames one after the other. While one is rendered, the next is read where both fit in
+/// the memory that there may be; else it is read afterwards. At most two are in memory.
 class Batch {
 public:
   Batch(const SceneDocument& document, const std::string& scene, std::vector<int> frames,
@@ -34,10 +34,16 @@ private:
     bool skip = false;
     std::string note; ///< why an image that is there is rendered again
     std::exception_ptr error;
+    /// The most that it takes while it is rendered, and that its volumes keep after [bytes].
+    std::uint64_t bytes = 0, kept_bytes = 0;
+    bool deferred = false;  ///< not read, since it does not fit beside the frame before it
+    bool fits_after = true; ///< beside what the frame before it keeps
   };
+  using SharedLoaded = std::shared_ptr<const Loaded>;
 
-  Loaded load(int frame, const PreparedScenePtr& previous) const;
-  std::future<Loaded> load_aside(int frame, const PreparedScenePtr& previous, bool alone) const;
+  Loaded load(int frame, const SharedLoaded& before, bool alone) const;
+  void read(Loaded& loaded, const SharedLoaded& before, bool alone) const;
+  std::future<Loaded> load_aside(int frame, const SharedLoaded& before, bool alone) const;
   Loaded wait_for(std::future<Loaded>& future) const;
   void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);

@@ -82,7 +82,7 @@ void plan_memory(FarmJob& job, const SceneDocument& document) {
   for (const std::size_t i : {std::size_t{0}, job.frames.size() / 2, job.frames.size() - 1}) {
     try {
       const Scene scene = document.scene_at(job.frames[i]);
-      const RenderPlan plan = make_plan(scene);
+      const MemoryPlan plan = plan_memory(scene);
       job.memory_mib = std::max(job.memory_mib, task_memory_mib(plan));
       job.merge_memory_mib = std::max(job.merge_memory_mib, merge_memory_mib(plan));
     } catch (const Error&) {

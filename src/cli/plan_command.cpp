@@ -6,6 +6,7 @@
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
+#include "vdbeam/memory_plan.h"
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
 
@@ -37,7 +38,32 @@ std::string surfaces_text(const RenderPlan& plan) {
   return text;
 }
 
-std::string plan_text(const Scene& scene, const RenderPlan& plan) {
+nlohmann::ordered_json memory_json(const MemoryPlan& memory) {
+  nlohmann::ordered_json parts;
+  for (const PlannedMemory& part : memory.parts)
+    parts[part.name] = {
+        {"reading", part.reading}, {"rendering", part.rendering}, {"writing", part.writing}};
+  return parts;
+}
+
+/// What each part takes in each phase, and in all.
+std::string memory_text(const MemoryPlan& plan) {
+  const auto row = [](const std::string& name, std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+    const auto text = [](std::uint64_t n) {
+      return n > 0 ? format_bytes(static_cast<double>(n)) : std::string("-");
+    };
+    return fmt::format("  {:<18} {:>10} {:>10} {:>10}\n", name, text(a), text(b), text(c));
+  };
+  std::string text = fmt::format("\n{:<20} {:>10} {:>10} {:>10}\n", "memory, about", "reading",
+                                 "rendering", "writing");
+  for (const PlannedMemory& part : plan.parts)
+    text += row(part.name, part.reading, part.rendering, part.writing);
+  text += row("all", plan.reading, plan.rendering, plan.writing);
+  return text + fmt::format("  {:<18} {}\n", "TOTAL (peak)",
+                            format_bytes(static_cast<double>(plan.peak())));
+}
+
+std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPlan& memory) {
   std::string text = fmt::format("{}\n\nestimator\n  {:<18} {}\n", scene.path, plan.estimator,
                                  estimator_kind(scene.render.estimator).help);
   for (const bool needed : {true, false}) {
@@ -46,16 +72,7 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan) {
       if (stage.needed == needed)
         text += fmt::format("  {:<18} {}\n", stage_name(stage.stage), stage.reason);
   }
-  const auto bytes = [](std::uint64_t n) { return format_bytes(static_cast<double>(n)); };
-  text += fmt::format("\nmemory, about\n  {:<18} {}\n  {:<18} {}\n  {:<18} {}\n", "volumes",
-                      bytes(plan.volume_bytes), "photons", bytes(plan.photon_bytes), "film",
-                      bytes(plan.film_bytes));
-  for (const auto& [name, size] : {std::pair{"surfaces", plan.surface_bytes},
-                                   {"moments", plan.moment_bytes},
-                                   {"deep", plan.deep_bytes}})
-    if (size > 0)
-      text += fmt::format("  {:<18} {}\n", name, bytes(size));
-  return text + surfaces_text(plan);
+  return text + memory_text(memory) + surfaces_text(plan);
 }
 
 int run_plan(const PlanOptions& options) {
@@ -68,11 +85,14 @@ int run_plan(const PlanOptions& options) {
   for (const std::string& note : scene.notes)
     log("note: {}", note);
   const RenderPlan plan = make_plan(scene);
+  const MemoryPlan memory = plan_memory(scene);
   if (!options.json) {
-    print_text(plan_text(scene, plan));
+    print_text(plan_text(scene, plan, memory));
     return 0;
   }
   nlohmann::ordered_json json = plan_json(plan);
+  json["memory"]["parts"] = memory_json(memory);
+  json["memory"]["peak"] = memory.peak();
   json["scene"] = scene.path;
   json["frame"] = frame;
   json["scene_hash"] = scene_hash(scene);

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace vdbeam {
@@ -188,13 +189,15 @@ std::array<float, 2> whole_range(const EstimatorInput& input) {
 
 } // namespace
 
-DeepLayout make_deep_layout(const EstimatorInput& input, double alpha, double depth) {
+DeepLayout make_deep_layout(const EstimatorInput& input, double alpha, double depth,
+                            const std::function<void(std::size_t pieces)>& check) {
   const Camera& camera = input.camera;
   PixelRegion window{0, 0, camera.width(), camera.height()};
   if (!input.window.empty())
     window = input.window;
   const std::array<float, 2> range = whole_range(input);
   std::vector<Row> rows(static_cast<std::size_t>(camera.height()));
+  std::atomic<std::size_t> pieces_so_far = 0;
   const auto cut_row = [&](int y) {
     Row& row = rows[static_cast<std::size_t>(y)];
     PixelCurve curve(input);
@@ -216,6 +219,10 @@ DeepLayout make_deep_layout(const EstimatorInput& input, double alpha, double de
       const std::size_t edges = row.edges.size() - begin;
       row.counts.push_back(edges > 0 ? static_cast<std::uint32_t>(edges - 1) : 0);
     }
+    std::size_t pieces = 0;
+    for (const std::uint32_t count : row.counts)
+      pieces += count;
+    check(pieces_so_far += pieces);
   };
   tbb::parallel_for(0, camera.height(), cut_row);
   DeepLayout layout;

@@ -9,7 +9,7 @@ namespace vdbeam {
 namespace {
 
 constexpr std::uint64_t mib = 1024 * 1024;
-/// Code, libraries, threads' stacks and what the allocator keeps.
+/// Code, libraries, threads' stacks and what the allocator keeps, of a merge.
 constexpr std::uint64_t program_bytes = 300 * mib;
 
 /// A quarter more, up to the next multiple of 64 MiB.
@@ -66,14 +66,12 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:g}s", seconds);
 }
 
-std::uint64_t task_memory_mib(const RenderPlan& plan) {
-  return with_margin(program_bytes + 2 * plan.volume_bytes + plan.moment_bytes +
-                     plan.surface_bytes + plan.photon_bytes +
-                     2 * (plan.film_bytes + plan.deep_bytes));
+std::uint64_t task_memory_mib(const MemoryPlan& plan) {
+  return with_margin(plan.peak_reading_ahead());
 }
 
-std::uint64_t merge_memory_mib(const RenderPlan& plan) {
-  return with_margin(program_bytes + 2 * (plan.film_bytes + plan.deep_bytes));
+std::uint64_t merge_memory_mib(const MemoryPlan& plan) {
+  return with_margin(program_bytes + 2 * plan.film);
 }
 
 } // namespace vdbeam

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdbeam/render.h"
+#include "vdbeam/memory_plan.h"
 
 #include <cstdint>
 #include <string>
@@ -46,10 +46,10 @@ std::string shell_word(const std::string& text);
 /// Seconds as an option's value: "300s", "1.5s".
 std::string seconds_text(double seconds);
 
-/// What a task of this plan should be given, in MiB: two frames' volumes, because the next one is
-/// read while one is rendered, photons and film, the program itself, and a quarter more.
-std::uint64_t task_memory_mib(const RenderPlan& plan);
+/// What a task of this plan should be given, in MiB: the frame's planned peak, or what it keeps
+/// while another one like it is read, whichever is more, and a quarter more.
+std::uint64_t task_memory_mib(const MemoryPlan& plan);
 /// The same for a merge: the film twice.
-std::uint64_t merge_memory_mib(const RenderPlan& plan);
+std::uint64_t merge_memory_mib(const MemoryPlan& plan);
 
 } // namespace vdbeam

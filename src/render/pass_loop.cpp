@@ -72,11 +72,17 @@ Film PassLoop::make_film() const {
           plane_names(scene_)};
 }
 
+/// By an empty one; two are never there at once.
+void PassLoop::replace_film() {
+  film_ = Film(1, 1);
+  film_ = make_film();
+}
+
 void PassLoop::gather_deep(const DeepLayout& layout) {
   deep_layout_ = &layout;
   const bool fits = film_.deep() && film_.deep()->layout().first == layout.first;
   if (film_.passes() == 0)
-    film_ = make_film();
+    replace_film();
   else if (!fits)
     throw FrameError(
         fmt::format("{}: holds other deep samples; delete it", frame_.checkpoint.path));
@@ -186,7 +192,7 @@ void PassLoop::show_quick_look(EstimatorInput input) {
   result_.quick_look = true;
   take_quick_look(input, soon, image);
   attempt([&] { hooks_.on_quick_look(result_); });
-  film_ = make_film();
+  replace_film();
   result_.statistics = before;
   result_.quick_look = false;
   result_.image = {};

@@ -45,6 +45,7 @@ private:
   void attempt(F write);
   void write_checkpoint();
   Film make_film() const;
+  void replace_film();
   void develop();
   void place(Image& image) const;
   FilmFileInfo file_info() const;

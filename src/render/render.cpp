@@ -120,9 +120,12 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     input.layers = &layers;
   DeepLayout deep;
   if (scene.image.deep) {
-    deep = make_deep_layout(input, scene.image.deep_alpha, deep_depth(scene.image, world));
+    const std::uint64_t granted = granted_memory();
+    deep = make_deep_layout(
+        input, scene.image.deep_alpha, deep_depth(scene.image, world), [&](std::size_t pieces) {
+          check_deep_memory(scene, pieces * DeepFilm::bytes_per_piece(), granted);
+        });
     if (!deep.first.empty()) { // else there was no time for it, and there is none for passes
-      check_deep_memory(scene, deep.pieces() * DeepFilm::bytes_per_piece(), granted_memory());
       loop.gather_deep(deep);
       input.deep = &deep;
     }

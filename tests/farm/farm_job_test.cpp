@@ -53,11 +53,12 @@ TEST(FarmJob, PartialsKeepTheFramesPlace) {
 
 TEST(FarmJob, MemoryFollowsThePlan) {
   constexpr std::uint64_t mib = 1024 * 1024;
-  RenderPlan plan;
-  plan.volume_bytes = 400 * mib;
-  plan.photon_bytes = 40 * mib;
-  plan.film_bytes = 100 * mib;
-  // 300 for the program, two volumes, photons, two films: 1340; a quarter more: 1675.
+  MemoryPlan plan;
+  plan.program = 50 * mib;
+  plan.reading = 850 * mib;
+  plan.rendering = 540 * mib;
+  plan.film = 100 * mib;
+  // Another frame's 800 beside the 540 of this one: 1340; a quarter more: 1675.
   EXPECT_EQ(task_memory_mib(plan), 1728u);
   EXPECT_EQ(merge_memory_mib(plan), 640u);
 }
