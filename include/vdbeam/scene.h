@@ -94,6 +94,7 @@ struct RenderSettings {
   std::optional<int> passes;            ///< the first of these three met ends the frame
   std::optional<double> time;           ///< seconds
   std::optional<double> target_error;   ///< MRSE
+  std::optional<int> min_passes;        ///< before which target_error ends no frame
   std::optional<std::uint64_t> photons; ///< stored per pass; absent: automatic
   PhotonStore store = PhotonStore::fluence;
   DirectLight direct = DirectLight::automatic;

@@ -28,6 +28,7 @@ const std::vector<ShorthandRow>& shorthand_table() {
       {"--passes", "render.passes", "N", "Passes to render"},
       {"--time", "render.time", "T", "Rendering time: seconds, or like 90s, 5m, 1h30m"},
       {"--target-error", "render.target_error", "E", "Estimated error (MRSE) to reach"},
+      {"--min-passes", "render.min_passes", "N", "Passes before --target-error may end a frame"},
       {"--estimator", "render.estimator", "NAME", join_words(choice_names<EstimatorType>(), "or")},
       {"--clamp", "render.clamp", "L",
        "Dim pixels of passes above this radiance; the report tells what it took"},
@@ -54,7 +55,7 @@ void SceneOptions::declare_shorthand(CLI::App& app, const ShorthandRow& row) {
          row.option, [this, index](const std::string& value) { shorthands_[index].value = value; },
          row.description)
       ->option_text(row.value)
-      ->group(is_stop_key(row.key) ? "When to stop" : "Scene");
+      ->group(is_stop_key(row.key) || row.key == "render.min_passes" ? "When to stop" : "Scene");
 }
 
 void SceneOptions::declare(CLI::App& app) {

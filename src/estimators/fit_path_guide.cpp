@@ -1,5 +1,6 @@
 #include "estimators/fit_path_guide.h"
 
+#include "estimators/trial_tile.h"
 #include "estimators/view_thinning.h"
 
 #include <tbb/parallel_for.h>
@@ -19,8 +20,6 @@ constexpr std::size_t fewest_photons = 256;
 constexpr double prior_visits = 8;
 /// Steps of a light with fewer paths than this take most of their value from all of them.
 constexpr double prior_paths = 32;
-/// Of the mean fluence that is seen, added where photons are weighed: as the 0.01 of MRSE.
-constexpr double offset = 0.03;
 /// Shares of paths that begin as if nothing were known: what the pilot missed is found all the
 /// same.
 constexpr double uniform_share = 0.1, power_share = 0.2;
@@ -145,7 +144,7 @@ private:
       light += values_[i];
       space += around[block_of_[i]] > 0 ? values_[i] / around[block_of_[i]] : 0;
     }
-    const double dark = space > 0 ? offset * light / space : 0;
+    const double dark = space > 0 ? dark_offset * light / space : 0;
     for (std::size_t i = 0; i < photons_.size(); ++i)
       values_[i] = values_[i] > 0 ? values_[i] / (around[block_of_[i]] + dark) : 0;
   }

@@ -51,11 +51,12 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
   const Stopwatch watch;
   clear_of_surfaces(world, maps_.medium);
   const KernelShare& share = walks ? final_share_ : boundary_share_;
-  if (input_.blur_pixels)
-    compared_map_ = maps_.medium.divide_power(share, walks ? BlurProbe::width_of_walks
-                                                           : BlurProbe::width_along_rays);
-  else
-    maps_.medium.divide_power(share);
+  if (input_.blur_pixels) {
+    compared_map_ =
+        maps_.medium.resized(walks ? BlurProbe::width_of_walks : BlurProbe::width_along_rays);
+    compared_map_.divide_power(share);
+  }
+  maps_.medium.divide_power(share);
   statistics.radii += watch.seconds();
   statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);

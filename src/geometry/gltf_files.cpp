@@ -1,5 +1,6 @@
 #include "geometry/gltf_files.h"
 
+#include "geometry/gltf_json.h"
 #include "machine/input_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace vdbeam {
@@ -17,7 +19,7 @@ namespace {
 /// No file of text is larger that names others: it would hold its numbers itself.
 constexpr std::uintmax_t most_bytes = std::uintmax_t(64) << 20;
 
-/// The text of a JSON string that follows a key and its colon, or none.
+/// The JSON string that follows a key and its colon, or nothing.
 std::string value_at(const std::string& json, std::size_t after_key) {
   const std::size_t colon = json.find_first_not_of(" \t\r\n", after_key);
   if (colon == std::string::npos || json[colon] != ':')
@@ -25,8 +27,11 @@ std::string value_at(const std::string& json, std::size_t after_key) {
   const std::size_t quote = json.find_first_not_of(" \t\r\n", colon + 1);
   if (quote == std::string::npos || json[quote] != '"')
     return {};
-  const std::size_t end = json.find('"', quote + 1);
-  return end == std::string::npos ? std::string() : json.substr(quote + 1, end - quote - 1);
+  std::size_t end = quote + 1;
+  while (end < json.size() && json[end] != '"')
+    end += json[end] == '\\' ? 2 : 1;
+  const auto text = nlohmann::json::parse(json.substr(quote, end + 1 - quote), nullptr, false);
+  return text.is_string() ? text.get<std::string>() : std::string();
 }
 
 /// A URI with each %20 and the like replaced by its character; what is no such code stays.
@@ -69,9 +74,11 @@ std::string named_by_uri(const std::string& path) {
 
 std::vector<std::string> gltf_files(const std::string& path) {
   std::vector<std::string> files;
-  if (!has_extension(path, ".gltf"))
+  const bool binary = has_extension(path, ".glb");
+  if (!binary && !has_extension(path, ".gltf"))
     return files;
-  const std::string json = text_or_nothing([&] { return read_text(path, most_bytes); });
+  const std::string json =
+      text_or_nothing([&] { return binary ? read_glb_text(path) : read_text(path, most_bytes); });
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const std::string key = "\"uri\"";
   for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at + 1))

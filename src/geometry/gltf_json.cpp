@@ -9,10 +9,10 @@
 #include <filesystem>
 
 namespace vdbeam {
-namespace {
 
 /// The JSON of a binary glTF is its first chunk: 12 bytes of header, then its length and type.
-std::string json_of_glb(std::istream& file) {
+std::string read_glb_text(const std::string& path) {
+  InputStream file(path);
   unsigned char start[20];
   if (!file.read(reinterpret_cast<char*>(start), sizeof start))
     return {};
@@ -22,15 +22,14 @@ std::string json_of_glb(std::istream& file) {
   constexpr std::uint32_t longest = 64u << 20;
   std::string text(std::min(length, longest), '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }
 
-} // namespace
-
 nlohmann::json read_gltf_json(const std::string& path) {
-  InputStream file(path);
   if (lower_case(std::filesystem::path(path).extension().string()) == ".glb")
-    return nlohmann::json::parse(json_of_glb(file), nullptr, false);
+    return nlohmann::json::parse(read_glb_text(path), nullptr, false);
+  InputStream file(path);
   return nlohmann::json::parse(file, nullptr, false);
 }
 

@@ -24,16 +24,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace vdbeam {
 
 void check_attribute_sizes(const std::string& path) {
   InputStream file(path, EmptyFile::accepted);
-  file.seekg(8); // magic number and version
-  std::string text;
-  while (std::getline(file, text, '\0') && !text.empty()) {
+  file.seekg(8);              // magic number and version
+  std::array<char, 257> text; // a name of the format has at most 255 bytes
+  const auto read_name = [&] { return bool(file.getline(text.data(), text.size(), '\0')); };
+  while (read_name() && text[0] != '\0') {
     std::uint32_t size = 0;
-    std::getline(file, text, '\0');
+    read_name();
     file.read(reinterpret_cast<char*>(&size), sizeof size);
     if (!file || size > file.bytes())
       throw InputError(path + ": not a readable EXR: its header is damaged");

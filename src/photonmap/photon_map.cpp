@@ -210,19 +210,11 @@ void PhotonMap::divide_power(const KernelShare& share) {
   });
 }
 
-PhotonMap PhotonMap::divide_power(const KernelShare& share, float factor) {
+PhotonMap PhotonMap::resized(float factor) const {
   PhotonMap resized = copy();
-  PhotonBlocks &own_blocks = data_->blocks, &blocks = resized.data_->blocks;
-  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
-    const Vec3f position = blocks.position(i);
-    float& radius = blocks.at(i, PhotonBlocks::radius);
-    const float own_share = share ? share(position, radius) : 1;
-    radius *= factor;
-    if (own_share < 1)
-      divide_photon(own_blocks, i, own_share);
-    if (share && (own_share < 1 || factor > 1))
-      divide_photon(blocks, i, share(position, radius));
-  });
+  PhotonBlocks& blocks = resized.data_->blocks;
+  tbb::parallel_for(std::size_t(0), blocks.count(),
+                    [&](std::size_t i) { blocks.at(i, PhotonBlocks::radius) *= factor; });
   for (auto& level : resized.data_->tree.levels)
     for (BoxGroup& group : level)
       for (float& radius : group.radius)

@@ -70,9 +70,8 @@ public:
   void keep_clear(const Clearance& clearance);
   /// Divides every photon's power by its kernel's share; `share` may be empty, for 1 everywhere.
   void divide_power(const KernelShare& share);
-  /// The same, and returns this map with the radius of every kernel multiplied by `factor`, and
-  /// powers divided by the shares of those kernels.
-  PhotonMap divide_power(const KernelShare& share, float factor);
+  /// The same map with the radius of every kernel multiplied by `factor`.
+  PhotonMap resized(float factor) const;
 
   std::size_t size() const;
   std::size_t bytes() const;

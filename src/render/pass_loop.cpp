@@ -218,12 +218,18 @@ bool PassLoop::finished() {
     return stop("passes");
   if (time_is_over())
     return stop("time");
-  // Fewer passes than this do not tell their own spread.
-  constexpr int trusted_passes = 4;
-  if (settings.target_error && passes >= trusted_passes &&
+  if (settings.target_error && passes >= least_passes() &&
       estimate_errors().error_estimate <= *settings.target_error)
     return stop("target_error");
   return false;
+}
+
+/// Passes before the estimated error may end the frame.
+int PassLoop::least_passes() const {
+  // The spread of fewer passes says little, and blur by fewer moments shows as steps.
+  constexpr int trusted_passes = 4;
+  const int moments = scene_.moments.empty() ? 0 : shutter_times(scene_.camera);
+  return scene_.render.min_passes.value_or(std::max(trusted_passes, moments));
 }
 
 /// Also where a pass more would not be finished in time.

@@ -49,6 +49,7 @@ private:
   void develop();
   void place(Image& image) const;
   FilmFileInfo file_info() const;
+  int least_passes() const;
   bool time_is_over() const;
   void set_deadline();
   void render_pass(Shutter& shutter);

@@ -43,16 +43,17 @@ void add_file(ContentHash& hash, InputKind kind, const std::string& path) {
 void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
   for (const Scene& moment : moments)
     for (const SceneKey& key : scene_keys())
-      for (std::size_t i = 0; key.get && key.changes_picture && !key.stop_rule &&
+      for (std::size_t i = 0; key.get && key.changes_picture && key.changes_passes &&
                               key.kind != KeyKind::file && i < section_count(moment, key.section);
            ++i)
         add(hash, key.get(moment, i));
 }
 
-std::string hash_scene(const Scene& scene, bool with_stop_rule) {
+/// Of all that the picture depends on, or of what its passes do.
+std::string hash_scene(const Scene& scene, bool of_passes) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {
-    if (!key.get || !key.changes_picture || (!with_stop_rule && key.stop_rule))
+    if (!key.get || !key.changes_picture || (of_passes && !key.changes_passes))
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
       add(hash, key_path(key, i));
@@ -77,11 +78,11 @@ std::string hash_scene(const Scene& scene, bool with_stop_rule) {
 } // namespace
 
 std::string scene_hash(const Scene& scene) {
-  return hash_scene(scene, true);
+  return hash_scene(scene, false);
 }
 
 std::string pass_hash(const Scene& scene) {
-  return hash_scene(scene, false);
+  return hash_scene(scene, true);
 }
 
 } // namespace vdbeam

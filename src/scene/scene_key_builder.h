@@ -47,7 +47,7 @@ struct KeyEntry {
   KeyEntry& required() { return set(key.required, true); }
   KeyEntry& one_for_all() { return set(key.one_for_all, true); }
   KeyEntry& keeps_picture() { return set(key.changes_picture, false); }
-  KeyEntry& stop_rule() { return set(key.stop_rule, true); }
+  KeyEntry& not_in_passes() { return set(key.changes_passes, false); }
   KeyEntry& always_written() { return set(key.always_written, true); }
   KeyEntry& keeps_world() { return set(key.changes_world, false); }
   KeyEntry& scales_emission() { return set(key.scales_emission, true); }

@@ -237,17 +237,24 @@ void add_stop_rule(KeyTable& table) {
       .at_least(1)
       .absent("none")
       .always_written()
-      .stop_rule();
+      .not_in_passes();
   table.add("time", &R::time, R"(rendering time, as a number or like "90s", "5m", "1h30m")")
       .kind(KeyKind::duration)
       .unit("seconds")
       .above(0)
       .absent("none")
-      .stop_rule();
+      .not_in_passes();
   table.add("target_error", &R::target_error, "estimated error (MRSE) to reach")
       .above(0)
       .absent("none")
-      .stop_rule();
+      .not_in_passes();
+  table
+      .add("min_passes", &R::min_passes,
+           "passes before target_error may end the frame; auto: 4, or one for each moment of an "
+           "open shutter")
+      .at_least(1)
+      .absent("auto")
+      .not_in_passes();
 }
 
 void add_render(KeyTable& table) {
@@ -339,7 +346,7 @@ std::vector<SceneKey> make_table() {
     // No pass depends on which layers are wanted.
     if (key.section == SceneSection::layer) {
       key.changes_world = false;
-      key.stop_rule = true;
+      key.changes_passes = false;
     }
     if (key.section == SceneSection::render) {
       key.estimators = kinds_with_key<EstimatorType>(key.name);

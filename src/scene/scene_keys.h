@@ -73,11 +73,11 @@ struct SceneKey {
   std::vector<std::string> choice_docs; ///< one clause for each choice, or empty
   std::string absent_word; ///< how "no value" is written ("auto", "none"); empty where it cannot be
   std::string doc;         ///< one clause
-  std::vector<std::string> types; ///< light and phase types that take this key; empty: all
+  std::vector<std::string> types; ///< of its section that take this key; empty: all
   bool required = false;
   std::vector<std::string> estimators; ///< that read this key; empty: all
   bool changes_picture = true;
-  bool stop_rule = false;       ///< ends a frame: no pass depends on it
+  bool changes_passes = true;   ///< a pass depends on it, and not only when a frame ends
   bool always_written = false;  ///< vdbeam init writes it also where it is as by default
   bool changes_world = true;    ///< a world must be built anew for another value
   bool scales_emission = false; ///< a factor of emission: its field need not be read anew
@@ -112,7 +112,7 @@ const SceneKey* find_key(SceneSection section, const std::string& name);
 std::vector<std::string> key_names(SceneSection section);
 
 /// "image", "camera", "volume", "volume.phase", "volume.emission", "mesh", "mesh.material",
-/// "light", "render".
+/// "light", "layer", "render".
 std::string section_name(SceneSection section);
 /// The path of one key in a scene, e.g. "volume.0.phase.g".
 std::string key_path(const SceneKey& key, std::size_t index);

@@ -240,6 +240,27 @@ TEST(GltfFiles, are_named_by_uris) {
   EXPECT_EQ(files(), (std::vector{folder.file("a%20b.bin"), folder.file("100%.bin")}));
 }
 
+/// JSON may write any character as an escape, and has its own for quotes.
+TEST(GltfFiles, are_named_with_escapes) {
+  const TempFolder folder;
+  write_bytes(folder.file("a.gltf"),
+              R"({"buffers": [{"uri": "\u0061\/b.bin"}, {"uri": "say \"c\".bin"}]})");
+  EXPECT_EQ(gltf_files(folder.file("a.gltf")),
+            (std::vector{folder.file("a/b.bin"), folder.file("say \"c\".bin")}));
+}
+
+/// A binary glTF may name files beside it as well.
+TEST(GltfFiles, are_named_by_binary_files) {
+  const TempFolder folder;
+  const std::string json = R"({"buffers": [{"uri": "a.bin"}]})";
+  const std::string length(1, static_cast<char>(json.size()));
+  const std::string zeros(3, '\0');
+  write_bytes(folder.file("a.glb"), "glTF" + std::string("\2\0\0\0", 4) +
+                                        std::string("\0\0\0\0", 4) + length + zeros + "JSON" +
+                                        json);
+  EXPECT_EQ(gltf_files(folder.file("a.glb")), std::vector{folder.file("a.bin")});
+}
+
 /// A small file may name a large one: what reading may take goes by both.
 TEST(MeshReader, gltf_with_a_large_buffer) {
   const TempFolder folder;

@@ -79,7 +79,9 @@ void check_resized(const PhotonList& photons, float factor) {
     return PhotonMap::build(photons, 1, radii, KernelShape::biweight);
   };
   PhotonMap own = build(0.5f), own_alone = build(0.5f), resized_alone = build(0.5f * factor);
-  const PhotonMap resized = own.divide_power(share, factor);
+  PhotonMap resized = own.resized(factor);
+  resized.divide_power(share);
+  own.divide_power(share);
   own_alone.divide_power(share);
   resized_alone.divide_power(share);
   EXPECT_FLOAT_EQ(resized.mean_radius(), resized_alone.mean_radius());
