@@ -1,7 +1,7 @@
+#include "medium/delta_tracking.h"
+#include "medium/depth_profile.h"
+#include "medium/scattering.h"
 #include "support/next_scattering.h"
-#include "transport/delta_tracking.h"
-#include "transport/depth_profile.h"
-#include "transport/scattering.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,4 @@
-#include "volume/brick_builder.h"
+#include "vdb/brick_builder.h"
 
 #include <benchmark/benchmark.h>
 

@@ -8,10 +8,13 @@ import re
 import sys
 
 # A folder of src includes only from itself and from the folders before it.
-LAYERS = ["text", "math", "machine", "image", "volume", "geometry", "phase", "materials", "lights", "photonmap", "transport",
-          "estimators", "film", "compare", "scene", "report", "render", "farm", "cli"]
+LAYERS = ["text", "math", "machine", "image", "volume", "vdb", "grids", "geometry", "phase", "materials", "lights",
+          "photonmap", "medium", "camera", "transport", "layers", "errors", "film", "compare", "keys", "scene",
+          "rays", "photons", "estimators", "report", "prepare", "plan", "render", "farm", "console", "batch", "cli"]
 LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
+# Source files of one folder: whoever looks for one reads that many names.
+FOLDER_LIMIT = 40
 CODE = {".h", ".cpp", ".py", ".sh", ".cmake"}
 
 # The one header that has Embree's types; only source files of its folder include it.
@@ -19,7 +22,8 @@ EMBREE_HEADER = "geometry/shape_tree.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # No library's type belongs in the public headers.
 FOREIGN = re.compile(r"\b(openvdb|nanovdb|embree|rtc[A-Z]\w*|tbb|Imath|Imf|toml|nlohmann|hwy|CLI)\b")
-# Below src/cli nothing prints to the terminal and nothing ends the process.
+# The folders of the program, which alone print to the terminal and end the process.
+PROGRAM = {"console", "batch", "cli"}
 PRINTS = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.])(std::)?(printf|puts|fputs|perror)\s*\("
                     r"|\bfprintf\s*\(\s*std(out|err)|\bfmt::print\s*\(\s*(\"|std(out|err))")
 EXITS = re.compile(r"(?<![\w.>])(std::)?(exit|quick_exit|abort|terminate)\s*\(")
@@ -50,8 +54,8 @@ def check_include(path, quote, name):
         return None
     if parts[0] != "src":
         return None
-    if re.match(r"(openvdb|nanovdb)/", name) and not (parts[1] == "volume" and path.suffix == ".cpp"):
-        return f"OpenVDB headers belong in src/volume/*.cpp, got {name}"
+    if re.match(r"(openvdb|nanovdb)/", name) and not (parts[1] == "vdb" and path.suffix == ".cpp"):
+        return f"OpenVDB headers belong in src/vdb/*.cpp, got {name}"
     if parts[1] != "image" and re.match(r"(OpenEXR/|Imath/)?(Imf|OpenEXR|Imath|half\.h)", name):
         return f"OpenEXR and Imath headers belong in src/image, got {name}"
     if name == EMBREE_HEADER and not (parts[1] == "geometry" and path.suffix == ".cpp"):
@@ -82,7 +86,7 @@ def check_file(path, text):
     # Headers that Highway includes once per instruction set guard themselves in another way.
     if path.suffix == ".h" and not path.name.endswith("-inl.h") and "#pragma once" not in text:
         found.append((1, "a header begins with #pragma once"))
-    library = public or (path.parts[0] == "src" and path.parts[1] != "cli")
+    library = public or (path.parts[0] == "src" and path.parts[1] not in PROGRAM)
     for number, line in enumerate(lines, 1):
         include = INCLUDE.match(line)
         if include and path.suffix in {".h", ".cpp"}:
@@ -96,9 +100,9 @@ def check_file(path, text):
             found.append((number, "no other library's type in a public header"))
         if library and path.suffix in {".h", ".cpp"}:
             if PRINTS.search(code):
-                found.append((number, "only src/cli prints"))
+                found.append((number, "nothing but the program prints: src/console, src/batch, src/cli"))
             if EXITS.search(code):
-                found.append((number, "only src/cli ends the process"))
+                found.append((number, "nothing but the program ends the process: src/console, src/batch, src/cli"))
         if path.parts[0] == "src" and path.parts[1] != "machine" and not include:
             if OPENS.search(code) and "/dev/null" not in line:
                 found.append((number, "files are opened by machine/input_file and machine/atomic_file"))
@@ -110,6 +114,10 @@ def check_file(path, text):
 def check_tree(root):
     """Every violation below `root` as "file:line: message"."""
     result = []
+    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir()):
+        count = sum(file.suffix in CODE for file in folder.iterdir())
+        if count > FOLDER_LIMIT:
+            result.append(f"{folder.relative_to(root)}:1: {count} files, the limit is {FOLDER_LIMIT}")
     for folder in ("include", "src", "tests", "benchmarks", "tools", "cmake"):
         for file in sorted((root / folder).rglob("*")):
             if file.suffix in CODE and file.is_file():

@@ -87,7 +87,7 @@ enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
 /// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
 enum class SeedPolicy { per_frame, correlated };
-enum class KernelShape { constant, epanechnikov, biweight, fourth_order };
+enum class KernelShape { constant, epanechnikov, biweight };
 
 struct RenderSettings {
   EstimatorType estimator = EstimatorType::automatic;
@@ -109,7 +109,6 @@ struct RenderSettings {
   ForwardPeak forward_peak = ForwardPeak::automatic;       ///< of scattering (beam, march)
   PhotonThinning thinning = PhotonThinning::automatic;     ///< which collisions are stored (beam)
   FinalGathering final_gather = FinalGathering::automatic; ///< walks from camera rays (beam)
-  double keep = 0;                ///< fraction of them that is stored, evenly; 0: automatic
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
   double bias_rays = 1.0 / 128;   ///< fraction of the camera rays that tell the bias

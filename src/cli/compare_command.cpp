@@ -1,5 +1,5 @@
 #include "cli/commands.h"
-#include "cli/streams.h"
+#include "console/streams.h"
 #include "image/color_conversion.h"
 #include "report/report.h"
 #include "text/frame_range.h"

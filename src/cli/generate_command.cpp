@@ -1,6 +1,6 @@
 #include "cli/commands.h"
 #include "cli/manual.h"
-#include "cli/streams.h"
+#include "console/streams.h"
 #include "report/versions.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "cli/grid_notes.h"
 
 #include "scene/default_scene.h"
+#include "vdb/density_kind.h"
+#include "vdb/vdb_names.h"
 #include "vdbeam/error.h"
-#include "volume/density_kind.h"
-#include "volume/vdb_names.h"
 
 #include <algorithm>
 #include <cmath>

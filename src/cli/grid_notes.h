@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include <string>
 #include <vector>

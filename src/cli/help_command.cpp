@@ -1,7 +1,7 @@
 #include "cli/commands.h"
-#include "cli/streams.h"
-#include "cli/terminal.h"
-#include "scene/scene_keys.h"
+#include "console/streams.h"
+#include "console/terminal.h"
+#include "keys/scene_keys.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 

@@ -1,15 +1,15 @@
 #include "cli/commands.h"
 #include "cli/grid_notes.h"
-#include "cli/streams.h"
 #include "cli/surface_info.h"
+#include "console/streams.h"
 #include "geometry/mesh_reader.h"
 #include "machine/input_file.h"
 #include "text/frame_range.h"
 #include "text/missing_file.h"
 #include "text/printable.h"
 #include "text/text.h"
+#include "vdb/vdb_reader.h"
 #include "vdbeam/error.h"
-#include "volume/vdb_reader.h"
 
 #include <algorithm>
 #include <cstdio>

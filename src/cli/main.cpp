@@ -1,11 +1,11 @@
+#include "batch/failure.h"
 #include "cli/commands.h"
-#include "cli/failure.h"
 #include "cli/help_format.h"
-#include "cli/streams.h"
-#include "cli/terminal.h"
 #include "cli/usage_error.h"
+#include "console/streams.h"
+#include "console/terminal.h"
+#include "keys/scene_keys.h"
 #include "report/versions.h"
-#include "scene/scene_keys.h"
 #include "vdbeam/error.h"
 
 #include <exception>

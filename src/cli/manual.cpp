@@ -1,7 +1,7 @@
 #include "cli/manual.h"
 
 #include "cli/help_format.h"
-#include "scene/scene_keys.h"
+#include "keys/scene_keys.h"
 
 #include <fmt/format.h>
 #include <sstream>

@@ -1,6 +1,6 @@
 #include "cli/scene_options.h"
 
-#include "scene/key_access.h"
+#include "keys/key_access.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 

@@ -2,7 +2,7 @@
 
 #include "cli/help_format.h"
 #include "cli/scene_options.h"
-#include "scene/key_synonyms.h"
+#include "keys/key_synonyms.h"
 #include "scene/scene_document.h"
 #include "text/frame_range.h"
 #include "text/text.h"

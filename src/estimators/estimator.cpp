@@ -1,16 +1,6 @@
 #include "estimators/estimator_table.h"
-#include "vdbeam/error.h"
-
-#include <fmt/format.h>
 
 namespace vdbeam {
-
-const EstimatorKind& estimator_kind(const EstimatorType& type) {
-  for (const EstimatorKind* kind : estimator_table())
-    if (kind->name == type.name)
-      return *kind;
-  throw InputError(fmt::format("render.estimator: there is no estimator \"{}\"", type.name));
-}
 
 std::unique_ptr<Estimator> make_estimator(const EstimatorType& type, const EstimatorInput& input) {
   return estimator_kind(type).make(input);

@@ -1,19 +1,10 @@
 #pragma once
 
-#include "estimators/ray_layers.h"
-#include "estimators/scene_objects.h"
-#include "image/pass_image.h"
-#include "math/stop_token.h"
-#include "transport/world.h"
-#include "vdbeam/render.h"
+#include "rays/estimator_input.h"
 
 #include <memory>
-#include <vector>
 
 namespace vdbeam {
-
-class PhotonCache;
-struct ScenePhotons;
 
 /// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
 /// number), whatever the threads.
@@ -25,60 +16,6 @@ public:
   /// input's `stop` asked to end meanwhile, only `image.finished_tiles` hold what the pass is to
   /// be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
-};
-
-/// What estimators are told beyond the scene; what is pointed to must outlive them.
-struct EstimatorTask {
-  std::uint64_t frame = 1;
-  /// Pixels that are wanted; empty: all. Others may stay black.
-  PixelRegion window = {};
-  const StopToken* stop = nullptr; ///< tells when the pass is to be abandoned
-  PhotonCache* photons = nullptr;  ///< of frames with the same world; null: photons are not kept
-  /// Pixels, in ascending order, where a pass is also to tell how much its kernels blur
-  /// (PassImage::blur); null: nowhere.
-  const std::vector<std::size_t>* blur_pixels = nullptr;
-  const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
-  const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
-  const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
-  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
-  /// each group of its lights, one after the other; null: it makes plans of its own.
-  const ScenePhotons* of_scene = nullptr;
-  /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
-  /// belong to the matte, which groups do not change. Null: the world has them all.
-  const LightSet* all_lights = nullptr;
-};
-
-/// What every estimator is made from; the references must outlive it.
-struct EstimatorInput : EstimatorTask {
-  EstimatorInput(const World& world_, const Camera& camera_, const RenderSettings& settings_,
-                 const RenderPlan& plan_, const EstimatorTask& task = {})
-      : EstimatorTask(task), world(world_), camera(camera_), settings(settings_), plan(plan_) {}
-
-  const World& world;
-  const Camera& camera;
-  const RenderSettings& settings;
-  const RenderPlan& plan; ///< which stages run; no estimator decides that again
-
-  /// The same in another world, which must outlive the result too.
-  EstimatorInput in(const World& other) const { return {other, camera, settings, plan, *this}; }
-  /// The same with the plan of another estimator, which must outlive the result too.
-  EstimatorInput with(const RenderPlan& other) const {
-    return {world, camera, settings, other, *this};
-  }
-
-  /// Per light of the world: single scattering is found by shadow rays. No shadow ray looks for a
-  /// volume that glows; such lights come after those of the scene.
-  std::vector<bool> shadow_ray_lights() const {
-    std::vector<bool> lights = plan.shadow_ray_lights;
-    lights.resize(world.lights.size(), false);
-    return lights;
-  }
-  /// Channels of the photons' power.
-  int photon_channels() const { return plan.needs(Stage::photon_color) ? 3 : 1; }
-  const LightSet& lights_of_matte() const { return all_lights ? *all_lights : world.lights; }
-  std::size_t object_count() const { return objects ? objects->names.size() : 0; }
-  std::size_t plane_count() const { return layers ? layers->planes() : 0; }
-  bool stopped() const { return stop && stop->stopped(); }
 };
 
 /// The estimator that `render.estimator` names. Throws InputError for one that there is not.

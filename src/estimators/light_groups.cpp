@@ -1,16 +1,15 @@
 #include "estimators/light_groups.h"
 
-#include "estimators/beam_plan.h"
+#include "estimators/pilot/beam_plan.h"
+
+#include "layers/light_group_names.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace vdbeam {
 namespace {
-
-constexpr const char* rest = "rest";
 
 /// What is asked of a group: its photons are its own, also those that it follows.
 EstimatorTask task_of(const EstimatorInput& of_all, std::size_t group) {
@@ -47,7 +46,7 @@ struct Group {
 std::vector<std::unique_ptr<Group>> groups_of(const Scene& scene, const EstimatorInput& input) {
   std::vector<std::unique_ptr<Group>> groups;
   for (const std::string& name : light_group_names(scene)) {
-    const bool is_rest = name == rest;
+    const bool is_rest = name == rest_group;
     // Volumes that glow are lights that come after those of the scene.
     std::vector<bool> lights(input.world.lights.size(), is_rest);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
@@ -125,21 +124,6 @@ private:
 };
 
 } // namespace
-
-std::vector<std::string> light_group_names(const Scene& scene) {
-  std::set<std::string> names;
-  bool others = scene.glows();
-  for (const LightSettings& light : scene.lights) {
-    if (light.group.empty())
-      others = true;
-    else
-      names.insert(light.group);
-  }
-  if (!names.empty() && others)
-    names.insert(rest);
-  std::vector<std::string> list(names.begin(), names.end());
-  return list;
-}
 
 std::unique_ptr<Estimator> make_grouped_estimator(const Scene& scene, const EstimatorInput& input) {
   return std::make_unique<GroupedEstimator>(scene, input);

@@ -1,12 +1,9 @@
 #pragma once
 
-#include "estimators/photon_plan.h"
+#include "estimators/estimator.h"
+#include "photons/photon_plan.h"
 
 namespace vdbeam {
-
-/// The groups of a scene's lights, in the order of their names, "rest" among them for lights
-/// without one and volumes that glow, where there are any; empty where no light has a group.
-std::vector<std::string> light_group_names(const Scene& scene);
 
 /// An estimator that renders the lights of each group by themselves, one after the other, and adds
 /// them up: light is additive, so the picture is what it is without groups, but for the noise, and

@@ -1,11 +1,11 @@
 #include "estimators/surface_shading.h"
 
-#include "estimators/caught_shadow.h"
-#include "estimators/direct_light.h"
-#include "estimators/profile_shading.h"
-#include "estimators/surface_photons.h"
-#include "transport/emission.h"
-#include "transport/optical_depth.h"
+#include "medium/emission.h"
+#include "medium/optical_depth.h"
+#include "photons/surface_photons.h"
+#include "rays/caught_shadow.h"
+#include "rays/direct_light.h"
+#include "rays/profile_shading.h"
 
 #include <algorithm>
 #include <cmath>

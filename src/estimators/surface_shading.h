@@ -1,9 +1,9 @@
 #pragma once
 
-#include "estimators/camera_ray.h"
-#include "estimators/photon_pass.h"
-#include "estimators/profile_shading.h"
-#include "estimators/scene_tracer.h"
+#include "estimators/path/scene_tracer.h"
+#include "photons/photon_pass.h"
+#include "rays/profile_shading.h"
+#include "transport/camera_ray.h"
 
 #include <functional>
 

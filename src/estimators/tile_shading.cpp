@@ -1,11 +1,11 @@
 #include "estimators/tile_shading.h"
 
-#include "estimators/deep_ray.h"
-#include "estimators/direct_light.h"
-#include "estimators/pixel_tiles.h"
-#include "estimators/profile_shading.h"
-#include "estimators/uneven_pixels.h"
+#include "layers/deep_ray.h"
 #include "machine/stopwatch.h"
+#include "rays/direct_light.h"
+#include "rays/pixel_tiles.h"
+#include "rays/profile_shading.h"
+#include "rays/uneven_pixels.h"
 
 #include <tbb/enumerable_thread_specific.h>
 

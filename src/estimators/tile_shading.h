@@ -1,8 +1,8 @@
 #pragma once
 
-#include "estimators/estimator.h"
 #include "estimators/surface_shading.h"
-#include "estimators/tile_rays.h"
+#include "rays/estimator_input.h"
+#include "rays/tile_rays.h"
 
 namespace vdbeam {
 

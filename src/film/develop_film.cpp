@@ -1,8 +1,8 @@
 #include "film/film.h"
 
-#include "estimators/plane_layers.h"
 #include "film/cryptomatte.h"
 #include "film/film_blocks.h"
+#include "layers/plane_layers.h"
 
 #include <fmt/format.h>
 

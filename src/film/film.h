@@ -1,9 +1,9 @@
 #pragma once
 
+#include "errors/error_estimate.h"
+#include "errors/pass_history.h"
 #include "film/compensated_sums.h"
 #include "film/deep_film.h"
-#include "film/error_estimate.h"
-#include "film/pass_history.h"
 #include "image/pass_image.h"
 #include "image/plane_file.h"
 #include "vdbeam/image.h"

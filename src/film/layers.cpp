@@ -1,6 +1,6 @@
 #include "film/layers.h"
 
-#include "estimators/plane_layers.h"
+#include "layers/plane_layers.h"
 #include "text/text.h"
 
 #include <fmt/format.h>

@@ -34,7 +34,7 @@ struct PassImage {
   /// Per object of the scene, how much of each pixel it covers: what it adds to the opacity of the
   /// ray. Empty where nobody asks for it.
   std::vector<std::vector<float>> coverage;
-  /// What layers ask for beyond that, a plane each (estimators/ray_layers.h).
+  /// What layers ask for beyond that, a plane each (layers/ray_layers.h).
   std::vector<std::vector<float>> planes;
   /// Where rays are cut for a deep picture; null where nobody asks for one.
   const DeepLayout* deep_layout = nullptr;
@@ -78,8 +78,8 @@ struct PassImage {
     return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
            static_cast<std::size_t>(x / tile_width);
   }
-  /// Of the pixel's indirect light, `light` was scattered once only. No kernel but that of fourth
-  /// order, whose values may be negative, gives more than there is but for rounding.
+  /// Of the pixel's indirect light, `light` was scattered once only: no more than there is but for
+  /// rounding.
   void move_to_direct(std::size_t pixel, const Rgb& light) {
     direct[pixel] += light;
     for (int c = 0; c < 3; ++c) {

@@ -7,7 +7,7 @@ namespace vdbeam {
 
 /// A glowing volume as a light: its photons start where it glows, in proportion to how brightly,
 /// and leave in all directions. No shadow ray looks for it, and rays do not meet it as a light:
-/// they gather what the medium emits along their way (transport/emission.h). To be added to a
+/// they gather what the medium emits along their way (medium/emission.h). To be added to a
 /// LightSet with DirectLight::photons.
 ///
 /// Its power is 4 pi times the integral of j over the volume, exact for the trilinear field.

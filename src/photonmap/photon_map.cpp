@@ -88,8 +88,6 @@ float disc_kernel(KernelShape shape, float s) {
     return 2 / pi * (1 - s);
   case KernelShape::biweight:
     return 3 / pi * (1 - s) * (1 - s);
-  case KernelShape::fourth_order:
-    return 6 / pi * (1 - s) * (1 - 2 * s);
   }
   return 0;
 }

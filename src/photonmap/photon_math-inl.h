@@ -27,8 +27,7 @@ struct KernelPolynomial {
 };
 
 /// Disc kernels as functions of s = d^2 / r^2, to be multiplied by 1 / r^2; each integrates to 1
-/// over the disc: integral_0^1 k(s) pi ds = 1. Biweight: 3 / pi (1 - s)^2, fourth order: 6 / pi (1
-/// - s) (1 - 2 s).
+/// over the disc: integral_0^1 k(s) pi ds = 1. Biweight: 3 / pi (1 - s)^2.
 inline KernelPolynomial disc_polynomial(KernelShape shape) {
   switch (shape) {
   case KernelShape::constant:
@@ -37,8 +36,6 @@ inline KernelPolynomial disc_polynomial(KernelShape shape) {
     return {0, 2 / pi, 0};
   case KernelShape::biweight:
     return {0, 0, 3 / pi};
-  case KernelShape::fourth_order:
-    return {0, -6 / pi, 12 / pi};
   }
   return {};
 }
@@ -53,8 +50,6 @@ inline KernelPolynomial ball_polynomial(KernelShape shape) {
     return {0, 15 / (8 * pi), 0};
   case KernelShape::biweight:
     return {0, 0, 105 / (32 * pi)};
-  case KernelShape::fourth_order: // (1 - s)(1 - 9/5 s) has no second moment
-    return {0, -0.8f * 525 / (64 * pi), 1.8f * 525 / (64 * pi)};
   }
   return {};
 }

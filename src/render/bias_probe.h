@@ -1,7 +1,7 @@
 #pragma once
 
-#include "estimators/path.h"
-#include "film/pass_history.h"
+#include "errors/pass_history.h"
+#include "estimators/path/path.h"
 
 namespace vdbeam {
 

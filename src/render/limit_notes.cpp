@@ -1,7 +1,7 @@
 #include "render/limit_notes.h"
 
-#include "estimators/camera_ray.h"
-#include "estimators/photon_plan.h"
+#include "photons/photon_plan.h"
+#include "transport/camera_ray.h"
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ std::optional<std::string> starved_note(const Scene& scene, const RenderPlan& pl
   return fmt::format(
       "{} rays gathered {} photons in all, less than one each: light that the medium "
       "scatters is missing, or lies in single bright pixels; a larger render.radius, "
-      "render.max_radius, render.keep or render.photons gathers more",
+      "render.max_radius or render.photons gathers more",
       counts.lookups, counts.contributions);
 }
 

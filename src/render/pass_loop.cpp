@@ -1,10 +1,10 @@
 #include "render/pass_loop.h"
 
-#include "estimators/light_groups.h"
-#include "estimators/make_deep_layout.h"
-#include "estimators/plane_layers.h"
 #include "film/clamp.h"
 #include "film/layers.h"
+#include "layers/light_group_names.h"
+#include "layers/plane_layers.h"
+#include "rays/make_deep_layout.h"
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"
 #include "render/error_record.h"

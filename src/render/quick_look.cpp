@@ -1,6 +1,6 @@
 #include "render/quick_look.h"
 
-#include "estimators/path.h"
+#include "estimators/path/path.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/estimator.h"
+#include "rays/estimator_input.h"
 
 namespace vdbeam {
 

@@ -1,10 +1,11 @@
 #include "render/shutter.h"
 
-#include "estimators/beam_plan.h"
 #include "estimators/light_groups.h"
+#include "estimators/pilot/beam_plan.h"
+#include "layers/light_group_names.h"
 #include "machine/memory.h"
 #include "machine/stopwatch.h"
-#include "render/prepared_scene.h"
+#include "prepare/prepared_scene.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/photon_plan.h"
+#include "photons/photon_plan.h"
 #include "render/bias_probe.h"
 #include "vdbeam/render.h"
 

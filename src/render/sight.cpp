@@ -1,7 +1,7 @@
 #include "render/sight.h"
 
-#include "estimators/camera_ray.h"
-#include "transport/optical_depth.h"
+#include "medium/optical_depth.h"
+#include "transport/camera_ray.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "transport/camera.h"
+#include "camera/camera.h"
 #include "transport/world.h"
 #include "vdbeam/image.h"
 #include "vdbeam/picture_facts.h"

@@ -1,10 +1,10 @@
 #include "report/image_metadata.h"
 
+#include "camera/camera.h"
 #include "film/layers.h"
+#include "keys/scene_enums.h"
 #include "report/versions.h"
-#include "scene/scene_enums.h"
 #include "text/attributes.h"
-#include "transport/camera.h"
 
 #include <array>
 #include <cmath>

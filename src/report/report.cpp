@@ -1,10 +1,10 @@
 #include "report/report.h"
 
+#include "keys/scene_keys.h"
 #include "machine/atomic_file.h"
 #include "machine/cpu.h"
 #include "machine/threads.h"
 #include "report/versions.h"
-#include "scene/scene_keys.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 
 #include "image/image_readers.h"
 #include "photonmap/photon_map.h"
+#include "vdb/vdb_reader.h"
 #include "vdbeam/version.h"
-#include "volume/vdb_reader.h"
 
 #include <tbb/version.h>
 

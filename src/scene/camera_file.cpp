@@ -2,8 +2,8 @@
 
 #include "geometry/gltf_camera.h"
 #include "geometry/gltf_files.h"
+#include "keys/scene_enums.h"
 #include "machine/input_file.h"
-#include "scene/scene_enums.h"
 #include "text/text.h"
 #include "vdbeam/error.h"
 

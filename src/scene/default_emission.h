@@ -1,7 +1,7 @@
 #pragma once
 
+#include "vdb/vdb_reader.h"
 #include "vdbeam/scene.h"
-#include "volume/vdb_reader.h"
 
 #include <string>
 #include <vector>

@@ -3,8 +3,8 @@
 #include "scene/default_emission.h"
 #include "text/frame_range.h"
 #include "text/text.h"
+#include "vdb/density_kind.h"
 #include "vdbeam/error.h"
-#include "volume/density_kind.h"
 
 #include <algorithm>
 #include <array>

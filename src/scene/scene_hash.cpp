@@ -1,5 +1,5 @@
-#include "estimators/plane_layers.h"
 #include "geometry/gltf_files.h"
+#include "layers/plane_layers.h"
 #include "machine/input_file.h"
 #include "scene/content_hash.h"
 #include "scene/scene_inputs.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/scene_keys.h"
+#include "keys/scene_keys.h"
 
 #include <filesystem>
 #include <string>

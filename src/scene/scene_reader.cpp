@@ -1,7 +1,7 @@
 #include "scene/scene_reader.h"
 
+#include "keys/key_synonyms.h"
 #include "scene/animation.h"
-#include "scene/key_synonyms.h"
 #include "scene/toml_value.h"
 #include "text/text.h"
 #include "vdbeam/error.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "keys/scene_keys.h"
 #include "scene/camera_file.h"
-#include "scene/scene_keys.h"
 #include "scene/validate.h"
 #include "scene/volume_time.h"
 

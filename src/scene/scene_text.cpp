@@ -1,5 +1,5 @@
+#include "keys/scene_keys.h"
 #include "scene/default_scene.h"
-#include "scene/scene_keys.h"
 #include "text/printable.h"
 #include "vdbeam/scene_file.h"
 

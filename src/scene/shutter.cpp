@@ -1,6 +1,6 @@
 #include "scene/shutter.h"
 
-#include "estimators/plane_layers.h"
+#include "layers/plane_layers.h"
 
 #include <algorithm>
 

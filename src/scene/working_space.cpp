@@ -1,6 +1,6 @@
 #include "scene/working_space.h"
 
-#include "scene/scene_keys.h"
+#include "keys/scene_keys.h"
 
 namespace vdbeam {
 

@@ -1,8 +1,8 @@
 #include "transport/photon_tracing.h"
 
+#include "camera/towards_camera.h"
 #include "materials/throws_light.h"
-#include "transport/flight.h"
-#include "transport/towards_camera.h"
+#include "medium/flight.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "camera/camera.h"
 #include "math/stop_token.h"
+#include "medium/path_guide.h"
 #include "photonmap/photon.h"
-#include "transport/camera.h"
-#include "transport/path_guide.h"
 #include "transport/world.h"
 
 #include <memory>

@@ -1,8 +1,8 @@
 #include "transport/similar_medium.h"
 
 #include "math/sampling.h"
+#include "medium/optical_depth.h"
 #include "phase/truncated_phase.h"
-#include "transport/optical_depth.h"
 
 #include <algorithm>
 #include <bit>

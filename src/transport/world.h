@@ -1,11 +1,11 @@
 #pragma once
 
+#include "camera/camera.h"
+#include "grids/emission_grid.h"
 #include "lights/light_set.h"
-#include "transport/camera.h"
-#include "transport/medium.h"
+#include "medium/medium.h"
 #include "transport/surfaces.h"
-#include "volume/emission_grid.h"
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include <string>
 

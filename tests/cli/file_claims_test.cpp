@@ -1,7 +1,7 @@
 #include "cli_fixture.h"
 
+#include "keys/scene_keys.h"
 #include "report/frame_files.h"
-#include "scene/scene_keys.h"
 #include "vdbeam/image_file.h"
 
 #include <nlohmann/json.hpp>

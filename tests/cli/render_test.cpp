@@ -254,8 +254,9 @@ TEST_P(Interrupt, EndsWithinSecondsInsideAPass) {
   using Words = std::vector<std::string>;
   const Words endless_paths{"--estimator",      "path", "--set", "volume.0.extinction=1e6", "--set",
                             "volume.0.albedo=1"};
-  const Words endless_photons{"--set", "render.photons=1000000",  "--set", "render.keep=1e-6",
-                              "--set", "volume.0.extinction=1e5", "--set", "volume.0.albedo=1"};
+  const Words endless_photons{"--set", "render.photons=100000000",
+                              "--set", "volume.0.extinction=1e5",
+                              "--set", "volume.0.albedo=1"};
   for (const Words& options : {endless_paths, endless_photons}) {
     Words arguments{"render", cloud, "--passes", "1", "-o", "a.exr"};
     arguments.insert(arguments.end(), options.begin(), options.end());

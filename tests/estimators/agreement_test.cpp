@@ -245,8 +245,8 @@ TEST(AgreementOfKernels, AdaptiveRadiiAndShapes) {
   scene.scene.render.kernel = KernelRadius::adaptive;
   scene.scene.render.neighbours = 20;
   const PassMeans truth = truth_of(scene);
-  for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,
-                                  KernelShape::biweight, KernelShape::fourth_order}) {
+  for (const KernelShape shape :
+       {KernelShape::constant, KernelShape::epanechnikov, KernelShape::biweight}) {
     scene.scene.render.kernel_shape = shape;
     expect_agreement(scene, truth, EstimatorType::beam, 24, 0.01);
   }

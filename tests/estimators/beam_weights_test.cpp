@@ -1,8 +1,8 @@
-#include "estimators/beam_weights.h"
+#include "estimators/beam/beam_weights.h"
 
-#include "estimators/camera_ray.h"
 #include "support/memory_scene.h"
 #include "support/test_frame.h"
+#include "transport/camera_ray.h"
 
 #include <gtest/gtest.h>
 

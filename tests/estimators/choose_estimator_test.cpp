@@ -1,5 +1,5 @@
 // What "auto" chooses, and that it renders what the estimator of that name does.
-#include "estimators/choose_estimator.h"
+#include "estimators/pilot/choose_estimator.h"
 
 #include "support/make_field.h"
 #include "support/statistics.h"

@@ -27,7 +27,6 @@ MemoryScene ball_scene() {
   RenderSettings& render = scene.scene.render;
   render.direct = DirectLight::photons;
   render.kernel = KernelRadius::fixed;
-  render.keep = 1;
   return scene;
 }
 
@@ -59,7 +58,6 @@ TEST(BeamConvergence, NoiseFallsWithPassesAtTheTheoreticalRate) {
   MemoryScene scene = ball_scene();
   // A few independent photons per kernel: their number is all the noise.
   scene.scene.render.photons = 200;
-  scene.scene.render.keep = 0.1;
   scene.scene.render.max_bounces = 1;
   scene.scene.render.radius = 0.15;
   for (const double alpha : {0.4, 1.0}) {
@@ -122,12 +120,6 @@ TEST_F(BeamBias, VanishesWithPasses) {
   scene_.scene.render.alpha = 0.2;
   const double first = at_radius(0.8, 1), many = at_radius(0.8, 32);
   EXPECT_LT(many, 0.4 * first);
-}
-
-TEST_F(BeamBias, FourthOrderKernelHasLess) {
-  const double second = at_radius(0.5, 12);
-  scene_.scene.render.kernel_shape = KernelShape::fourth_order;
-  EXPECT_LT(at_radius(0.5, 12), 0.6 * second);
 }
 
 } // namespace

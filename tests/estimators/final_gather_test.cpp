@@ -1,7 +1,7 @@
 // When photons are gathered by walks, and that it lessens the blur of kernels.
 #include "support/render_passes.h"
 
-#include "estimators/beam.h"
+#include "estimators/beam/beam.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
+#include "keys/scene_enums.h"
 #include "photonmap/map_queries.h"
-#include "scene/scene_enums.h"
 #include "support/memory_scene.h"
 #include "support/render_passes.h"
 

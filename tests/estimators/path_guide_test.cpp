@@ -1,5 +1,5 @@
 // Light paths that go where the picture is made: nothing is lost by it, and the picture gains.
-#include "estimators/beam_plan.h"
+#include "estimators/pilot/beam_plan.h"
 
 #include "support/render_passes.h"
 #include "support/test_frame.h"

@@ -1,6 +1,6 @@
-#include "estimators/photon_plan.h"
+#include "photons/photon_plan.h"
 
-#include "estimators/beam_plan.h"
+#include "estimators/pilot/beam_plan.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Shadow rays are sent where a lattice of optical depths expects the light.
-#include "estimators/direct_light.h"
+#include "rays/direct_light.h"
 
-#include "estimators/camera_ray.h"
+#include "medium/optical_depth.h"
 #include "support/render_passes.h"
-#include "transport/optical_depth.h"
+#include "transport/camera_ray.h"
 
 #include <gtest/gtest.h>
 

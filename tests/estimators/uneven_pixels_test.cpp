@@ -1,8 +1,8 @@
 // Edges of the medium are seen by several rays of a pixel, which changes no mean.
-#include "estimators/uneven_pixels.h"
+#include "rays/uneven_pixels.h"
 
-#include "estimators/beam.h"
-#include "estimators/tile_rays.h"
+#include "estimators/beam/beam.h"
+#include "rays/tile_rays.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Photons that the camera does not see are stored rarely, and nothing is lost by it.
-#include "estimators/view_thinning.h"
+#include "photons/view_thinning.h"
 
-#include "estimators/view_importance.h"
+#include "photons/view_importance.h"
 #include "support/render_passes.h"
 #include "transport/photon_tracing.h"
 

@@ -1,8 +1,8 @@
 // What pixels share of their walks: a fitted plane, and nothing with what lies at another depth.
-#include "estimators/walk_sharing.h"
+#include "photons/walk_sharing.h"
 
-#include "estimators/beam.h"
-#include "estimators/walk_plan.h"
+#include "estimators/beam/beam.h"
+#include "photons/walk_plan.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "film/error_estimate.h"
+#include "errors/error_estimate.h"
 
 #include "film/film.h"
 

@@ -18,7 +18,7 @@ namespace vdbeam::test {
 /// Reads bytes as a scene file; what comes after a zero byte is a --set. Returns what is wrong with
 /// how it ended: it must give a scene that can be printed, or an error of one line.
 inline std::string read_scene_bytes(std::string_view bytes, const std::string& path) {
-  // VDBs go to a child process, which the tests of src/volume damage.
+  // VDBs go to a child process, which the tests of src/vdb damage.
   if (bytes.starts_with(" BDV"))
     return {};
   const std::size_t zero = bytes.find('\0');

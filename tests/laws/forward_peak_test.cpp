@@ -1,7 +1,7 @@
 // Media whose forward peak is taken out of multiple scattering obey the laws and agree with path.
-#include "estimators/photon_plan.h"
+#include "medium/optical_depth.h"
 #include "phase/truncated_phase.h"
-#include "transport/optical_depth.h"
+#include "photons/photon_plan.h"
 #include "transport/similar_medium.h"
 
 #include "support/memory_scene.h"

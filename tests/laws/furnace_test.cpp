@@ -130,7 +130,7 @@ MemoryScene probe(DensityField field, const Vec3<int>& cells,
   scene.look({0, 0, 2000}, {0, 0, 0}, 0.001, 4, 4);
   RenderSettings& render = scene.scene.render;
   render.photons = 20000;
-  render.keep = std::min(1.0, 3 / furnace_settings.depth);
+  render.thinning = PhotonThinning::even;
   render.kernel = KernelRadius::fixed;
   render.radius = 0.25;
   render.alpha = 1; // radii stay
@@ -178,16 +178,10 @@ INSTANTIATE_TEST_SUITE_P(Kinds, BeamFurnace,
 TEST(BeamFurnaceKernels, OpticalDepthOfAThousand) {
   MemoryScene scene = probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, {1000, 0, 0.1});
   scene.scene.render.photons = 10000;
-  scene.scene.render.keep = 0.02;
+  scene.scene.render.thinning = PhotonThinning::even;
   const test::PassMeans means = test::render_passes(scene, EstimatorType::beam, 40);
   expect_one(means);
   EXPECT_LT(means.total[0].error(), 0.1);
-}
-
-TEST(BeamFurnaceKernels, FourthOrder) {
-  MemoryScene scene =
-      probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, {10, 0, 0.05, KernelShape::fourth_order});
-  expect_one(test::render_passes(scene, EstimatorType::beam, 24));
 }
 
 // At the rim the correction of the kernels' support must carry: the whole box, seen from a corner.

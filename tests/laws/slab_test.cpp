@@ -1,9 +1,9 @@
 #include "laws/adding_doubling.h"
 #include "laws/slab_tables.h"
+#include "medium/scattering.h"
 #include "support/memory_scene.h"
 #include "support/next_scattering.h"
 #include "support/render_passes.h"
-#include "transport/scattering.h"
 
 #include <gtest/gtest.h>
 #include <tbb/blocked_range.h>

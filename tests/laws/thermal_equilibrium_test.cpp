@@ -70,7 +70,7 @@ MemoryScene probe(const Equilibrium& e) {
   scene.look({0, 0, 2000}, {0, 0, 0}, 0.001, 4, 4);
   RenderSettings& render = scene.scene.render;
   render.photons = 20000;
-  render.keep = std::min(1.0, 3 / e.depth);
+  render.thinning = PhotonThinning::even;
   render.kernel = KernelRadius::fixed;
   render.radius = 0.25;
   render.alpha = 1;

@@ -1,5 +1,5 @@
 #include "math/opacity.h"
-#include "transport/depth_profile.h"
+#include "medium/depth_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -41,8 +41,8 @@ BeamTile cube_tile(const std::vector<PhaseFunction>& phases) {
 /// biweight, 16/5 for the fourth-order one. Photons share rays, so 5 standard errors of one ray are
 /// granted.
 TEST(PhotonMap, UniformPhotonsGiveTheirDensity) {
-  for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,
-                                  KernelShape::biweight, KernelShape::fourth_order}) {
+  for (const KernelShape shape :
+       {KernelShape::constant, KernelShape::epanechnikov, KernelShape::biweight}) {
     RadiusSettings radii;
     radii.neighbours = 200;
     const PhotonMap map = PhotonMap::build(cube_photons(40000), 1, radii, shape);
@@ -111,8 +111,8 @@ TEST(PhotonMap, ResizedKernelsHaveTheirOwnShares) {
 
 /// One photon's kernel, scanned by parallel rays, integrates to its power times weight and phase.
 TEST(PhotonMap, KernelConservesPower) {
-  for (const KernelShape shape : {KernelShape::constant, KernelShape::epanechnikov,
-                                  KernelShape::biweight, KernelShape::fourth_order}) {
+  for (const KernelShape shape :
+       {KernelShape::constant, KernelShape::epanechnikov, KernelShape::biweight}) {
     PhotonList photons;
     photons.position.push_back({0.3f, -0.2f, 0.1f});
     photons.power.push_back(Rgb(3));

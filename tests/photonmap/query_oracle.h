@@ -79,8 +79,6 @@ inline double disc(KernelShape shape, double s) {
     return 2 / M_PI * (1 - s);
   case KernelShape::biweight:
     return 3 / M_PI * (1 - s) * (1 - s);
-  case KernelShape::fourth_order:
-    return 6 / M_PI * (1 - s) * (1 - 2 * s);
   }
   return 0;
 }

@@ -1,7 +1,7 @@
 // Every sample scene is one picture, whichever estimator renders it.
-#include "estimators/photon_plan.h"
 #include "geometry/mesh_reader.h"
-#include "render/prepared_scene.h"
+#include "photons/photon_plan.h"
+#include "prepare/prepared_scene.h"
 #include "support/render_passes.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"

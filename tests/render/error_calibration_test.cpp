@@ -1,4 +1,4 @@
-#include "render/prepared_scene.h"
+#include "prepare/prepared_scene.h"
 #include "support/memory_scene.h"
 #include "support/statistics.h"
 #include "vdbeam/render.h"

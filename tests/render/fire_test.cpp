@@ -1,4 +1,4 @@
-#include "render/prepared_scene.h"
+#include "prepare/prepared_scene.h"
 #include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"

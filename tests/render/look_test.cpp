@@ -1,7 +1,7 @@
-#include "render/read_volumes.h"
+#include "grids/edited_field.h"
+#include "prepare/read_volumes.h"
 #include "support/ball_scene.h"
 #include "vdbeam/error.h"
-#include "volume/edited_field.h"
 
 namespace vdbeam {
 namespace {

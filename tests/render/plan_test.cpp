@@ -91,11 +91,6 @@ TEST(Plan, PhotonsKeptEvenly) {
   const Outcome even = run(scene);
   EXPECT_FALSE(even.plan.needs(Stage::photon_importance));
   expect_plan_kept(even);
-  scene = base();
-  scene.scene.render.keep = 0.5;
-  const Outcome share = run(scene);
-  EXPECT_FALSE(share.plan.needs(Stage::photon_importance));
-  expect_plan_kept(share);
 }
 
 TEST(Plan, NoEnvironment) {

@@ -1,5 +1,5 @@
-#include "estimators/photon_cache.h"
-#include "render/prepared_scene.h"
+#include "photons/photon_cache.h"
+#include "prepare/prepared_scene.h"
 #include "support/temp_folder.h"
 #include "vdbeam/metrics.h"
 #include "vdbeam/render.h"

@@ -1,4 +1,4 @@
-#include "render/prepared_scene.h"
+#include "prepare/prepared_scene.h"
 #include "support/temp_folder.h"
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"

@@ -1,4 +1,4 @@
-#include "scene/key_synonyms.h"
+#include "keys/key_synonyms.h"
 
 #include "text/text.h"
 

@@ -37,7 +37,7 @@ photons = 1e6
 store = "scatter"
 kernel = "fixed"
 radius = 0.125
-kernel_shape = "fourth_order"
+kernel_shape = "epanechnikov"
 max_bounces = 3
 seed = 9
 threads = 2
@@ -72,7 +72,7 @@ TEST_F(SceneFile, ReadsEveryTable) {
   EXPECT_EQ(scene.render.store, PhotonStore::scatter);
   EXPECT_EQ(scene.render.kernel, KernelRadius::fixed);
   EXPECT_EQ(scene.render.radius, 0.125);
-  EXPECT_EQ(scene.render.kernel_shape, KernelShape::fourth_order);
+  EXPECT_EQ(scene.render.kernel_shape, KernelShape::epanechnikov);
   EXPECT_EQ(scene.render.max_bounces, 3);
   EXPECT_EQ(scene.render.seed, 9u);
   EXPECT_EQ(scene.render.threads, 2);
@@ -105,12 +105,11 @@ TEST_F(SceneFile, DefaultsAreThoseOfTheStructsAndSixtyFourPasses) {
 }
 
 TEST_F(SceneFile, AutomaticValuesCanBeWritten) {
-  const Scene scene = load("[render]\nphotons = 'auto'\ndirect_samples = 'auto'\nkeep = 'auto'\n"
+  const Scene scene = load("[render]\nphotons = 'auto'\ndirect_samples = 'auto'\n"
                            "max_bounces = 'none'\ntarget_error = 'none'\npasses = 2\n"
                            "neighbours = 'auto'\n");
   EXPECT_FALSE(scene.render.photons.has_value());
   EXPECT_EQ(scene.render.direct_samples, 0);
-  EXPECT_EQ(scene.render.keep, 0);
   EXPECT_FALSE(scene.render.max_bounces.has_value());
   EXPECT_EQ(scene.render.passes, 2);
 }

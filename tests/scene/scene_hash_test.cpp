@@ -1,5 +1,5 @@
+#include "keys/scene_keys.h"
 #include "scene/content_hash.h"
-#include "scene/scene_keys.h"
 #include "scene_fixture.h"
 
 #include <set>

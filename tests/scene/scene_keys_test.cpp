@@ -1,4 +1,4 @@
-#include "scene/scene_keys.h"
+#include "keys/scene_keys.h"
 
 #include "scene_fixture.h"
 #include "text/text.h"

@@ -1,8 +1,8 @@
 // Sizes, times and magnitudes at the ends of their ranges.
 #include "film/film.h"
 #include "machine/memory.h"
-#include "render/memory_check.h"
-#include "render/plan.h"
+#include "plan/memory_check.h"
+#include "plan/plan.h"
 #include "stability/stability_scene.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"

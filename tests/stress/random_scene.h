@@ -162,7 +162,6 @@ private:
     }
     if (chance(0.2))
       render.max_bounces = 1 + pick(4);
-    render.keep = chance(0.5) ? 0 : uniform(0.05, 1);
     note("store {}, direct {}, kernel {} {}, neighbours {}, photons {}",
          static_cast<int>(render.store), static_cast<int>(render.direct),
          static_cast<int>(render.kernel), static_cast<int>(render.kernel_shape), render.neighbours,

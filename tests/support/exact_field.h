@@ -1,7 +1,7 @@
 #pragma once
 
 #include "math/affine.h"
-#include "transport/medium.h"
+#include "medium/medium.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "transport/flight.h"
+#include "medium/flight.h"
 
 namespace vdbeam::test {
 

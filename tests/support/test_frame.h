@@ -1,9 +1,9 @@
 #pragma once
 
+#include "camera/camera.h"
 #include "estimators/estimator_table.h"
-#include "render/plan.h"
+#include "plan/plan.h"
 #include "support/memory_scene.h"
-#include "transport/camera.h"
 
 namespace vdbeam::test {
 

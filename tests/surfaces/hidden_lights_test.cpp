@@ -1,5 +1,5 @@
 // Lights that shadow rays do not reach are left to photons.
-#include "estimators/hidden_lights.h"
+#include "photons/hidden_lights.h"
 
 #include "support/surface_test.h"
 

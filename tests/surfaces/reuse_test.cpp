@@ -1,6 +1,6 @@
 // Meshes, textures and Embree's trees are kept from frame to frame and from moment to moment as
 // long as their files are the same, and the pictures are those of frames that are rendered alone.
-#include "render/prepared_scene.h"
+#include "prepare/prepared_scene.h"
 #include "support/temp_folder.h"
 #include "vdbeam/image_file.h"
 #include "vdbeam/scene_file.h"

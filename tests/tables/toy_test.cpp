@@ -1,9 +1,9 @@
 // A new estimator and a new light are one file and one line each: this program links tables that
 // are one line longer than the renderer's, and everything that reads them follows.
+#include "keys/scene_keys.h"
 #include "lights/light_table.h"
 #include "math/color.h"
 #include "report/report.h"
-#include "scene/scene_keys.h"
 #include "scene/validate.h"
 #include "support/test_frame.h"
 #include "vdbeam/error.h"

@@ -36,10 +36,10 @@ class Checker(unittest.TestCase):
         self.accepts("src/volume/a.cpp", '#include "math/b.h"\n#include "volume/c.h"\n'
                                          '#include "vdbeam/vec.h"\n#include <vector>\n')
 
-    def test_openvdb_stays_in_volume_sources(self):
-        self.refuses("src/volume/a.h", "#pragma once\n#include <openvdb/openvdb.h>\n", "OpenVDB")
+    def test_openvdb_stays_in_vdb_sources(self):
+        self.refuses("src/vdb/a.h", "#pragma once\n#include <openvdb/openvdb.h>\n", "OpenVDB")
         self.refuses("src/scene/a.cpp", "#include <openvdb/openvdb.h>\n", "OpenVDB")
-        self.accepts("src/volume/a.cpp", "#include <openvdb/openvdb.h>\n")
+        self.accepts("src/vdb/a.cpp", "#include <openvdb/openvdb.h>\n")
 
     def test_openexr_stays_in_image(self):
         for header in ("ImfHeader.h", "OpenEXR/OpenEXRConfig.h", "Imath/half.h", "half.h"):

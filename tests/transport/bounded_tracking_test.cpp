@@ -1,9 +1,9 @@
+#include "medium/optical_depth.h"
+#include "medium/scattering.h"
 #include "support/chi_squared.h"
 #include "support/exact_field.h"
 #include "support/memory_scene.h"
 #include "support/statistics.h"
-#include "transport/optical_depth.h"
-#include "transport/scattering.h"
 
 #include <gtest/gtest.h>
 

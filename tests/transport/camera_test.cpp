@@ -1,4 +1,4 @@
-#include "transport/camera.h"
+#include "camera/camera.h"
 
 #include "support/statistics.h"
 

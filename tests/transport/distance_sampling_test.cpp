@@ -1,4 +1,4 @@
-#include "transport/distance_sampling.h"
+#include "medium/distance_sampling.h"
 
 #include "math/sampling.h"
 #include "support/exact_field.h"

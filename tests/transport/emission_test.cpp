@@ -1,8 +1,8 @@
+#include "medium/emission.h"
 #include "support/exact_field.h"
 #include "support/make_field.h"
 #include "support/memory_scene.h"
 #include "support/statistics.h"
-#include "transport/emission.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "transport/equi_angular.h"
+#include "medium/equi_angular.h"
 
 #include "math/rng.h"
 #include "support/chi_squared.h"

@@ -1,11 +1,11 @@
 #include "math/sampling.h"
+#include "medium/optical_depth.h"
+#include "medium/scattering.h"
 #include "support/chi_squared.h"
 #include "support/exact_field.h"
 #include "support/memory_scene.h"
 #include "support/next_scattering.h"
 #include "support/statistics.h"
-#include "transport/optical_depth.h"
-#include "transport/scattering.h"
 
 #include <gtest/gtest.h>
 

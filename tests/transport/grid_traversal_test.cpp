@@ -1,4 +1,4 @@
-#include "transport/grid_traversal.h"
+#include "medium/grid_traversal.h"
 
 #include "math/rng.h"
 #include "math/sampling.h"

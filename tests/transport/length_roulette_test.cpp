@@ -1,5 +1,5 @@
+#include "medium/scattering.h"
 #include "support/statistics.h"
-#include "transport/scattering.h"
 
 #include <gtest/gtest.h>
 

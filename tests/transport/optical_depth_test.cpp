@@ -1,10 +1,10 @@
-#include "transport/optical_depth.h"
+#include "medium/optical_depth.h"
 
 #include "math/sampling.h"
+#include "medium/depth_profile.h"
 #include "support/exact_field.h"
 #include "support/memory_scene.h"
 #include "support/statistics.h"
-#include "transport/depth_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "support/make_field.h"
 #include "support/memory_scene.h"
 #include "support/temp_folder.h"
+#include "vdb/vector_reader.h"
 #include "vdbeam/error.h"
-#include "volume/vector_reader.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "volume/combined_grid.h"
+#include "grids/combined_grid.h"
 
 #include "math/rng.h"
 #include "support/make_field.h"

@@ -1,5 +1,5 @@
 // Reading what lies in a box: the same values there, and little else in memory.
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"

@@ -1,4 +1,4 @@
-#include "volume/edited_field.h"
+#include "grids/edited_field.h"
 
 #include "support/make_field.h"
 

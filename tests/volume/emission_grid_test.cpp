@@ -1,8 +1,8 @@
+#include "grids/emission_grid.h"
 #include "support/memory_scene.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "volume/blackbody.h"
-#include "volume/emission_grid.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include "support/temp_folder.h"
 #include "vdbeam/scene_file.h"

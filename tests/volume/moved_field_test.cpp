@@ -1,4 +1,4 @@
-#include "volume/moved_field.h"
+#include "grids/moved_field.h"
 
 #include "support/make_field.h"
 #include "support/temp_folder.h"

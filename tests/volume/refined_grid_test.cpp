@@ -1,4 +1,4 @@
-#include "volume/refined_grid.h"
+#include "grids/refined_grid.h"
 
 #include "support/make_field.h"
 #include "support/memory_scene.h"

@@ -1,8 +1,8 @@
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include "machine/guarded_process.h"
 #include "support/temp_folder.h"
-#include "volume/vdb_parse.h"
+#include "vdb/vdb_parse.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>

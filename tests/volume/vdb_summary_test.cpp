@@ -1,8 +1,8 @@
-#include "volume/vdb_reader.h"
+#include "vdb/vdb_reader.h"
 
 #include "support/temp_folder.h"
+#include "vdb/summary_codec.h"
 #include "vdbeam/error.h"
-#include "volume/summary_codec.h"
 #include "volume_factory.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,368 @@
+#include "batch/frame_renderer.h"
+
+#include "batch/output_paths.h"
+#include "console/progress.h"
+#include "console/signals.h"
+#include "film/film_file.h"
+#include "image/color_conversion.h"
+#include "image/deep_check.h"
+#include "image/output_formats.h"
+#include "machine/stopwatch.h"
+#include "report/image_metadata.h"
+#include "report/report.h"
+#include "report/side_files.h"
+#include "text/frame_range.h"
+#include "text/text.h"
+#include "vdbeam/error.h"
+#include "vdbeam/image_file.h"
+#include "vdbeam/scene_file.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+
+namespace vdbeam::cli {
+namespace {
+
+/// The reference that an option names, which must have the picture's size, before any time goes
+/// into rendering; none where `path` is empty.
+std::optional<Image> read_reference(const char* option, const std::string& path,
+                                    const ImageSettings& size) {
+  if (path.empty())
+    return std::nullopt;
+  if (size.overscan > 0)
+    throw InputError(fmt::format("{}: excludes image.overscan", option));
+  Image reference = read_image(path);
+  if (reference.width != size.width || reference.height != size.height)
+    throw InputError(fmt::format("{} {}: is {}x{}, but the picture is {}x{}; use "
+                                 "--resolution {}x{}",
+                                 option, path, reference.width, reference.height, size.width,
+                                 size.height, reference.width, reference.height));
+  for (const char* channel : {"R", "G", "B"})
+    if (!reference.find(channel))
+      throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
+  convert_colors(reference, chromaticities_of(size.working_space));
+  return reference;
+}
+
+std::string start_text(const Scene& scene) {
+  return fmt::format("{}, {}, {}x{}", scene.path, scene.render.estimator.name, scene.image.width,
+                     scene.image.height);
+}
+
+std::string passes_text(int passes) {
+  return count_text(static_cast<std::uint64_t>(passes), "pass");
+}
+
+/// What a picture shows, so that one that went wrong is noticed in the log.
+std::string picture_text(const PictureFacts& facts) {
+  if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
+    return {}; // of a part of the passes
+  return fmt::format(
+      "; optical depth up to {:.2g}, opacity {:.2g}, {:.0f} % black, {:.0f} % above 1",
+      facts.optical_depth, facts.opacity, 100 * facts.black, 100 * facts.over_one);
+}
+
+std::string end_text(const RenderResult& result, const std::string& output) {
+  const PassRecord& last = result.passes.back();
+  std::string text =
+      fmt::format("{}: {} in {}", output, passes_text(last.pass), format_duration(last.seconds));
+  if (std::isfinite(last.error_estimate))
+    text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
+  if (std::isfinite(last.error_low))
+    text += fmt::format(" ({:.2g} to {:.2g})", last.error_low, last.error_high);
+  if (std::isfinite(last.bias_margin) && !result.plan.unbiased)
+    text += fmt::format(", estimated bias {:+.1f} +- {:.1f} %", 100 * last.bias_estimate,
+                        100 * last.bias_margin);
+  if (last.has_reference)
+    text += fmt::format(", MRSE {:.3g}, bias {:+.2f} %", last.mrse, 100 * last.bias);
+  text += ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
+  return text + picture_text(result.picture);
+}
+
+std::string stop_text(const RenderResult& result, const std::string& checkpoint,
+                      const std::string& snapshot) {
+  if (result.quick_look)
+    return "interrupted before the first pass was finished" +
+           (snapshot.empty() ? snapshot : fmt::format("; {} is a quick look", snapshot));
+  return fmt::format("interrupted after {}; the same command goes on from {}, which also shows "
+                     "the image so far",
+                     passes_text(result.passes.back().pass), checkpoint);
+}
+
+/// Bars and time left are about the passes that are asked for.
+RenderSettings progress_settings(const Scene& scene, const std::optional<PassRange>& range) {
+  RenderSettings settings = scene.render;
+  if (range) {
+    settings.passes = range->last - range->first + 1;
+    settings.time.reset();
+    settings.target_error.reset();
+  }
+  return settings;
+}
+
+} // namespace
+
+std::string FrameRenderer::path(Output output, int frame) const {
+  return output_path(options_.files, output, frame);
+}
+
+void FrameRenderer::check_side_files(int frame) const {
+  // A snapshot can be done without, and whatever has its name is left alone then.
+  const std::string why = why_not_replaceable(path(Output::checkpoint, frame), Output::checkpoint);
+  if (!why.empty())
+    throw InputError(
+        fmt::format("{}, but -o {} needs its name; rename it, or the output", why, output(frame)));
+}
+
+void FrameRenderer::remove_side_files(int frame) const {
+  for (const Output kind : {Output::checkpoint, Output::snapshot})
+    remove_side_file(path(kind, frame), kind);
+  std::error_code ignored; // one that stays does no harm
+  for (const std::string& pattern : options_.parts)
+    if (const std::string part = substitute_frame(pattern, frame); holds_film(part))
+      std::filesystem::remove(part, ignored);
+}
+
+std::string FrameRenderer::region_text() const {
+  const auto& r = options_.region;
+  return r ? fmt::format("{},{},{},{}", r->x0, r->y0, r->x1, r->y1) : "";
+}
+
+void FrameRenderer::add_metadata(Image& image, const LoadedFrame& loaded,
+                                 const RenderResult& result) const {
+  add_image_metadata(image, loaded.scene, result, loaded.hash);
+  if (options_.region)
+    image.metadata["vdbeam:region"] = region_text();
+}
+
+std::string FrameRenderer::why_no_part(const std::string& path, const LoadedFrame& loaded) const {
+  const FilmFileInfo info = read_film_info(path);
+  const PassRange range = *options_.pass_range;
+  std::vector<int> wanted(static_cast<std::size_t>(range.last - range.first + 1));
+  std::iota(wanted.begin(), wanted.end(), range.first);
+  if (info.pass_hash != pass_hash(loaded.scene) || info.frame != loaded.frame() ||
+      info.passes != wanted)
+    return "is of another scene, frame or pass range";
+  const ImageSettings& size = loaded.scene.image;
+  if (info.header.full_width != size.width || info.header.full_height != size.height ||
+      info.header.width > size.raster_width() || info.header.height > size.raster_height())
+    return "has another size";
+  read_film(path, info); // all of it: the header does not tell a truncated file
+  return "";
+}
+
+std::string FrameRenderer::why_no_image(const std::string& path, const LoadedFrame& loaded) const {
+  const Image image = read_image(path);
+  const auto text = [&](const char* name) {
+    const auto found = image.metadata.find(name);
+    return found == image.metadata.end() ? std::string() : found->second;
+  };
+  const auto marker = image.numbers.find("vdbeam:complete");
+  if (image.width != loaded.scene.image.width || image.height != loaded.scene.image.height)
+    return "has another size";
+  if (marker == image.numbers.end() || marker->second != 1)
+    return "is not marked as finished";
+  if (text("vdbeam:sceneHash") != loaded.hash || text("vdbeam:region") != region_text())
+    return "is of another scene";
+  const auto frame = image.numbers.find("vdbeam:frame");
+  if (frame == image.numbers.end() || frame->second != loaded.frame())
+    return "is of another frame";
+  if (loaded.scene.image.deep)
+    check_deep_exr(output_path({.output = path}, Output::deep, loaded.frame()));
+  return "";
+}
+
+std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
+  const auto why = [](const std::string& path, const auto& judge) -> std::string {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+      return "is not there";
+    try {
+      return judge(path);
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+  };
+  const auto image = [&](const std::string& path) { return why_no_image(path, loaded); };
+  const auto part = [&](const std::string& path) { return why_no_part(path, loaded); };
+  if (!options_.pass_range)
+    return why(output(loaded.frame()), image);
+  if (!options_.merged.empty() &&
+      why(substitute_frame(options_.merged, loaded.frame()), image).empty())
+    return "";
+  return why(output(loaded.frame()), part);
+}
+
+void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
+  const std::string hash = pass_hash(loaded.scene);
+  std::vector<std::string> paths;
+  for (const std::string& pattern : options_.parts) {
+    const std::string path = substitute_frame(pattern, loaded.frame());
+    const FilmFileInfo info = read_film_info(path);
+    if (info.pass_hash != hash || info.frame != loaded.frame())
+      throw FrameError(path + ": shows another frame, another scene, or volumes that have changed "
+                              "since; render its passes again");
+    paths.push_back(path);
+  }
+  MergeSettings settings;
+  settings.passes = loaded.scene.render.passes;
+  settings.deep = path(Output::deep, loaded.frame());
+  Image image = merge_partials(paths, settings);
+  image.metadata["vdbeam:sceneHash"] = loaded.hash; // the parts' may have another number of passes
+  if (options_.region)
+    image.metadata["vdbeam:region"] = region_text();
+  if (!options_.files.preview.empty())
+    write_image(image, path(Output::preview, loaded.frame()), {options_.exposure, options_.view});
+  write_image(image, output(loaded.frame()), {options_.exposure, options_.view});
+  remove_side_files(loaded.frame());
+}
+
+void FrameRenderer::write_preview(const Image& image, int frame) const {
+  if (!options_.files.preview.empty())
+    write_image(image, path(Output::preview, frame), {options_.exposure, options_.view});
+}
+
+void FrameRenderer::write_snapshot(const Image& image, int frame) const {
+  const std::string file = path(Output::snapshot, frame);
+  if (const std::string why = why_not_replaceable(file, Output::snapshot); !why.empty())
+    throw FrameError(why + ", and stays as it is");
+  write_image(image, file, {.links = Links::replace});
+}
+
+void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
+  const FrameFiles& files = options_.files;
+  const Stopwatch watch;
+  ReportContext context;
+  context.scene_hash = loaded.hash;
+  context.output = output(loaded.frame());
+  context.reference = substitute_frame(files.reference, loaded.frame());
+  context.second_reference = substitute_frame(files.second_reference, loaded.frame());
+  const bool complete = result.stopped_by != "stop";
+  std::optional<FrameError> lost;
+  const auto attempt = [&](const auto& write) { // of what is not worth an image
+    try {
+      write();
+    } catch (const FrameError& problem) {
+      lost = problem;
+    }
+  };
+  const auto write_report = [&] {
+    result.statistics.write = watch.seconds();
+    write_json_output(report_json(loaded.scene, result, context),
+                      path(Output::report, loaded.frame()));
+  };
+  if (complete) {
+    add_metadata(result.image, loaded, result);
+    // The image comes last, for it says that the frame is done.
+    attempt([&] { write_preview(result.image, loaded.frame()); });
+    if (result.deep && !options_.pass_range)
+      context.deep_bytes =
+          write_deep_exr(*result.deep, result.image, path(Output::deep, loaded.frame()));
+    if (!files.report.empty() && !is_stdout(files.report))
+      attempt(write_report);
+    if (!options_.pass_range) // whose film is written already
+      write_image(result.image, context.output, {options_.exposure, options_.view});
+    if (!result.quick_look)
+      remove_side_files(loaded.frame());
+  } else if (result.quick_look) {
+    add_metadata(result.image, loaded, result);
+    if (why_not_replaceable(path(Output::snapshot, loaded.frame()), Output::snapshot).empty())
+      write_snapshot(result.image, loaded.frame());
+  } else if (options_.early_preview) {
+    write_preview(result.image, loaded.frame()); // the quick look has served its time
+  }
+  if (!files.report.empty())
+    write_report(); // once more, with the time that writing the image took
+  if (lost)
+    throw *lost;
+}
+
+void FrameRenderer::write_black(const LoadedFrame& loaded) const {
+  RenderResult result;
+  result.stopped_by = "missing";
+  const ImageSettings& size = loaded.scene.image;
+  Film film(size.raster_width(), size.raster_height());
+  result.image = film.develop();
+  result.image.primaries = chromaticities_of(size.working_space);
+  if (size.overscan > 0) {
+    result.image.x = result.image.y = -size.overscan;
+    result.image.full_width = size.width;
+    result.image.full_height = size.height;
+  }
+  add_metadata(result.image, loaded, result);
+  if (loaded.scene.image.deep) {
+    DeepImage deep;
+    deep.width = result.image.width;
+    deep.height = result.image.height;
+    deep.counts.assign(result.image.channels.front().data.size(), 0);
+    write_deep_exr(deep, result.image, path(Output::deep, loaded.frame()));
+  }
+  write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
+  write_preview(result.image, loaded.frame());
+}
+
+bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,
+                                 FarmProgress& farm, std::size_t index) const {
+  const Scene& scene = loaded.scene;
+  const RenderSettings settings = progress_settings(scene, options_.pass_range);
+  Progress progress(title, settings, options_.quiet);
+  const auto read = [&](const char* option, const std::string& path) {
+    return read_reference(option, substitute_frame(path, loaded.frame()), scene.image);
+  };
+  const std::optional<Image> reference = read("--reference", options_.files.reference),
+                             second = read("--second-reference", options_.files.second_reference);
+  progress.start(start_text(scene));
+  const auto report_note = [&](const std::string& note) {
+    if (notes_->add(note, loaded.frame()))
+      progress.note(note);
+  };
+  for (const std::string& note : scene.notes)
+    report_note(note);
+  FrameSettings frame;
+  frame.pass_range = options_.pass_range;
+  frame.region = options_.region;
+  if (options_.pass_range)
+    frame.partial = output(loaded.frame());
+  frame.checkpoint = options_.checkpoint;
+  frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
+  frame.reference = reference ? &*reference : nullptr;
+  frame.second_reference = second ? &*second : nullptr;
+  RenderHooks hooks;
+  hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
+    progress.pass(record);
+    farm.frame_at(index, Progress::fraction(record, settings));
+  };
+  hooks.on_note = report_note;
+  hooks.stop = &stop_requested();
+  hooks.snapshot = &snapshot_requested();
+  hooks.on_snapshot = [&](RenderResult& so_far) {
+    add_image_metadata(so_far.image, scene, so_far, loaded.hash);
+    so_far.image.numbers.erase("vdbeam:complete");
+    write_snapshot(so_far.image, loaded.frame());
+    progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
+                              passes_text(so_far.passes.back().pass)));
+  };
+  if (options_.early_preview && !options_.files.preview.empty())
+    hooks.on_quick_look = [&](RenderResult& look) { write_preview(look.image, loaded.frame()); };
+  RenderResult result = render(scene, loaded.prepared, frame, hooks);
+  write_files(loaded, result);
+  if (result.stopped_by == "stop") {
+    const std::string snapshot = path(Output::snapshot, loaded.frame());
+    const bool taken = !why_not_replaceable(snapshot, Output::snapshot).empty();
+    progress.finish(stop_text(result, frame.checkpoint.path, taken ? "" : snapshot));
+    return false;
+  }
+  if (result.quick_look)
+    throw FrameError(fmt::format("{}: the time limit of {} ended the frame before its first pass "
+                                 "was finished: the image is a quick look, rough and for the eye "
+                                 "only; give it more time or fewer pixels",
+                                 output(loaded.frame()), format_duration(*scene.render.time)));
+  progress.finish(end_text(result, output(loaded.frame())));
+  return true;
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "layers/deep_ray.h"
+#include "layers/ray_layers.h"
+#include "photons/photon_plan.h"
+
+namespace vdbeam {
+
+/// What the walks of a camera ray gather, the mean over the walks.
+struct GatheredLight {
+  Rgb direct;   ///< scattered once, of lights for which there are no shadow rays
+  Rgb indirect; ///< scattered more often
+  Rgb blur;     ///< by how much `indirect` exceeds what the same walks gather in other kernels
+};
+
+/// Final gathering (Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001) in a medium:
+/// photons are not gathered along the camera ray, but where walks arrive that begin on it. A walk
+/// scatters at a point of the ray and goes on until it is a kernel's radius away, with shadow rays
+/// at each collision on its way; there the photons' density is what scatters into its last flight.
+/// So kernels blur only what walks are about to blur anyway, and most of their bias is gone, for
+/// noise of the walks' own (docs/physics.md, "Final gathering").
+class FinalGather {
+public:
+  /// `map`: of the world's photons, as the plan has them; `compared`: the same in kernels of
+  /// another width, null where the blur is not asked for. All must outlive this.
+  FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
+              const PhotonMap* compared = nullptr);
+
+  /// So many walks from the ray, whose profile is not empty, their distances stratified.
+  /// `ray_weight`: of the ray among those of its pixel.
+  GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float ray_weight,
+                       Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
+                       const VolumeLights& of_volumes = {}) const;
+
+private:
+  struct Walk;
+
+  void follow(Walk& walk) const;
+  std::optional<Collision> fly(Walk& walk) const;
+  void meet_light(Walk& walk, float begin, float end) const;
+  void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
+  void gather_photons(Walk& walk, const Volume& volume) const;
+
+  const World& world_;
+  const PhotonPlan& plan_;
+  const PhotonMap& map_;
+  const PhotonMap* compared_;
+  float far_enough_; ///< distance from its beginning at which a walk ends
+  bool meets_light_; ///< flights may meet light before they end
+};
+
+/// Whether walks can find all light: each light by shadow rays, or where they meet it; and no
+/// surfaces, number of scatterings or scatter storage would have to be regarded.
+bool may_gather_finally(const EstimatorInput& input, const PhotonPlan& plan);
+
+} // namespace vdbeam

@@ -1,0 +1,171 @@
+#include "estimators/gather/walk_pass.h"
+
+#include "estimators/gather/final_gather.h"
+#include "photons/blur_probe.h"
+#include "rays/pixel_tiles.h"
+
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// What is wanted, and `reach` pixels around it.
+PixelRegion widened(const PixelRegion& window, int reach, const Camera& camera) {
+  return {std::max(0, window.x0 - reach), std::max(0, window.y0 - reach),
+          std::min(camera.width(), window.x1 + reach),
+          std::min(camera.height(), window.y1 + reach)};
+}
+
+PixelRegion wanted(const EstimatorInput& input) {
+  return input.window.empty() ? PixelRegion{0, 0, input.camera.width(), input.camera.height()}
+                              : input.window;
+}
+
+/// Spreads light over the pieces of a deep pixel as its opacity is spread.
+void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
+  if (!image.deep_layout)
+    return;
+  constexpr std::size_t values = DeepLayout::values_per_piece;
+  float* pieces = image.deep.data() + image.deep_layout->first[pixel] * values;
+  const std::size_t end = image.deep_layout->count(pixel) * values;
+  float all = 0;
+  for (std::size_t i = 0; i < end; i += values)
+    all += pieces[i + 3];
+  for (std::size_t i = 0; i < end && all > 0; i += values)
+    for (std::size_t c = 0; c < 3; ++c)
+      pieces[i + c] += light[static_cast<int>(c)] * pieces[i + 3] / all;
+}
+
+/// What narrow sharing is: of half the radius, so that both have much of their noise in common; of
+/// the pixel's own light where so little would change.
+float narrower(float radius) {
+  return radius <= 1 ? 0 : radius / 2;
+}
+
+/// All that sharing blurs over what it blurs beyond narrower sharing; 0 where nothing is shared.
+float blur_over_difference(float narrow, float wide) {
+  if (!(wide > 0))
+    return 0;
+  const double of_narrow = std::sqrt(WalkSharing::blur(narrow) / WalkSharing::blur(wide));
+  return static_cast<float>(1 / (1 - of_narrow));
+}
+
+} // namespace
+
+WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int pass)
+    : wide_(input), window_(wanted(input)), photons_(photons),
+      sharing_(input.camera, input.world.space.scale, photons.plan().walks->sharing_radius(pass)),
+      narrow_(input.camera, input.world.space.scale, narrower(sharing_.radius())),
+      blur_over_difference_(blur_over_difference(narrow_.radius(), sharing_.radius())),
+      walks_(photons.plan().walks->walks(pass)) {
+  wide_.window = widened(window_, sharing_.reach(), input.camera);
+  const auto pixels = static_cast<std::size_t>(input.camera.width()) *
+                      static_cast<std::size_t>(input.camera.height());
+  walked_.direct.resize(pixels);
+  walked_.indirect.resize(pixels);
+  if (input.layers && input.layers->tells_volumes())
+    walked_.planes.assign(input.plane_count(), std::vector<float>(pixels));
+}
+
+void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image) {
+  const World& world = photons_.world();
+  const PhotonMap* compared = wide_.blur_pixels ? &photons_.compared_map() : nullptr;
+  const FinalGather gather(world, photons_.plan(), photons_.map());
+  const FinalGather twice(world, photons_.plan(), photons_.map(), compared);
+  for (int i = 0; i < TileRays::count && !wide_.stopped(); ++i) {
+    const TileRays::PixelRay& ray = scratch.rays[i];
+    if (!ray.inside)
+      continue;
+    PixelValue* probe = blur.find(ray.pixel);
+    const std::span<const TileRays::PixelRay> more = scratch.rays.more(i);
+    const int rays = 1 + static_cast<int>(more.size());
+    // A ray that is one of several needs two walks at least, or its noise would be that of one.
+    const int walks = more.empty() ? walks_ : std::max(2, walks_ / rays);
+    GatheredLight sum;
+    const auto send = [&](const TileRays::PixelRay& from) {
+      if (from.profile.empty())
+        return;
+      Rng rng(key, RngStage::final_gather, from.stream);
+      const GatheredLight light =
+          (probe ? twice : gather)
+              .gather(from.camera.ray(), from.profile, walks, 1 / static_cast<float>(rays), rng,
+                      scratch.statistics, DeepRay(world, from.camera, from.pixel, image),
+                      VolumeLights(wide_.layers, from.pixel, walked_));
+      sum.direct += light.direct;
+      sum.indirect += light.indirect;
+      sum.blur += light.blur;
+      ++scratch.statistics.lookups;
+    };
+    send(ray);
+    for (const TileRays::PixelRay& one : more)
+      send(one);
+    walked_.direct[ray.pixel] = sum.direct;
+    walked_.indirect[ray.pixel] = sum.indirect;
+    if (probe)
+      probe->radiance = sum.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
+  }
+}
+
+/// Whether the tile and those around it that are wanted are finished.
+bool WalkPass::finished_around(int column, int row, const PassImage& image) const {
+  for (int r = row - 1; r <= row + 1; ++r)
+    for (int c = column - 1; c <= column + 1; ++c) {
+      const int x = c * tile_width, y = r * tile_width;
+      const PixelRegion& window = wide_.window;
+      const bool wanted = x < window.x1 && x + tile_width > window.x0 && y < window.y1 &&
+                          y + tile_width > window.y0;
+      if (wanted && !image.finished_tiles[image.tile_of(x, y)])
+        return false;
+    }
+  return true;
+}
+
+void WalkPass::share(BlurProbe& blur, PassImage& image) const {
+  const int columns = image.tile_columns();
+  std::vector<std::uint8_t> finished(image.finished_tiles.size(), 0);
+  tbb::parallel_for(std::size_t{0}, finished.size(), [&](std::size_t tile) {
+    const int column = static_cast<int>(tile) % columns, row = static_cast<int>(tile) / columns;
+    if (!finished_around(column, row, image))
+      return;
+    const int x0 = column * tile_width, y0 = row * tile_width;
+    for (int y = std::max(y0, window_.y0); y < std::min(y0 + tile_width, window_.y1); ++y)
+      for (int x = std::max(x0, window_.x0); x < std::min(x0 + tile_width, window_.x1); ++x)
+        share_pixel(x, y, blur, image);
+    finished[tile] = 1;
+  });
+  image.finished_tiles = std::move(finished);
+}
+
+GatheredLight WalkPass::shared(std::span<const WalkSharing::Share> shares) const {
+  GatheredLight light;
+  for (const WalkSharing::Share& share : shares) {
+    light.direct += walked_.direct[share.pixel] * share.weight;
+    light.indirect += walked_.indirect[share.pixel] * share.weight;
+  }
+  return light;
+}
+
+void WalkPass::share_pixel(int x, int y, BlurProbe& blur, PassImage& image) const {
+  const SeenMedium seen{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
+  const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                            static_cast<std::size_t>(x);
+  WalkSharing::Shares buffer;
+  if (PixelValue* probe = blur.find(pixel)) {
+    const GatheredLight wide = shared(sharing_.shares(seen, x, y, buffer));
+    const GatheredLight narrow = shared(narrow_.shares(seen, x, y, buffer));
+    probe->radiance +=
+        (wide.direct + wide.indirect - narrow.direct - narrow.indirect) * blur_over_difference_;
+  }
+  const std::span<const WalkSharing::Share> shares = sharing_.shares(seen, x, y, buffer);
+  const GatheredLight light = shared(shares);
+  image.direct[pixel] += light.direct;
+  image.indirect[pixel] = light.indirect;
+  for (std::size_t plane = 0; plane < walked_.planes.size(); ++plane)
+    for (const WalkSharing::Share& share : shares)
+      image.planes[plane][pixel] += walked_.planes[plane][share.pixel] * share.weight;
+  add_by_opacity(light.direct + light.indirect - walked_.direct[pixel] - walked_.indirect[pixel],
+                 pixel, image);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,162 @@
+#include "estimators/march/march.h"
+
+#include "estimators/estimator_table.h"
+#include "estimators/tile_shading.h"
+#include "layers/deep_ray.h"
+
+namespace vdbeam {
+
+namespace {
+
+/// Marches one ray. Within a step the gather point is jittered and weighs what the step scatters,
+/// Tr(a) - Tr(b), exactly; with scatter storage Tr times the step's length.
+class RayMarcher {
+public:
+  RayMarcher(const RenderSettings& settings, const PhotonPass& photons)
+      : world_(photons.world()), photons_(photons),
+        scatter_photons_(settings.store == PhotonStore::scatter) {
+    float voxel = infinity;
+    for (const Volume& volume : world_.medium.volumes)
+      voxel = std::min(voxel, volume.voxel_size);
+    step_ = static_cast<float>(settings.step) * voxel;
+    reach_ = scatter_photons_ ? 4 * photons.map().mean_radius() : 0;
+  }
+
+  /// What the photons scatter into the ray, and in `straight` what of it comes straight from
+  /// lights.
+  Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
+            RenderStatistics& counts, Rgb& straight, const DeepRay& deep = {},
+            const VolumeLights& of_volumes = {}) {
+    const Medium& medium = world_.medium;
+    const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
+    const float end = std::min(profile.back() + reach_, camera.whole().t_end);
+    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / step_)));
+    const float step = (end - begin) / static_cast<float>(steps);
+    ProfileCursor cursor(profile);
+    std::vector<float> before(medium.volumes.size()), after(medium.volumes.size());
+    gathered_.resize(medium.phases.size());
+    straight_.resize(medium.phases.size());
+    straight = {};
+    Rgb sum;
+    for (int i = 0; i < steps; ++i) {
+      const float t = begin + step * (static_cast<float>(i) + rng.uniform());
+      cursor.move_to(begin + step * static_cast<float>(i + 1));
+      for (std::size_t v = 0; v < after.size(); ++v)
+        after[v] = cursor.tau(v);
+      if (reach_ > 0 || before != after) {
+        std::fill(gathered_.begin(), gathered_.end(), Rgb());
+        const QueryCounts c = photons_.map().query_point(camera.ray().at(t), camera.ray().direction,
+                                                         medium.gathered_phases(), gathered_.data(),
+                                                         straight_.data());
+        ++counts.lookups;
+        counts.contributions += c.contributions;
+        find_albedos(camera.ray().at(t));
+        const Rgb light = weigh(before, after, step, gathered_, of_volumes);
+        sum += light;
+        deep.add_light_at(t, light);
+        if (photons_.map().has_first_flights())
+          straight += weigh(before, after, step, straight_);
+      }
+      before = after;
+    }
+    return sum;
+  }
+
+private:
+  /// What the volumes scatter of their extinction at a point, where the photons do not tell.
+  void find_albedos(const Vec3f& point) {
+    albedos_.clear();
+    for (const Volume& volume : world_.medium.volumes)
+      albedos_.push_back(photons_.plan().albedo_in_power ? Rgb(1) : volume.albedo_at(point));
+  }
+
+  Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
+            const std::vector<Rgb>& gathered, const VolumeLights& of_volumes = {}) const {
+    const std::vector<Volume>& volumes = world_.medium.volumes;
+    Rgb tau, piece;
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+      tau += volumes[v].channel_scale * before[v];
+      piece += volumes[v].channel_scale * (after[v] - before[v]);
+    }
+    Rgb sum;
+    for (int c = 0; c < 3; ++c) {
+      const float tr = std::exp(-tau[c]);
+      const float whole =
+          scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * opacity_of(piece[c]);
+      for (std::size_t v = 0; v < volumes.size(); ++v) {
+        const float share = piece[c] > 0
+                                ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
+                                : 1 / static_cast<float>(volumes.size());
+        const float light = whole * share * albedos_[v][c] * gathered[volumes[v].phase_index][c];
+        sum[c] += light;
+        if (of_volumes) {
+          Rgb of_channel;
+          of_channel[c] = light;
+          of_volumes.add(volumes[v].setting, of_channel);
+        }
+      }
+    }
+    return sum;
+  }
+
+  const World& world_;
+  const PhotonPass& photons_;
+  bool scatter_photons_;
+  float step_ = 0, reach_ = 0;
+  std::vector<Rgb> albedos_;  ///< per volume
+  std::vector<Rgb> gathered_; ///< per phase function
+  std::vector<Rgb> straight_; ///< what of it comes straight from lights
+};
+
+} // namespace
+
+void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
+  photons_.trace_and_build(pass, statistics);
+  const auto gather = [&](TileScratch& scratch, const RngKey& key) {
+    RayMarcher marcher(input_.settings, photons_);
+    for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
+      const TileRays::PixelRay& ray = scratch.rays[i];
+      if (!ray.inside || ray.profile.empty())
+        continue;
+      Rng rng(key, RngStage::march, ray.pixel);
+      Rgb straight;
+      image.indirect[ray.pixel] =
+          marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
+                        DeepRay(photons_.world(), ray.camera, ray.pixel, image),
+                        VolumeLights(input_.layers, ray.pixel, image));
+      image.move_to_direct(ray.pixel, straight);
+    }
+  };
+  const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
+    RenderStatistics counts;
+    Rgb straight;
+    return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
+  };
+  shade_tiles(input_, photons_, pass, false, image, statistics, gather, gather_along);
+  image.truncation = truncation(photons_.world().medium);
+  photons_.release();
+}
+
+namespace {
+
+constexpr std::string_view march_keys[] = {
+    "photons",    "store",      "direct", "kernel",    "kernel_shape", "radius", "neighbours",
+    "min_radius", "max_radius", "alpha",  "bias_rays", "forward_peak", "step"};
+
+} // namespace
+
+const EstimatorKind march_estimator{
+    .name = "march",
+    .help =
+        "conventional photon mapping: the same photons, gathered step by step along camera rays",
+    .unbiased = false,
+    .stages = {Stage::surfaces, Stage::photons, Stage::surface_photons, Stage::map,
+               Stage::neighbours, Stage::photon_directions, Stage::photon_color,
+               Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
+               Stage::march, Stage::bias},
+    .keys = march_keys,
+    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+      return std::make_unique<MarchEstimator>(input);
+    }};
+
+} // namespace vdbeam

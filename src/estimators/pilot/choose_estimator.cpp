@@ -1,0 +1,179 @@
+#include "estimators/pilot/choose_estimator.h"
+
+#include "estimators/beam/beam.h"
+#include "estimators/path/path.h"
+#include "estimators/pilot/kernel_pilot.h"
+#include "estimators/tile_shading.h"
+#include "transport/similar_medium.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace vdbeam {
+
+namespace {
+
+/// Passes of `beam` after which the two are compared: its lead shrinks as passes are added, since
+/// the bias of kernels falls more slowly than noise.
+constexpr int compared_passes = 16;
+/// Names random numbers that neither passes nor other pilots draw.
+constexpr int first_trial_pass = -200;
+/// Each pixel is rendered this often, and in small pictures, of which there are few pixels, so
+/// often that as many rays tell of the noise as in large ones, within a limit.
+constexpr int fewest_trial_passes = 2, most_trial_passes = 16;
+constexpr std::size_t wanted_trial_rays = 1000;
+/// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths. Forecasts
+/// are right to a factor of about two, but in thin media under a sky, where `path` may be ahead,
+/// those of `beam` are too small rather than too large.
+constexpr double safe_lead = 1.25;
+
+// Processor time [ns] of what a pass consists of, fitted to 39 scenes, in which the ratio of the
+// two estimators came out right within 30 % (docs/decisions.md). Only ratios count.
+constexpr double time_of_ray = 10000, time_of_shadow_ray = 5000, time_of_query = 8000,
+                 time_of_light_collision = 150, time_of_photon = 2000, time_of_walks = 20000,
+                 time_of_walk_collision = 80;
+/// By which the sum of these overestimates a pass of `beam` against one of `path`.
+constexpr double beam_share = 0.56;
+
+int trial_passes_of(std::size_t pixels) {
+  return static_cast<int>(std::clamp(wanted_trial_rays / pixels, std::size_t{fewest_trial_passes},
+                                     std::size_t{most_trial_passes}));
+}
+
+/// The variance of a picture of which these are independent ones, weighted: mean over the pixels.
+double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
+  const auto count = static_cast<float>(images.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Rgb mean;
+    for (const PassImage& image : images)
+      mean += image.total(i) / count;
+    for (const PassImage& image : images) {
+      const Rgb d = image.total(i) - mean;
+      for (int c = 0; c < 3; ++c)
+        sum += static_cast<double>(pixels[i].weight[c] * d[c] * d[c]) / 3;
+    }
+  }
+  return sum / (static_cast<double>(pixels.size()) * static_cast<double>(count - 1));
+}
+
+/// The spread of all that does not come from photons, in a pass of `beam`; counts its rays. Edges
+/// are seen by one ray here, by four in the picture (tile_shading.cpp): a little too much noise, in
+/// a little too little time.
+double spread_beside_photons(const EstimatorInput& input, const PhotonPass& photons,
+                             const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
+  const EstimatorInput in = input.in(photons.world());
+  const auto width = static_cast<std::size_t>(input.camera.width());
+  const int passes = trial_passes_of(pixels.size());
+  std::vector<PassImage> images(static_cast<std::size_t>(passes));
+  std::vector<RenderStatistics> counts_by_pixel(pixels.size());
+  for (int t = 0; t < passes; ++t) {
+    PassImage& image = images[static_cast<std::size_t>(t)];
+    const RngKey key{input.settings.seed, input.frame,
+                     static_cast<std::uint64_t>(first_trial_pass + t)};
+    image.resize(static_cast<int>(pixels.size()), 1, !input.world.medium.emitters.empty());
+    tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+      if (in.stopped())
+        return;
+      TileRays::PixelRay ray =
+          TileRays::pixel_ray(in, key, static_cast<int>(pixels[i].pixel % width),
+                              static_cast<int>(pixels[i].pixel / width));
+      ray.profile.build(in.world.medium, ray.camera.segment,
+                        static_cast<float>(input.settings.cutoff));
+      shade_ray(in, photons, ray, {}, key, i, image, counts_by_pixel[i]);
+    });
+  }
+  for (const RenderStatistics& pixel : counts_by_pixel)
+    counts += pixel;
+  return spread(pixels, images);
+}
+
+/// The spread of a pass of `path`; counts its rays and collisions.
+double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>& pixels,
+                      RenderStatistics& counts) {
+  std::vector<std::size_t> places;
+  for (const TrialPixel& pixel : pixels)
+    places.push_back(pixel.pixel);
+  const PathEstimator path(input);
+  std::vector<PassImage> images(static_cast<std::size_t>(trial_passes_of(pixels.size())));
+  std::vector<std::uint8_t> finished;
+  for (std::size_t t = 0; t < images.size(); ++t)
+    path.render_pixels(first_trial_pass + static_cast<int>(t), places, images[t], finished, counts);
+  return spread(pixels, images);
+}
+
+/// By which factor the error of `path` is greater than that of `beam` after the same time.
+double lead_of_beam(const EstimatorInput& beam_input, const PhotonPass& photons,
+                    const EstimatorInput& path_input) {
+  const PhotonPlan& plan = photons.plan();
+  const std::vector<TrialPixel>& pixels = plan.trial->pixels;
+  const double rays = static_cast<double>(pixels.size()) * trial_passes_of(pixels.size());
+  RenderStatistics path_counts, beam_counts;
+  const double path_spread = spread_of_path(path_input, pixels, path_counts);
+  // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
+  const double beside =
+      std::min(path_spread, spread_beside_photons(beam_input, photons, pixels, beam_counts));
+  const double path_time =
+      time_of_ray + time_of_walks +
+      (time_of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
+       time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
+          rays;
+  const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(beam_input);
+  const double beam_time =
+      beam_share * (time_of_ray + time_of_query +
+                    time_of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
+                    paths_per_ray * (time_of_light_collision * plan.collisions_per_path +
+                                     time_of_photon * plan.stored_per_path));
+  const double of_photons = plan.gathers_finally(0)
+                                ? plan.walks->error_after(compared_passes)
+                                : plan.trial->model.error(plan.neighbours, compared_passes);
+  const double beam_error = of_photons + beside / compared_passes;
+  const double path_error = path_spread * path_time / (compared_passes * beam_time);
+  return beam_error > 0 ? path_error / beam_error : 1;
+}
+
+/// Tentative collisions of a light path, the mean over a few: what the pilot of `beam`, which
+/// traces thousands of paths and stores their collisions, would cost.
+double collisions_of_light_paths(const EstimatorInput& input) {
+  constexpr std::uint64_t probe_paths = 64, probe_pass = pilot_pass - 64;
+  if (!input.plan.needs(Stage::photons) || input.world.medium.empty())
+    return 0;
+  const PhotonPlan plan = default_photon_plan(input);
+  PassWorlds worlds(input.world, plan.similar);
+  const EstimatorInput in = input.in(worlds.of(0));
+  PhotonPassSettings settings = pass_settings(in, plan, probe_pass);
+  settings.paths = probe_paths;
+  settings.store_probability = 0;
+  return trace_photons(in.world, settings).mean_collisions;
+}
+
+} // namespace
+
+EstimatorChoice choose_estimator(const EstimatorInput& beam_input,
+                                 const EstimatorInput& path_input) {
+  // In such a medium the photons that are seen lie in a thin skin, and most paths end by chance.
+  constexpr double most_collisions = 4096;
+  if (const double collisions = collisions_of_light_paths(beam_input);
+      collisions > most_collisions && !beam_input.stopped())
+    return {EstimatorType::path,
+            fmt::format("a light path has some {:.1g} collisions, too many to trace photons",
+                        collisions),
+            0, nullptr};
+  auto beam = std::make_unique<BeamEstimator>(beam_input);
+  const PhotonPass& photons = beam->photons();
+  if (!photons.plan().trial || photons.plan().trial->pixels.empty())
+    return {EstimatorType::beam, "without a kernel pilot there is nothing to compare", 0,
+            std::move(beam)};
+  const double lead = lead_of_beam(beam_input, photons, path_input);
+  if (lead < 1 / safe_lead && !beam_input.stopped())
+    return {EstimatorType::path,
+            fmt::format("in as much time beam would have {:.2g} times its error", 1 / lead), lead,
+            nullptr};
+  return {EstimatorType::beam,
+          fmt::format("in as much time path would have {:.2g} times its error", lead), lead,
+          std::move(beam)};
+}
+
+} // namespace vdbeam

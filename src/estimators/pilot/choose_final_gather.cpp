@@ -1,0 +1,110 @@
+#include "estimators/pilot/choose_final_gather.h"
+
+#include "estimators/gather/final_gather.h"
+#include "rays/tile_rays.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace vdbeam {
+
+namespace {
+
+/// Passes before the first that gathers finally, at least and at most, unless it is the very first.
+constexpr int fewest_passes_before = 4, most_passes_before = 512;
+/// The two are compared after as many times the passes before, and after no fewer than so many.
+constexpr int compared_passes = 8;
+
+/// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
+struct GatherNoise {
+  double walks = 0; ///< of the walks of a ray, among the same photons
+  double maps = 0;  ///< of the mean of two such values, among all maps
+};
+
+/// Each pixel's ray looks at each map twice.
+GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
+                          const KernelTrial& trial) {
+  const std::vector<TrialPixel>& pixels = plan.trial->pixels;
+  const auto width = static_cast<std::size_t>(input.camera.width());
+  const RngKey key{input.settings.seed, input.frame, pilot_pass};
+  std::vector<GatherNoise> noise(pixels.size());
+  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+    const std::size_t pixel = pixels[i].pixel;
+    TileRays::PixelRay ray = TileRays::pixel_ray(input, key, static_cast<int>(pixel % width),
+                                                 static_cast<int>(pixel / width));
+    ray.profile.build(input.world.medium, ray.camera.segment,
+                      static_cast<float>(input.settings.cutoff));
+    if (ray.profile.empty() || input.stopped())
+      return;
+    Rng rng(key, RngStage::final_gather, pixel);
+    RenderStatistics uncounted;
+    std::vector<Rgb> means;
+    Rgb mean, walks;
+    for (const PhotonMap& map : trial.maps) {
+      const FinalGather gather(input.world, plan, map);
+      const auto light = [&] {
+        const GatheredLight found =
+            gather.gather(ray.camera.ray(), ray.profile, WalkPlan::most_walks, 1, rng, uncounted);
+        return found.direct + found.indirect;
+      };
+      const Rgb a = light(), b = light(), d = a - b;
+      means.push_back((a + b) * 0.5f);
+      mean += means.back() / static_cast<float>(trial.maps.size());
+      walks += d * d * (0.5f / static_cast<float>(trial.maps.size()));
+    }
+    Rgb maps;
+    for (const Rgb& one : means)
+      maps += (one - mean) * (one - mean) / static_cast<float>(means.size() - 1);
+    noise[i] = {static_cast<double>(mean_component(walks * pixels[i].weight)),
+                static_cast<double>(mean_component(maps * pixels[i].weight))};
+  });
+  GatherNoise sum; // in the order of the pixels, for any number of threads
+  for (const GatherNoise& pixel : noise) {
+    sum.walks += pixel.walks / static_cast<double>(pixels.size());
+    sum.maps += pixel.maps / static_cast<double>(pixels.size());
+  }
+  return sum;
+}
+
+/// Whether walks find the scene's lights without rare, bright values, which the pilot would miss:
+/// lights beyond the medium, by shadow rays or, where one surrounds it evenly, by leaving it. Close
+/// to a lamp a shadow ray's value has no bound, and a small light is met by chance only.
+bool lights_are_easy(const EstimatorInput& input, const PhotonPlan& plan) {
+  const LightSet& lights = input.world.lights;
+  for (std::size_t l = 0; l < input.plan.shadow_ray_lights.size(); ++l) {
+    const LightTraits& traits = lights.traits(l);
+    if (plan.sampled_lights[l] ? !traits.surrounds && !lights[l].narrow_direction()
+                               : !traits.surrounds || traits.wants_shadow_rays)
+      return false;
+  }
+  return true;
+}
+
+} // namespace
+
+std::optional<WalkPlan> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
+                                            const KernelTrial& trial, double paths_share) {
+  const bool asked_for = input.settings.final_gather == FinalGathering::always;
+  if (!plan.trial || plan.trial->pixels.empty() || trial.maps.size() < 2 ||
+      !may_gather_finally(input, plan) || (!asked_for && !lights_are_easy(input, plan)))
+    return std::nullopt;
+  const GatherNoise noise = measure_noise(input, plan, trial);
+  const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
+  const double of_photons =
+      in_trial * trial.neighbours / (final_gather_neighbours * plan.neighbours);
+  WalkPlan walks{0, noise.walks, of_photons, plan.trial->sharing};
+  if (asked_for)
+    return walks;
+  for (int first = 0; first <= most_passes_before;
+       first = std::max(fewest_passes_before, 2 * first)) {
+    const int passes = compared_passes * std::max(1, first);
+    const double error = walks.error_after(passes);
+    walks.first = first;
+    if (error > 0 && error < plan.trial->model.error(plan.neighbours, passes))
+      return walks;
+  }
+  return std::nullopt;
+}
+
+} // namespace vdbeam

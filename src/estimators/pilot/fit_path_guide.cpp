@@ -1,0 +1,233 @@
+#include "estimators/pilot/fit_path_guide.h"
+
+#include "estimators/pilot/trial_tile.h"
+#include "photons/view_thinning.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Paths of the pilot: this share of a pass, within limits, and no more than leave so many photons.
+constexpr double pilot_share = 0.25;
+constexpr double fewest_paths = 512, most_paths = 8192, most_photons = 1e6;
+/// Fewer photons tell nothing.
+constexpr std::size_t fewest_photons = 256;
+/// Cells with fewer visits than this take most of their value from those around them.
+constexpr double prior_visits = 8;
+/// Steps of a light with fewer paths than this take most of their value from all of them.
+constexpr double prior_paths = 32;
+/// Shares of paths that begin as if nothing were known: what the pilot missed is found all the
+/// same.
+constexpr double uniform_share = 0.1, power_share = 0.2;
+
+/// Sums over the blocks of a volume: of what is measured, and of what it is measured by.
+struct BlockSums {
+  Vec3<int> counts;
+  std::vector<double> value, measure, visits;
+
+  explicit BlockSums(const Vec3<int>& n)
+      : counts(n), value(static_cast<std::size_t>(n.x) * n.y * n.z), measure(value.size()),
+        visits(value.size()) {}
+
+  void add(std::size_t block, double v, double m) {
+    value[block] += v;
+    measure[block] += m;
+    ++visits[block];
+  }
+};
+
+/// The ratio of value to measure, block by block. Where visits are few it leans on the ratio over
+/// the 8 blocks of which the block is one, and so on upwards.
+std::vector<double> ratios(const BlockSums& sums) {
+  const Vec3<int>& n = sums.counts;
+  if (sums.value.size() == 1)
+    return {sums.measure[0] > 0 ? sums.value[0] / sums.measure[0] : 0};
+  BlockSums coarse({(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2});
+  const auto for_each_block = [&](const auto& visit) {
+    std::size_t block = 0;
+    for (int x = 0; x < n.x; ++x)
+      for (int y = 0; y < n.y; ++y)
+        for (int z = 0; z < n.z; ++z, ++block)
+          visit(block,
+                (static_cast<std::size_t>(x / 2) * coarse.counts.y + y / 2) * coarse.counts.z +
+                    z / 2);
+  };
+  double measure = 0, visits = 0;
+  for_each_block([&](std::size_t block, std::size_t parent) {
+    coarse.value[parent] += sums.value[block];
+    coarse.measure[parent] += sums.measure[block];
+    coarse.visits[parent] += sums.visits[block];
+    measure += sums.measure[block];
+    visits += sums.visits[block];
+  });
+  const double prior = visits > 0 ? prior_visits * measure / visits : 0;
+  const std::vector<double> around = ratios(coarse);
+  std::vector<double> result(sums.value.size());
+  for_each_block([&](std::size_t block, std::size_t parent) {
+    const double m = sums.measure[block] + prior;
+    result[block] = m > 0 ? (sums.value[block] + prior * around[parent]) / m : 0;
+  });
+  return result;
+}
+
+/// The pilot's photons, and where they lie.
+class Pilot {
+public:
+  Pilot(const World& world, const TracedPhotons& traced, const CellTables& view)
+      : medium_(world.medium), photons_(traced.photons), blocks_(world.medium) {
+    block_of_.reserve(photons_.size());
+    for (const Vec3f& position : photons_.position)
+      block_of_.push_back(blocks_.at(position));
+    weigh(view_importance_at(world, view, photons_));
+  }
+
+  const MediumBlocks& blocks() const { return blocks_; }
+
+  /// What paths brought after they met a block, per unit of flux. Leaves in `brought`, by path and
+  /// 0 at first, what all of its photons bring.
+  std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
+    BlockSums sums(blocks_.counts());
+    const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not
+    for (std::size_t i = photons_.size(); i-- > 0;) {
+      double& later = brought[photons_.path[i]];
+      sums.add(block_of_[i], later,
+               unit * max_component(Vec3d(photons_.power[i])) * majorant(photons_.position[i]));
+      later += values_[i];
+    }
+    return ratios(sums);
+  }
+
+private:
+  double power(std::size_t photon) const { return mean_component(Vec3d(photons_.power[photon])); }
+  double majorant(const Vec3f& point) const {
+    double sum = 0;
+    for (const Volume& volume : medium_.volumes)
+      sum += static_cast<double>(volume.majorant(point));
+    return sum;
+  }
+
+  /// Mean fluence where there is medium, by block and up to a factor.
+  std::vector<double> fluence() const {
+    BlockSums sums(blocks_.counts());
+    for (std::size_t i = 0; i < photons_.size(); ++i)
+      sums.add(block_of_[i], power(i), 0);
+    const Vec3<int>& n = blocks_.counts();
+    tbb::parallel_for(0, n.x, [&](int x) {
+      for (int y = 0; y < n.y; ++y)
+        for (int z = 0; z < n.z; ++z)
+          sums.measure[(static_cast<std::size_t>(x) * n.y + y) * n.z + z] = filled({x, y, z});
+    });
+    return ratios(sums);
+  }
+
+  /// Part of a block in which there is medium, by its cells.
+  double filled(const Vec3<int>& block) const {
+    constexpr int across = 3;
+    int count = 0;
+    for (int i = 0; i < across * across * across; ++i) {
+      const Vec3<int> at{i / (across * across), i / across % across, i % across};
+      count += majorant(blocks_.point(block, (Vec3f(at) + Vec3f(0.5f)) / across)) > 0;
+    }
+    return static_cast<double>(count) / (across * across * across);
+  }
+
+  void weigh(const std::vector<float>& view) {
+    const std::vector<double> around = fluence();
+    double light = 0, space = 0;
+    values_.resize(photons_.size());
+    for (std::size_t i = 0; i < photons_.size(); ++i) {
+      values_[i] = power(i) * static_cast<double>(view[i]);
+      light += values_[i];
+      space += around[block_of_[i]] > 0 ? values_[i] / around[block_of_[i]] : 0;
+    }
+    const double dark = space > 0 ? dark_offset * light / space : 0;
+    for (std::size_t i = 0; i < photons_.size(); ++i)
+      values_[i] = values_[i] > 0 ? values_[i] / (around[block_of_[i]] + dark) : 0;
+  }
+
+  const Medium& medium_;
+  const PhotonList& photons_;
+  MediumBlocks blocks_;
+  std::vector<std::size_t> block_of_; ///< each photon
+  std::vector<double> values_;        ///< what each photon brings
+};
+
+/// Cumulative distribution over the steps of a light whose paths brought this, in the order of
+/// their places.
+std::vector<double> emission_distribution(const double* brought, std::size_t paths) {
+  std::vector<double> sum(PathGuide::steps), count(PathGuide::steps);
+  double all = 0;
+  for (std::size_t i = 0; i < paths; ++i) {
+    const std::size_t step = i * PathGuide::steps / paths;
+    sum[step] += brought[i];
+    ++count[step];
+    all += brought[i];
+  }
+  const double mean = paths > 0 ? all / static_cast<double>(paths) : 0;
+  double total = 0;
+  for (std::size_t s = 0; s < sum.size(); ++s)
+    total += sum[s] = (sum[s] + prior_paths * mean) / (count[s] + prior_paths);
+  std::vector<double> cumulative{0};
+  for (const double value : sum)
+    cumulative.push_back(cumulative.back() +
+                         (total > 0 ? (1 - uniform_share) * value / total : 1 - uniform_share) +
+                         uniform_share / PathGuide::steps);
+  for (double& value : cumulative)
+    value /= cumulative.back();
+  return cumulative;
+}
+
+void fit_lights(const World& world, const std::vector<std::uint64_t>& first,
+                const std::vector<double>& brought, PathGuide& guide) {
+  double power = 0;
+  std::vector<double> sums, powers;
+  for (std::size_t l = 0; l + 1 < first.size(); ++l) {
+    const double* of_light = brought.data() + first[l];
+    const std::uint64_t paths = first[l + 1] - first[l];
+    guide.distribution.push_back(emission_distribution(of_light, paths));
+    sums.push_back(0);
+    for (std::uint64_t i = 0; i < paths; ++i)
+      sums.back() += of_light[i];
+    guide.total += sums.back();
+    powers.push_back(mean_component(Vec3d(world.lights[l].power())));
+    power += powers.back();
+  }
+  for (std::size_t l = 0; l < sums.size(); ++l)
+    guide.light_shares.push_back((1 - power_share) * sums[l] / guide.total +
+                                 power_share * powers[l] / power);
+}
+
+} // namespace
+
+std::shared_ptr<const PathGuide> fit_path_guide(const EstimatorInput& input, PhotonPlan& plan,
+                                                const CellTables& view, double mean_collisions) {
+  const World& world = input.world;
+  PhotonPassSettings pass = pass_settings(input, plan, guide_pass);
+  const double wanted =
+      std::clamp(pilot_share * static_cast<double>(choose_paths(input, plan.stored_per_path)),
+                 fewest_paths, most_paths);
+  pass.paths = static_cast<std::uint64_t>(
+      std::ceil(std::min(wanted, most_photons / std::max(1.0, mean_collisions))));
+  pass.store_probability = 1;
+  pass.store_probability_by_cell = nullptr;
+  pass.directions = false;
+  pass.path_numbers = true;
+  const TracedPhotons traced = trace_photons(world, pass);
+  plan.pilot_paths += pass.paths;
+  if (traced.photons.size() < fewest_photons)
+    return nullptr;
+  const std::vector<std::uint64_t> first = share_paths(world.lights, pass.paths, nullptr);
+  const Pilot pilot(world, traced, view);
+  auto guide = std::make_shared<PathGuide>(pilot.blocks());
+  std::vector<double> brought(first.back());
+  const std::vector<double> importance = pilot.importance(pass.albedo, brought);
+  guide->importance.assign(importance.begin(), importance.end());
+  fit_lights(world, first, brought, *guide);
+  return guide->total > 0 ? guide : nullptr;
+}
+
+} // namespace vdbeam

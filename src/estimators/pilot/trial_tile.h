@@ -1,0 +1,77 @@
+#pragma once
+
+#include "photons/photon_plan.h"
+#include "photons/walk_sharing.h"
+#include "rays/tile_rays.h"
+
+#include <array>
+#include <vector>
+
+namespace vdbeam {
+
+/// Added to the brightness in the weights of trials, as 0.01 is in MRSE, but relative to the
+/// picture's mean: dimming a light must not change the plan.
+inline constexpr double dark_offset = 0.03;
+
+/// Upper left pixel of a tile.
+struct TilePlace {
+  int x0 = 0, y0 = 0;
+};
+
+/// Tiles spread over the picture, at which trials look; all of them where it is small.
+std::vector<TilePlace> choose_trial_tiles(const Camera& camera);
+
+/// What a tile's rays see of the maps of two trials.
+struct TrialTile {
+  TilePlace place;
+  /// By map, what the rays gather: one channel after another, in each the rays as in TileRays.
+  std::vector<std::vector<float>> narrow, wide;
+  // Of the rays that meet the medium:
+  std::vector<std::size_t> pixels; ///< of the picture
+  std::vector<std::size_t> rays;   ///< of the tile
+  // And of each channel of each of them:
+  std::vector<std::size_t> places; ///< in a map's picture
+  std::vector<double> known;       ///< light that does not come from photons
+  double brightness = 0;           ///< sum over these
+  // Row by row, of all of the tile's pixels:
+  std::array<float, TileRays::count> opacity{}, depth{}; ///< as in PassImage
+  std::array<std::size_t, TileRays::count> ray_of{};     ///< the pixel's ray
+
+  std::size_t channels() const { return pixels.empty() ? 1 : places.size() / pixels.size(); }
+  SeenMedium seen() const;
+};
+
+/// `key`: of the rays' random numbers. `plan`: how the photons were chosen.
+TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
+                          const TilePlace& place, const std::vector<PhotonMap>& narrow,
+                          const std::vector<PhotonMap>& wide, const RngKey& key);
+
+/// Mean and sum of squared deviations of one value over the maps.
+struct Spread {
+  double mean = 0, squares = 0;
+
+  Spread(const std::vector<std::vector<float>>& pictures, std::size_t place);
+};
+
+/// Sums of a value that each of some maps tells with its own noise.
+struct PairedSums {
+  double sum = 0, squares = 0;
+  int count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  /// The square of what the maps agree on: the mean over pairs of different maps, of which noise is
+  /// no part.
+  double common_square() const { return (sum * sum - squares) / (count * (count - 1.0)); }
+};
+
+/// Of the square of a pixel's error.
+inline double trial_weight(double brightness, double dark) {
+  const double offset_brightness = std::max(0.0, brightness) + dark;
+  return 1 / (offset_brightness * offset_brightness);
+}
+
+} // namespace vdbeam

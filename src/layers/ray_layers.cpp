@@ -1,0 +1,189 @@
+#include "layers/ray_layers.h"
+
+#include "layers/opacity_pieces.h"
+#include "layers/plane_layers.h"
+#include "layers/scene_objects.h"
+
+#include <algorithm>
+
+namespace vdbeam {
+namespace {
+
+/// Parts of a ray's opacity before the nearest and the farthest depth: the first and the last
+/// hundredth do not count.
+constexpr float near_share = 0.01f, far_share = 0.99f;
+
+/// What a piece of the ray between two knots adds to its opacity.
+struct Piece {
+  float t = 0;              ///< where it does so, on average
+  float total = 0;          ///< of all volumes
+  std::vector<float> added; ///< by each volume of the medium
+};
+
+/// Calls visit(piece) for each piece of the ray that adds anything: the integral of Tr sigma_t dt,
+/// mean over channels.
+template <class Visit>
+void for_each_piece(const Medium& medium, const DepthProfile& profile, const Visit& visit) {
+  Piece piece;
+  const std::size_t volumes = medium.volumes.size();
+  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot) {
+    piece.added.assign(volumes, 0);
+    add_opacity(medium, profile, knot,
+                [&](std::size_t v, float share) { piece.added[v] += share; });
+    piece.total = 0;
+    for (const float added : piece.added)
+      piece.total += added;
+    if (!(piece.total > 0))
+      continue;
+    const float depth = mean_component(profile.channels(medium, knot)) -
+                        mean_component(profile.channels(medium, knot - 1));
+    piece.t = profile.t(knot - 1) + mean_collision(depth) * (profile.t(knot) - profile.t(knot - 1));
+    visit(piece);
+  }
+}
+
+float opacity_at(const Medium& medium, const DepthProfile& profile, std::size_t knot) {
+  const Rgb tau = profile.channels(medium, knot);
+  return mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
+}
+
+/// Where on the ray so much of its opacity is reached; `end` where the medium has less.
+float distance_of(const Medium& medium, const DepthProfile& profile, float opacity, float end) {
+  float before = 0;
+  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot) {
+    const float after = opacity_at(medium, profile, knot);
+    if (after >= opacity && after > before) {
+      const float whole = std::log1p((before - after) / (1 - before)),
+                  part = std::log1p((before - opacity) / (1 - before));
+      const float share = after < 1 && whole < 0 ? std::clamp(part / whole, 0.0f, 1.0f) : 0.0f;
+      return profile.t(knot - 1) + share * (profile.t(knot) - profile.t(knot - 1));
+    }
+    before = after;
+  }
+  return end;
+}
+
+/// Gradient of a volume's extinction at a point, per render unit squared: by differences over a
+/// voxel, which are exact where it is linear.
+Vec3f extinction_gradient(const Volume& volume, const Vec3f& point) {
+  const Vec3f local = volume.local_point(point);
+  Vec3f gradient;
+  for (int a = 0; a < 3; ++a) {
+    Vec3f step;
+    step[a] = 0.5f;
+    const float slope = volume.field.sample(local + step) - volume.field.sample(local - step);
+    gradient += volume.to_local.rows[static_cast<std::size_t>(a)] * slope;
+  }
+  return gradient * (volume.extinction * mean_component(volume.channel_scale));
+}
+
+} // namespace
+
+RayLayers::RayLayers(const Scene& scene, const Velocities& velocities)
+    : names_(plane_names(scene)), near_(find("depth_near.Z")), far_(find("depth_far.Z")),
+      position_(find("position.X")), motion_(find("motion.X")),
+      gradient_(find("density_gradient.X")), holdout_(find("holdout.Y")),
+      shadow_(find("shadow.Y")) {
+  const SceneObjects objects = scene_objects(scene);
+  for (const std::size_t object : objects.of_volume) {
+    volume_planes_.push_back(find("volume_" + objects.names[object] + ".A"));
+    if (volume_planes_.back() >= 0) {
+      ++volume_planes_.back(); // that of B
+      tells_volumes_ = true;
+    }
+  }
+  if (motion_ >= 0)
+    scene_motion_.emplace(scene, velocities);
+}
+
+RayLayers RayLayers::at(const Scene& moment) const {
+  RayLayers result = *this;
+  if (result.scene_motion_)
+    result.scene_motion_->set_moment(moment);
+  return result;
+}
+
+int RayLayers::find(const std::string& name) const {
+  const auto found = std::lower_bound(names_.begin(), names_.end(), name);
+  return found != names_.end() && *found == name ? static_cast<int>(found - names_.begin()) : -1;
+}
+
+bool RayLayers::is_light(std::size_t plane) const {
+  return plane_layer_of(names_[plane]).name == "volume_" && !names_[plane].ends_with(".A");
+}
+
+void RayLayers::record(const World& world, const CameraRay& camera, const DepthProfile& profile,
+                       float left, float shadow, float depth, std::size_t pixel,
+                       PassImage& image) const {
+  const auto add = [&](int plane, double value) {
+    if (plane >= 0)
+      image.planes[static_cast<std::size_t>(plane)][pixel] += static_cast<float>(value);
+  };
+  const auto add_vector = [&](int first, const Vec3d& value) {
+    for (int a = 0; a < 3 && first >= 0; ++a)
+      add(first + a, value[a]);
+  };
+  const Medium& medium = world.medium;
+  const Ray& ray = camera.ray();
+  const double scale = world.space.scale;
+  const auto in_world = [&](const Vec3d& point) { return point / scale + world.space.origin; };
+  // Of the surface at the end, what the ray shows of it.
+  float behind = 0;
+  if (camera.hit) {
+    const Material& material = world.surfaces->material(*camera.hit);
+    if (material.is_holdout())
+      add(holdout_, static_cast<double>(left));
+    else
+      behind = material.is_shadow_catcher() ? left * shadow : left;
+    if (material.is_shadow_catcher())
+      add(shadow_, static_cast<double>(behind));
+  }
+  const float through = profile.empty() ? 0 : opacity_at(medium, profile, profile.knots() - 1);
+  const float opacity = through + behind;
+  if (!(opacity > 0))
+    return;
+  const auto distance = [&](float share) {
+    const float end = behind > 0 ? camera.whole().t_end : profile.empty() ? 0 : profile.back();
+    return (static_cast<double>(distance_of(medium, profile, share * opacity, end)) +
+            camera.shift) /
+           scale;
+  };
+  if (near_ >= 0)
+    add(near_, opacity * distance(near_share));
+  if (far_ >= 0)
+    add(far_, opacity * distance(far_share));
+  if (position_ >= 0) {
+    const Vec3d eye = in_world(Vec3d(ray.origin) - Vec3d(ray.direction) * camera.shift);
+    add_vector(position_, eye * static_cast<double>(opacity) +
+                              Vec3d(ray.direction) * static_cast<double>(depth));
+  }
+  if (camera.hit && motion_ >= 0 && behind > 0) {
+    const SceneMotion::Pixels moved = scene_motion_->of_mesh(
+        static_cast<std::size_t>(camera.hit->surface), in_world(camera.hit->position));
+    for (int a = 0; a < 2; ++a)
+      add(motion_ + a, behind * moved[static_cast<std::size_t>(a)]);
+  }
+  if (motion_ < 0 && gradient_ < 0 && !tells_volumes_)
+    return;
+  for_each_piece(medium, profile, [&](const Piece& piece) {
+    const Vec3f point = ray.at(piece.t);
+    Vec3f gradient;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+      const Volume& volume = medium.volumes[v];
+      const auto share = static_cast<double>(piece.added[v]);
+      if (volume_planes_[volume.setting] >= 0)
+        add(volume_planes_[volume.setting] - 1, share);
+      if (gradient_ >= 0)
+        gradient += extinction_gradient(volume, point);
+      if (motion_ < 0 || !(share > 0))
+        continue;
+      const SceneMotion::Pixels moved =
+          scene_motion_->of_volume(volume.setting, in_world(Vec3d(point)));
+      add(motion_, share * moved[0]);
+      add(motion_ + 1, share * moved[1]);
+    }
+    add_vector(gradient_, Vec3d(gradient) * (scale * scale * static_cast<double>(piece.total)));
+  });
+}
+
+} // namespace vdbeam

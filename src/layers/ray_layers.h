@@ -1,0 +1,66 @@
+#pragma once
+
+#include "image/pass_image.h"
+#include "layers/scene_motion.h"
+#include "medium/depth_profile.h"
+#include "transport/camera_ray.h"
+
+namespace vdbeam {
+
+/// The planes of a pass beyond its light, opacity and depth, and what each camera ray adds to them.
+class RayLayers {
+public:
+  /// Those that the scene's layers ask for.
+  RayLayers(const Scene& scene, const Velocities& velocities);
+  /// The same at a moment of the shutter's time.
+  RayLayers at(const Scene& moment) const;
+
+  std::size_t planes() const { return names_.size(); }
+  const std::vector<std::string>& names() const { return names_; }
+  /// Layers of volumes are among them.
+  bool tells_volumes() const { return tells_volumes_; }
+  /// The plane of a volume's blue light (A, B, G and R are in this order); -1: none.
+  int volume_plane(std::size_t setting) const { return volume_planes_[setting]; }
+  /// Light adds up over groups of lights; all else is the same for each of them.
+  bool is_light(std::size_t plane) const;
+
+  /// What the ray sees, but for the light of volumes. `left`: what the medium lets through of the
+  /// light behind; `shadow`: of the surface at its end, that of a shadow catcher; `depth`: what the
+  /// ray adds to PassImage::depth.
+  void record(const World& world, const CameraRay& camera, const DepthProfile& profile, float left,
+              float shadow, float depth, std::size_t pixel, PassImage& image) const;
+
+private:
+  int find(const std::string& name) const;
+
+  std::vector<std::string> names_;
+  int near_, far_, position_, motion_, gradient_, holdout_, shadow_; ///< first planes; -1: none
+  std::vector<int> volume_planes_;                                   ///< by volume of the scene
+  bool tells_volumes_ = false;
+  std::optional<SceneMotion> scene_motion_;
+};
+
+/// Adds light that volumes scatter or emit towards a pixel to their layers; does nothing where
+/// nobody asks for those.
+class VolumeLights {
+public:
+  VolumeLights() = default;
+  VolumeLights(const RayLayers* layers, std::size_t pixel, PassImage& image)
+      : layers_(layers && layers->tells_volumes() && !image.planes.empty() ? layers : nullptr),
+        pixel_(pixel), image_(&image) {}
+  explicit operator bool() const { return layers_ != nullptr; }
+
+  /// `setting`: which volume of the scene it is.
+  void add(std::size_t setting, const Rgb& light) const {
+    const int plane = layers_ ? layers_->volume_plane(setting) : -1;
+    for (int c = 0; plane >= 0 && c < 3; ++c)
+      image_->planes[static_cast<std::size_t>(plane + 2 - c)][pixel_] += light[c];
+  }
+
+private:
+  const RayLayers* layers_ = nullptr;
+  std::size_t pixel_ = 0;
+  PassImage* image_ = nullptr;
+};
+
+} // namespace vdbeam

@@ -1,0 +1,70 @@
+#include "medium/optical_depth.h"
+
+namespace vdbeam {
+
+namespace {
+
+/// Per channel; ends once `weakest`, the sum over the volumes of the depth in their weakest
+/// channel, reaches `limit`.
+Rgb optical_depth(const Medium& medium, const Segment& segment, float limit, float& weakest,
+                  Rgb* taken_out) {
+  Rgb tau{0, 0, 0};
+  weakest = 0;
+  for (std::size_t v = 0; v < medium.volumes.size() && weakest < limit; ++v) {
+    const Volume& volume = medium.volumes[v];
+    const float scale =
+        std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
+    float sum = 0;
+    for_each_piece(volume, segment, [&](float, float, float piece) {
+      sum += piece;
+      return weakest + sum * scale < limit;
+    });
+    weakest += sum * scale;
+    tau += volume.channel_scale * sum;
+    if (taken_out && medium.peak)
+      *taken_out += medium.peak->excess[v] * sum;
+  }
+  return tau;
+}
+
+Rgb transmittance_of(const Rgb& tau) {
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+}
+
+} // namespace
+
+Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken_out) {
+  float weakest = 0;
+  return transmittance_of(optical_depth(medium, segment, opaque_optical_depth, weakest, taken_out));
+}
+
+Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u, Rgb* taken_out) {
+  constexpr float certain = 3; // optical depth that no ray ends before (docs/decisions.md)
+  const float limit = std::min(certain - std::log1p(-u), opaque_optical_depth);
+  float weakest = 0;
+  const Rgb tau = optical_depth(medium, segment, limit, weakest, taken_out);
+  if (weakest >= limit)
+    return Rgb(0);
+  // exp(-tau) over the chance exp(certain - weakest) to get here.
+  const float given = std::max(0.0f, weakest - certain);
+  return transmittance_of(tau - Rgb(given));
+}
+
+bool RatioTracking::attenuate(Rng& rng) {
+  constexpr float roulette_below = 0.1f;
+  const Collision hit = tracker_.collision();
+  weight_ *= Rgb(1) - hit.volume->channel_scale * (hit.sigma_t / hit.majorant);
+  const float largest = max_component(weight_);
+  if (largest < roulette_below) {
+    const bool survives = rng.uniform() * roulette_below < largest;
+    weight_ = survives ? weight_ * (roulette_below / largest) : Rgb(0);
+    if (!survives)
+      return false;
+  }
+  if (++collisions_ < most_tentative_collisions)
+    return true;
+  weight_ *= exact_transmittance(*medium_, {segment_.ray, hit.t, segment_.t_end});
+  return false;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "medium/medium.h"
+
+#include <vector>
+
+namespace vdbeam {
+
+/// About how much of a distant light reaches each point: optical depths towards it, exact at the
+/// points of a lattice over the medium and interpolated in between. Good enough to choose where
+/// shadow rays are sent, not to shade. One axis of the lattice is the light's direction, so that a
+/// single ray finds the depths of a whole column of points.
+class ShadowLattice {
+public:
+  /// For a light in the direction `towards` (unit); sends up to about `rays` rays.
+  ShadowLattice(const Medium& medium, const Vec3f& towards, double rays);
+
+  /// Transmittance from the point to the light, of the clearest channel.
+  float transmittance(const Vec3f& point) const;
+  /// Distance of lattice points, along the axis where it is least.
+  float step() const { return step_; }
+  const Vec3<int>& counts() const { return counts_; }
+  /// A point of the lattice; index.z counts from the light on.
+  Vec3f point(const Vec3<int>& index) const;
+
+private:
+  void trace_column(const Medium& medium, int column);
+
+  Vec3<int> counts_;          ///< lattice points along each axis, at least 2
+  float step_;                ///< the least of `spacing_`
+  std::array<Vec3f, 3> axes_; ///< unit; the last is the way the light travels
+  Vec3f origin_;              ///< the first point, along the axes
+  Vec3f spacing_;
+  std::vector<float> depths_; ///< x-major
+};
+
+} // namespace vdbeam

@@ -1,0 +1,246 @@
+#include "photons/photon_plan.h"
+
+#include "medium/depth_profile.h"
+#include "photons/hidden_lights.h"
+#include "transport/camera_ray.h"
+
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Where no trial chooses them.
+constexpr double default_neighbours = 500;
+/// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
+/// on thin and on thick media (docs/decisions.md). A count, not a clock, so that every machine
+/// chooses the same.
+constexpr double paths_per_hit = 4;
+constexpr double fewest_paths = 10000;
+constexpr double most_photons = 4e6;
+/// By which factor there may be more of them for lights that shadow rays do not reach, and photons
+/// per camera ray that meets the medium up to which there are.
+constexpr double most_for_hidden_lights = 8;
+constexpr double photons_per_hit = 1;
+/// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
+/// few.
+constexpr double most_paths_per_photon = 16;
+/// Shadow rays per camera ray: where the medium is thin, single scattering is most of the light and
+/// its noise most of the error; where it is thick, the photons' noise hides it (docs/decisions.md).
+constexpr double direct_per_collision = 12;
+constexpr int fewest_samples = 2, most_samples = 6;
+constexpr std::uint64_t pilot_paths = 1024;
+/// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
+constexpr float surface_neighbours = 64;
+constexpr double widest_surface_kernel = 0.05;
+
+/// The nearest power of the fourth root of two: the same number, and so the same photons, for
+/// frames that differ a little.
+double in_steps(double number) {
+  return number > 0 ? std::exp2(std::round(4 * std::log2(number)) / 4) : 0;
+}
+
+/// All volumes have the same albedo, also where a forward peak is taken out.
+bool common_albedo(const Medium& medium) {
+  for (const Volume& volume : medium.volumes)
+    if (volume.color || volume.albedo != medium.volumes[0].albedo ||
+        (medium.peak && volume.phase_index != medium.volumes[0].phase_index))
+      return false;
+  return true;
+}
+
+/// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
+/// from all around alike; photons of other lights would lose it. Scattering events are counted
+/// exactly where their number is limited, and neither the scene's own light nor that of surfaces is
+/// split from the peak's. Where the albedo changes from place to place, so would the extinction of
+/// the medium without the peak, by channel.
+bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sampled_lights) {
+  const World& world = input.world;
+  const RenderSettings& settings = input.settings;
+  bool possible = settings.forward_peak == ForwardPeak::automatic &&
+                  settings.store == PhotonStore::fluence && !settings.max_bounces &&
+                  world.medium.emitters.empty() && !world.surfaces && !world.medium.colored();
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    possible = possible && (sampled_lights[i] || (world.lights.traits(i).surrounds &&
+                                                  !world.lights.traits(i).wants_shadow_rays));
+  return possible;
+}
+
+bool samples_extended_light(const World& world, const PhotonPlan& plan) {
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    if (plan.sampled_lights[i] && !world.lights[i].is_delta())
+      return true;
+  return false;
+}
+
+/// Shadow rays of a camera ray where light is scattered so many times.
+int samples_for(double collisions) {
+  const double samples = std::round(direct_per_collision / (1 + collisions));
+  return static_cast<int>(std::clamp<double>(samples, fewest_samples, most_samples));
+}
+
+} // namespace
+
+int PhotonPlan::direct_samples_of(float depth) const {
+  return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
+}
+
+ScenePhotons ScenePhotons::in_units(double scale) const {
+  ScenePhotons result = *this;
+  const auto factor = static_cast<float>(scale / space.scale);
+  if (factor == 1)
+    return result;
+  result.space.scale = scale;
+  result.plan.view_reach *= factor;
+  if (plan.guide)
+    result.plan.guide = std::make_shared<const PathGuide>(plan.guide->in_units(factor));
+  return result;
+}
+
+double count_hits(const EstimatorInput& input) {
+  constexpr int samples = 48;
+  const Camera& camera = input.camera;
+  const bool on_surfaces = input.plan.needs(Stage::surface_photons);
+  DepthProfile profile;
+  int hits = 0;
+  for (int y = 0; y < samples && !input.stopped(); ++y)
+    for (int x = 0; x < samples; ++x) {
+      const CameraRay ray = camera_ray(
+          input.world, camera,
+          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
+      profile.build(input.world.medium, ray.segment, 0.5f);
+      hits += !profile.empty() || (ray.hit && on_surfaces);
+    }
+  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+}
+
+PhotonPlan default_photon_plan(const EstimatorInput& input) {
+  const World& world = input.world;
+  const RenderSettings& settings = input.settings;
+  PhotonPlan plan;
+  plan.sampled_lights = input.shadow_ray_lights();
+  plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(input, plan.sampled_lights);
+  plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
+  plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
+  plan.most_direct_samples = plan.direct_samples;
+  plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
+  return plan;
+}
+
+TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
+  const RenderSettings& settings = input.settings;
+  plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
+  PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
+  pass.paths = pilot_paths;
+  TracedPhotons pilot = trace_photons(input.world, pass);
+  plan.pilot_paths += pass.paths;
+  const double collisions = std::max(1e-3, pilot.mean_collisions);
+  if (settings.direct_samples == 0) {
+    plan.direct_samples = samples_for(collisions);
+    // Light of one direction has little noise where the ray is thin.
+    plan.most_direct_samples =
+        samples_extended_light(input.world, plan) ? most_samples : plan.direct_samples;
+  }
+  plan.store_probability = std::min(1.0, stored_per_path_aim / collisions);
+  plan.stored_per_path = collisions * plan.store_probability;
+  return pilot;
+}
+
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) {
+  const RenderSettings& settings = input.settings;
+  double paths = static_cast<double>(settings.photons.value_or(0)) *
+                 std::min(1 / stored_per_path, most_paths_per_photon);
+  if (!settings.photons)
+    paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input))),
+                     most_photons / stored_per_path);
+  return static_cast<std::uint64_t>(std::ceil(paths));
+}
+
+std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {
+  if (plan.sampled_lights == input.shadow_ray_lights() || input.settings.photons ||
+      !(plan.stored_per_path > 0))
+    return plan.paths;
+  const double paths = static_cast<double>(plan.paths);
+  const double wanted = std::ceil(photons_per_hit * count_hits(input) / plan.stored_per_path);
+  return static_cast<std::uint64_t>(std::clamp(wanted, paths, most_for_hidden_lights * paths));
+}
+
+PhotonPlan plan_photons(const EstimatorInput& input) {
+  PhotonPlan plan = default_photon_plan(input);
+  if (input.plan.needs(Stage::photons)) {
+    trace_pilot(input, plan);
+    plan.paths = choose_paths(input, plan.stored_per_path);
+  } else if (input.plan.needs(Stage::surface_photons)) {
+    plan.paths = choose_paths(input, 1);
+  }
+  return plan;
+}
+
+PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
+                                 std::uint64_t pass) {
+  const World& world = input.world;
+  PhotonPassSettings settings;
+  settings.paths = plan.paths;
+  settings.store = input.settings.store;
+  settings.store_probability = static_cast<float>(plan.store_probability);
+  settings.store_probability_by_cell = plan.store_probability_by_cell;
+  if (plan.store_probability_by_cell)
+    settings.camera = input.camera;
+  settings.guide = plan.guide;
+  settings.skip_first_flight = plan.sampled_lights;
+  settings.max_bounces = input.settings.max_bounces;
+  settings.truncation_order = world.medium.peak ? world.medium.peak->order : 0;
+  // Without its peak a medium may be isotropic where the scene's is not.
+  settings.directions = input.plan.needs(Stage::photon_directions) && !world.medium.isotropic();
+  if (plan.albedo_in_power && settings.store == PhotonStore::fluence && !world.medium.empty())
+    settings.albedo = world.medium.volumes[0].albedo;
+  settings.key = {input.settings.seed, input.frame, pass};
+  settings.stop = input.stop;
+  return settings;
+}
+
+std::vector<bool> lights_of_surfaces(const EstimatorInput& input) {
+  std::vector<bool> lights = input.shadow_ray_lights();
+  for (std::size_t i = 0; i < input.plan.shadow_ray_lights.size(); ++i)
+    lights[i] = lights[i] || input.world.lights.traits(i).wants_shadow_rays;
+  return lights;
+}
+
+float radius_scale(int pass, double alpha) {
+  double squared = 1;
+  for (int i = 1; i <= pass; ++i)
+    squared *= (i + alpha) / (i + 1);
+  return static_cast<float>(std::sqrt(squared));
+}
+
+RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
+  const World& world = input.world;
+  const RenderSettings& settings = input.settings;
+  const float scale = static_cast<float>(world.space.scale);
+  RadiusSettings radii;
+  radii.mode = settings.kernel;
+  radii.fixed_radius = static_cast<float>(settings.radius) * scale;
+  radii.neighbours = static_cast<float>(plan.neighbours);
+  if (plan.gathers_finally(pass) && settings.neighbours == 0)
+    radii.neighbours *= static_cast<float>(final_gather_neighbours);
+  radii.scale = radius_scale(pass, settings.alpha);
+  radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
+  // Kernels as wide as the medium would lose most of its light outside.
+  radii.max_radius = 0.5f * world.region.radius;
+  if (settings.kernel == KernelRadius::fixed)
+    radii.max_radius = infinity;
+  if (settings.max_radius > 0)
+    radii.max_radius = static_cast<float>(settings.max_radius) * scale;
+  return radii;
+}
+
+RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
+  RadiusSettings radii = radius_settings(input, plan, pass);
+  radii.neighbours = surface_neighbours;
+  if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
+    radii.max_radius = static_cast<float>(widest_surface_kernel *
+                                          length(input.world.surfaces->set->bounds().size()));
+  return radii;
+}
+
+} // namespace vdbeam

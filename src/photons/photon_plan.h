@@ -1,0 +1,113 @@
+#pragma once
+
+#include "photonmap/photon_map.h"
+#include "photons/walk_plan.h"
+#include "rays/estimator_input.h"
+#include "transport/photon_tracing.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace vdbeam {
+
+struct KernelTrialResult;
+
+/// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
+/// function of the estimator's input (by counts, never by a clock).
+struct PhotonPlan {
+  /// Per light: single scattering by shadow rays instead of photons.
+  std::vector<bool> sampled_lights;
+  /// Photons live in the medium without its forward peak (similar_medium).
+  bool similar = false;
+  /// Shadow-ray samples per camera ray, at least and at most.
+  int direct_samples = 1, most_direct_samples = 1;
+  /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
+  /// always in scatter storage, in fluence storage where all volumes have the same albedo.
+  bool albedo_in_power = false;
+  std::uint64_t paths = 0; ///< light paths per pass
+  /// Probability with which a storable collision is stored; by cell where the tables are given.
+  double store_probability = 1;
+  std::shared_ptr<const CellTables> store_probability_by_cell;
+  /// Where light paths begin, end and split; null: emission by power, no windows.
+  std::shared_ptr<const PathGuide> guide;
+  double stored_per_path = 0;     ///< expected photons of a light path
+  double neighbours = 0;          ///< photons in the sphere of an adaptive kernel's radius
+  double collisions_per_path = 0; ///< of light paths as they are sent in the end
+  /// Where probabilities are given by cell: they are min(1, view_factor times view_importance with
+  /// the fall-off `view_reach` [render units]).
+  float view_reach = 0, view_factor = 0;
+  /// What tried kernels told; null: none were tried.
+  std::shared_ptr<const KernelTrialResult> trial;
+
+  /// Shadow-ray samples of a camera ray that meets the optical depth `depth`: more where it is
+  /// small and lights have an extent, since what is seen there is mostly scattered once.
+  int direct_samples_of(float depth) const;
+
+  /// Passes whose photons are gathered by walks (FinalGather); none: there are no such passes.
+  std::optional<WalkPlan> walks;
+  bool gathers_finally(int pass) const { return walks && pass >= walks->first; }
+
+  std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
+  std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
+};
+
+/// The photons of a scene whose moments are other worlds, and where these are.
+struct ScenePhotons {
+  PhotonPlan plan;
+  RenderSpace space; ///< in which the plan is given
+
+  /// The same where `scale` render units are one of the world. The unit of a moment is another than
+  /// the scene's where its bounds have grown over a power of two.
+  ScenePhotons in_units(double scale) const;
+};
+
+/// A plan that does not depend on what is seen of single photons: stored with one probability
+/// everywhere, kernels of the neighbours that are asked for or of a default.
+PhotonPlan plan_photons(const EstimatorInput& input);
+
+/// The parts that plan_photons is made of, for plans that go further.
+///
+/// What needs no photons to be known: the settings and the render plan's decisions.
+PhotonPlan default_photon_plan(const EstimatorInput& input);
+/// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
+/// and chooses from the mean number of their collisions how many shadow rays to send and how many
+/// photons to store, everywhere with the same probability. Only for a render that needs photons.
+/// The photons hold all storable collisions.
+TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
+/// Camera rays of a pass that meet the medium, or a surface where photons lie on these, from a
+/// coarse sample.
+double count_hits(const EstimatorInput& input);
+/// Light paths per pass, from the photons that one of them stores.
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
+
+/// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
+/// all that the medium shows of them comes from photons, few of which leave a lamp's housing.
+std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
+
+/// Collisions of one path that are stored on average: more of them tell little that is new.
+inline constexpr double stored_per_path_aim = 4;
+/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
+/// out some of its noise (docs/decisions.md).
+inline constexpr double final_gather_neighbours = 0.5;
+/// The pilots' pass numbers count down from here, far from those of the picture.
+inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,
+                               sight_pass = guide_pass - 2;
+
+/// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
+/// bring, since a path from a surface may not meet it.
+std::vector<bool> lights_of_surfaces(const EstimatorInput& input);
+
+/// How photons of a pass are traced and stored.
+PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
+                                 std::uint64_t pass);
+/// The kernels of photons on surfaces.
+RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass);
+/// How wide the kernels of a pass are.
+RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass);
+/// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
+float radius_scale(int pass, double alpha);
+
+} // namespace vdbeam

@@ -1,0 +1,125 @@
+#include "photons/view_importance.h"
+
+#include "medium/depth_profile.h"
+#include "transport/camera_ray.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+namespace vdbeam {
+
+namespace {
+
+/// Rays along the picture's longer side. Cells between them are reached by the fall-off.
+constexpr int rays_across = 96;
+
+/// Raises a value that other threads may raise too; the result does not depend on their order.
+void raise(float& value, float to) {
+  const std::atomic_ref<float> shared(value);
+  float seen = shared.load(std::memory_order_relaxed);
+  while (seen < to && !shared.compare_exchange_weak(seen, to, std::memory_order_relaxed))
+    continue;
+}
+
+/// Infinite in channels in which nothing scatters, so that no photon is of use.
+Rgb hidden_channels(const Medium& medium) {
+  Rgb hidden(infinity);
+  for (const Volume& volume : medium.volumes)
+    for (int c = 0; c < 3; ++c)
+      if (volume.channel_scale[c] * volume.albedo[c] > 0)
+        hidden[c] = 0;
+  return hidden;
+}
+
+/// Raises the cells that the ray meets to the transmittance with which it enters them, of the
+/// clearest channel that is not hidden.
+void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, const Ray& ray,
+                const DepthProfile& profile, std::vector<float>& table) {
+  const DensityField& field = medium.volumes[volume].field;
+  ProfileCursor cursor(profile);
+  GridTraversal walk = medium.volumes[volume].traverse({ray, profile.front(), profile.back()});
+  for (; !walk.done(); walk.advance()) {
+    cursor.move_to(walk.t());
+    Rgb tau = hidden;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
+      tau += medium.volumes[v].channel_scale * cursor.tau(v);
+    const Vec3<int>& cell = walk.cell();
+    raise(table[field.cell_offset(cell.x, cell.y, cell.z)],
+          std::exp(-std::min(tau.x, std::min(tau.y, tau.z))));
+  }
+}
+
+/// Lets values fall no faster than to `falls[axis]` from cell to cell along each axis of the grid.
+void spread(const Vec3<int>& counts, const Vec3f& falls, std::vector<float>& table) {
+  const Vec3<std::ptrdiff_t> strides{static_cast<std::ptrdiff_t>(counts.y) * counts.z, counts.z, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const std::ptrdiff_t stride = strides[axis];
+    const float fall = falls[axis];
+    tbb::parallel_for(0, counts[u], [&](int i) {
+      for (int j = 0; j < counts[v]; ++j) {
+        float* line = table.data() + i * strides[u] + j * strides[v];
+        for (int k = 1; k < counts[axis]; ++k)
+          line[k * stride] = std::max(line[k * stride], fall * line[(k - 1) * stride]);
+        for (int k = counts[axis] - 2; k >= 0; --k)
+          line[k * stride] = std::max(line[k * stride], fall * line[(k + 1) * stride]);
+      }
+    });
+  }
+}
+
+/// What is left per cell along each axis of a volume's grid, at 1 / e per `reach`.
+Vec3f falls_per_cell(const Volume& volume, float reach) {
+  Affine to_local;
+  for (std::size_t i = 0; i < 3; ++i)
+    to_local.rows[i] = Vec3d(volume.to_local.rows[i]);
+  const Affine to_render = to_local.inverse();
+  Vec3f falls;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d edge;
+    edge[axis] = DensityField::cell_width;
+    falls[axis] = std::exp(-static_cast<float>(length(to_render.vector(edge))) / reach);
+  }
+  return falls;
+}
+
+} // namespace
+
+CellTables view_importance(const World& world, const Camera& camera, float reach, float floor,
+                           std::uint64_t& rays) {
+  const Medium& medium = world.medium;
+  CellTables tables;
+  for (const Volume& volume : medium.volumes) {
+    const Vec3<int>& n = volume.field.cell_counts();
+    tables.emplace_back(static_cast<std::size_t>(n.x) * n.y * n.z, 0.0f);
+  }
+  const int longer = std::max(camera.width(), camera.height());
+  const double spacing = static_cast<double>(longer) / rays_across;
+  const int columns = static_cast<int>(std::ceil(camera.width() / spacing));
+  const int rows = static_cast<int>(std::ceil(camera.height() / spacing));
+  const Rgb hidden = hidden_channels(medium);
+  tbb::enumerable_thread_specific<DepthProfile> profiles;
+  tbb::parallel_for(0, rows, [&](int row) {
+    DepthProfile& profile = profiles.local();
+    for (int column = 0; column < columns; ++column) {
+      const EyeRay eye = camera.ray((column + 0.5) * camera.width() / columns,
+                                    (row + 0.5) * camera.height() / rows);
+      const CameraRay ray = camera_ray(world, camera, eye);
+      profile.build(medium, ray.segment, floor);
+      for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
+        mark_cells(medium, v, hidden, ray.segment.ray, profile, tables[v]);
+    }
+  });
+  rays += static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);
+  for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+    const Volume& volume = medium.volumes[v];
+    spread(volume.field.cell_counts(), falls_per_cell(volume, reach), tables[v]);
+    for (float& value : tables[v])
+      value = std::max(value, floor);
+  }
+  return tables;
+}
+
+} // namespace vdbeam

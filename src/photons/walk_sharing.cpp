@@ -1,0 +1,109 @@
+#include "photons/walk_sharing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Difference in depth at which a neighbour does not count, over half the width of what is shared.
+constexpr float deepest_over_width = 8;
+/// Steepness that is held against the fit, relative to its weights: where all pixels lie in a row,
+/// the plane across it would be undetermined.
+constexpr double ridge = 1e-3;
+
+int reach_of(float radius) {
+  return radius > 0 ? static_cast<int>(std::ceil(radius)) : 0;
+}
+
+float weight_at(float dx, float dy, float radius) {
+  return std::max(0.0f, 1 - (dx * dx + dy * dy) / ((radius + 1) * (radius + 1)));
+}
+
+/// Weighted sums of 1, x, y and their products.
+struct Moments {
+  double one = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+
+  void add(double weight, double dx, double dy) {
+    one += weight;
+    x += weight * dx;
+    y += weight * dy;
+    xx += weight * dx * dx;
+    xy += weight * dx * dy;
+    yy += weight * dy * dy;
+  }
+  /// Of the normal equations' inverse, the row that gives the plane's value at (0, 0).
+  std::array<double, 3> first_row() const {
+    const double a = xx + ridge * one, c = yy + ridge * one;
+    const double minor = a * c - xy * xy, minor_x = x * c - xy * y, minor_y = x * xy - a * y;
+    const double determinant = one * minor - x * minor_x + y * minor_y;
+    return {minor / determinant, -minor_x / determinant, minor_y / determinant};
+  }
+};
+
+} // namespace
+
+WalkSharing::WalkSharing(const Camera& camera, double world_scale, float radius)
+    : camera_(camera), world_scale_(world_scale), radius_(radius), reach_(reach_of(radius)) {}
+
+double WalkSharing::blur(float radius) {
+  const int reach = reach_of(radius);
+  Moments moments;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx)
+      moments.add(
+          static_cast<double>(weight_at(static_cast<float>(dx), static_cast<float>(dy), radius)),
+          dx, dy);
+  const double mean_square = (moments.xx + moments.yy) / moments.one;
+  return mean_square * mean_square / std::sqrt(1 + mean_square * mean_square);
+}
+
+float WalkSharing::deepest(const SeenMedium& seen, int x, int y, float distance) const {
+  const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
+                                           static_cast<double>(distance) * world_scale_);
+  return deepest_over_width * (radius_ + 0.5f) * static_cast<float>(pixel / world_scale_);
+}
+
+std::span<const WalkSharing::Share> WalkSharing::shares(const SeenMedium& seen, int x, int y,
+                                                        Shares& shares) const {
+  const auto at = [&](int px, int py) {
+    return static_cast<std::size_t>(py) * static_cast<std::size_t>(seen.width) +
+           static_cast<std::size_t>(px);
+  };
+  const std::size_t center = at(x, y);
+  const float opacity = seen.opacity[center];
+  shares[0] = {center, 1};
+  if (reach_ == 0 || !(opacity > 0))
+    return {shares.data(), 1};
+  const float distance = seen.depth[center] / opacity;
+  const float deepest = this->deepest(seen, x, y, distance);
+  if (!(deepest > 0)) // a medium at the lens itself
+    return {shares.data(), 1};
+  std::array<std::array<double, 2>, most_shares> offsets;
+  Moments moments;
+  std::size_t count = 0;
+  for (int py = std::max(0, y - reach_); py <= std::min(seen.height - 1, y + reach_); ++py)
+    for (int px = std::max(0, x - reach_); px <= std::min(seen.width - 1, x + reach_); ++px) {
+      const std::size_t pixel = at(px, py);
+      const float own = seen.opacity[pixel];
+      if (!(own > 0))
+        continue;
+      const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
+      const float off = (seen.depth[pixel] / own - distance) / deepest;
+      const float weight = weight_at(dx, dy, radius_) * std::max(0.0f, 1 - off * off);
+      if (!(weight > 0))
+        continue;
+      // The variance of light per opacity goes as one over the opacity.
+      moments.add(static_cast<double>(weight * own), px - x, py - y);
+      offsets[count] = {static_cast<double>(px - x), static_cast<double>(py - y)};
+      shares[count++] = {pixel, weight};
+    }
+  const std::array<double, 3> row = moments.first_row();
+  for (std::size_t i = 0; i < count; ++i)
+    shares[i].weight *=
+        opacity * static_cast<float>(row[0] + row[1] * offsets[i][0] + row[2] * offsets[i][1]);
+  return {shares.data(), count};
+}
+
+} // namespace vdbeam

@@ -1,0 +1,193 @@
+#include "plan/memory_model.h"
+
+#include "camera/camera.h"
+#include "estimators/gather/walk_pass.h"
+#include "film/deep_film.h"
+#include "image/deep_layout.h"
+#include "machine/threads.h"
+#include "photonmap/photon_map.h"
+#include "plan/plan.h"
+#include "vdbeam/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+namespace {
+
+constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+/// Libraries and the program itself before it has read anything.
+constexpr std::uint64_t program_bytes = 46 * mib;
+/// Stack, allocator and the tile of a thread.
+constexpr std::uint64_t thread_bytes = 2 * mib;
+/// Majorants, importance of a field's cells, and where light is sampled.
+constexpr std::uint64_t cell_bytes = 3 * sizeof(float);
+/// A mesh with its tree, of what it takes while it is read.
+constexpr double kept_of_surfaces = 0.3;
+/// As choose_paths has them: light paths per camera ray that meets the medium, the fewest, and
+/// photons of a pass; photons that a path leaves in a medium that is not thin.
+constexpr double paths_per_hit = 4, fewest_paths = 10000, most_photons = 4e6, stored_per_path = 4;
+/// Of a picture's pixels that are written: half floats beside its own channels, and the preview.
+constexpr std::uint64_t written_bytes_per_pixel = 24;
+
+std::uint64_t times(double factor, std::uint64_t bytes) {
+  return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
+}
+
+/// Whether a ray meets a cell of the set.
+bool meets(const CellSet& set, const Affine& from_world, const EyeRay& ray) {
+  const Vec3d origin = from_world.point(ray.origin), along = from_world.vector(ray.direction);
+  const Boxd box = set.bounds();
+  double begin = 0, end = 1e300;
+  for (int a = 0; a < 3; ++a) {
+    double near = (box.lower[a] - origin[a]) / along[a],
+           far = (box.upper[a] - origin[a]) / along[a];
+    if (near > far)
+      std::swap(near, far);
+    begin = std::fmax(begin, near);
+    end = std::fmin(end, far);
+  }
+  constexpr int most_steps = 4096;
+  const double step = std::max(0.5 / length(along), (end - begin) / most_steps);
+  for (double t = begin; t <= end; t += step)
+    if (set.holds(origin + along * t))
+      return true;
+  return false;
+}
+
+/// Share of the picture's rays that meet a volume.
+double share_of_hits(const Scene& scene, const VolumesMemory& volumes) {
+  constexpr int samples = 48;
+  const Camera camera(scene.camera, scene.image, {});
+  std::vector<Affine> from_world;
+  for (const Affine& map : volumes.to_world)
+    from_world.push_back(map.inverse());
+  int hits = 0;
+  for (int y = 0; y < samples; ++y)
+    for (int x = 0; x < samples; ++x) {
+      const EyeRay ray =
+          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples);
+      bool met = false;
+      for (std::size_t i = 0; i < volumes.sets.size() && !met; ++i)
+        met = !volumes.sets[i].empty() && meets(volumes.sets[i], from_world[i], ray);
+      hits += met ? 1 : 0;
+    }
+  return hits / static_cast<double>(samples * samples);
+}
+
+class MemoryModel {
+public:
+  MemoryModel(const Scene& scene, const VolumesMemory& volumes, const RenderPlan& plan)
+      : scene_(scene), volumes_(volumes), plan_(plan),
+        pixels_(static_cast<std::uint64_t>(scene.image.raster_width()) *
+                static_cast<std::uint64_t>(scene.image.raster_height())),
+        hits_(share_of_hits(scene, volumes)) {}
+
+  MemoryPlan estimate() {
+    result_.kept = volumes_.kept;
+    result_.film = plan_.film_bytes + plan_.deep_bytes;
+    const std::uint64_t program =
+        program_bytes + static_cast<std::uint64_t>(thread_count(scene_.render)) * thread_bytes;
+    add("program", "", "", program, program, program);
+    add("volumes", volumes_.largest, volume_remedy(), volumes_.reading, volumes_.kept,
+        volumes_.kept);
+    const std::uint64_t cells = cell_bytes * volumes_.cells;
+    add("cells", volumes_.largest, volume_remedy(), 0, cells, cells);
+    const std::uint64_t surfaces = times(kept_of_surfaces, plan_.surface_bytes);
+    add("surfaces", "mesh", "use meshes of fewer triangles and smaller textures",
+        plan_.surface_bytes, surfaces, surfaces);
+    add_photons();
+    add_film();
+    add_deep();
+    result_.program = program;
+    return std::move(result_);
+  }
+
+private:
+  void add(const std::string& name, const std::string& part, const std::string& remedy,
+           std::uint64_t reading, std::uint64_t rendering, std::uint64_t writing) {
+    const std::uint64_t most = std::max({reading, rendering, writing});
+    if (most == 0)
+      return;
+    result_.parts.push_back({name, reading, rendering, writing});
+    result_.reading += reading;
+    result_.rendering += rendering;
+    result_.writing += writing;
+    if (!part.empty() && most > largest_) {
+      largest_ = most;
+      result_.largest_part = part;
+      result_.remedy = remedy;
+    }
+  }
+
+  std::string volume_remedy() const {
+    return volumes_.why.empty()
+               ? "crop the volume by box_lower and box_upper, or use a coarser one"
+               : fmt::format("leave out {}, or use a coarser volume", volumes_.why);
+  }
+
+  void add_photons() {
+    if (!plan_.needs(Stage::photons) && !plan_.needs(Stage::surface_photons))
+      return;
+    double photons = 0;
+    if (scene_.render.photons) {
+      photons = static_cast<double>(*scene_.render.photons);
+    } else {
+      const double hits = hits_ * static_cast<double>(pixels_);
+      const double paths =
+          std::min(std::max(fewest_paths, paths_per_hit * hits), most_photons / stored_per_path);
+      photons = paths * stored_per_path;
+    }
+    const std::uint64_t bytes =
+        times(photons, PhotonMap::build_bytes_per_photon(plan_.needs(Stage::photon_color) ? 3 : 1,
+                                                         plan_.needs(Stage::photon_directions)));
+    add("photons", "render.photons", "ask for fewer photons and more passes", 0, bytes, 0);
+  }
+
+  void add_film() {
+    const bool walks = plan_.needs(Stage::photons) && plan_.needs(Stage::beam_query) &&
+                       scene_.render.final_gather != FinalGathering::never &&
+                       scene_.surfaces.empty();
+    const std::uint64_t film = plan_.film_bytes;
+    add("film", "image", "ask for a smaller picture", 0, film, film / 3);
+    if (walks)
+      add("walks", "image", "ask for a smaller picture", 0,
+          pixels_ * PassImage::bytes_per_pixel(scene_.glows()), 0);
+    add("writing", "", "", 0, 0, pixels_ * written_bytes_per_pixel);
+  }
+
+  void add_deep() {
+    if (!scene_.image.deep)
+      return;
+    // The developed samples, and the layout beside that of the film.
+    constexpr std::uint64_t more = 6 * sizeof(float) + 2 * sizeof(float);
+    const std::uint64_t bytes = times(hits_, plan_.deep_bytes / DeepFilm::bytes_per_piece() *
+                                                 (DeepFilm::bytes_per_piece() + more)) +
+                                pixels_ * (DeepFilm::bytes_per_piece() + more);
+    add("deep", "image.deep", "ask for greater image.deep_alpha and image.deep_depth", 0, bytes,
+        bytes / 2);
+  }
+
+  const Scene& scene_;
+  const VolumesMemory& volumes_;
+  const RenderPlan& plan_;
+  MemoryPlan result_;
+  std::uint64_t pixels_;
+  double hits_;
+  std::uint64_t largest_ = 0;
+};
+
+} // namespace
+
+MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan,
+                           const VolumesMemory& volumes) {
+  return MemoryModel(scene, volumes, plan).estimate();
+}
+
+MemoryPlan plan_memory(const Scene& scene) {
+  return estimate_memory(scene, make_plan(scene), estimate_volumes(scene));
+}
+
+} // namespace vdbeam

@@ -1,0 +1,289 @@
+#include "plan/plan.h"
+
+#include "estimators/gather/walk_pass.h"
+#include "film/cryptomatte.h"
+#include "film/film.h"
+#include "layers/light_group_names.h"
+#include "layers/plane_layers.h"
+#include "photonmap/photon_map.h"
+#include "plan/plan_needs.h"
+#include "transport/camera_ray.h"
+#include "volume/emission_field.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace vdbeam {
+namespace {
+
+/// Photons of a pass where their number is chosen by the estimator.
+constexpr std::uint64_t usual_photons = 800000;
+
+std::string first_reason(std::initializer_list<std::pair<bool, std::string>> reasons) {
+  for (const auto& [applies, reason] : reasons)
+    if (applies)
+      return reason;
+  return {};
+}
+
+/// The rules, one group of stages after the other. A stage that the estimator cannot run is left
+/// out, whatever the scene.
+class Planner {
+public:
+  Planner(const Scene& scene, const EstimatorKind& estimator, const PlanNeeds& needs)
+      : scene_(scene), estimator_(estimator), needs_(needs),
+        no_scattering_(needs.medium && !needs.visible
+                           ? out_of_view
+                           : "nothing scatters: albedo 0, no light, or no bounces") {}
+
+  std::vector<PlanStage> plan() {
+    add_medium();
+    add_photons();
+    add_map();
+    add_camera_rays();
+    add_gathering();
+    add_bias();
+    add(Stage::environment, needs_.surrounded,
+        needs_.surrounded ? "a light surrounds the scene" : "no light surrounds the scene");
+    const bool moves = !scene_.moments.empty();
+    add(Stage::moments, moves,
+        moves ? "the shutter is open: passes see moments of their own"
+              : "nothing moves, or the shutter is open for no time");
+    add(Stage::deep, scene_.image.deep,
+        scene_.image.deep ? "image.deep: light and opacity are told apart by depth"
+                          : "no deep picture is asked for");
+    return std::move(stages_);
+  }
+
+private:
+  static constexpr const char* out_of_view = "the camera sees no medium";
+  static constexpr const char* no_medium = "no volume has any density";
+  static constexpr const char* no_photons = "no photons";
+  static constexpr const char* other_estimator = "another estimator";
+
+  void add(Stage stage, bool needed, const std::string& reason) {
+    stages_.push_back({stage, needed, reason});
+  }
+  bool runs(Stage stage) const { return estimator_.stages.contains(stage); }
+
+  void add_medium() {
+    add(Stage::read, !scene_.volumes.empty(),
+        scene_.volumes.empty()    ? "no volumes"
+        : !scene_.moments.empty() ? "the scene's grids, and velocities where there are any"
+        : needs_.glows            ? "density and emission grids only"
+                                  : "density grids only");
+    add(Stage::majorants, needs_.medium, needs_.medium ? "the medium is not empty" : no_medium);
+    const bool surfaces = !scene_.surfaces.empty();
+    add(Stage::surfaces, surfaces,
+        surfaces ? "meshes stand in the scene" : "there is no mesh, nor a device of Embree");
+  }
+
+  void add_photons() {
+    const RenderSettings& render = scene_.render;
+    const bool sees = runs(Stage::photon_importance);
+    const bool by_view = render.thinning != PhotonThinning::even;
+    add(Stage::photons, needs_.photons,
+        first_reason(
+            {{!needs_.scatters, no_scattering_},
+             {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
+             {!needs_.photons, "single bounce, all by shadow rays"},
+             {true, "light scatters in the medium: photons carry it"}}));
+    const bool importance = needs_.photons && sees && by_view && !needs_.specular;
+    add(Stage::photon_importance, importance,
+        first_reason({{!needs_.photons, no_photons},
+                      {!sees, "the estimator stores photons whatever the camera sees"},
+                      {!by_view, "photons are stored evenly, as asked for"},
+                      {needs_.specular, "mirrors or glass show more than camera rays meet"},
+                      {true, "photons are stored where the camera sees them"}}));
+    // Where photons may serve frames with other views, kernels must not depend on the view either.
+    const bool pilot = importance && runs(Stage::kernel_pilot) &&
+                       render.kernel == KernelRadius::adaptive && render.neighbours == 0 &&
+                       render.store == PhotonStore::fluence;
+    add(Stage::kernel_pilot, pilot,
+        first_reason({{pilot, "kernels are tried on a few photon maps, unless photons are few"},
+                      {!needs_.photons, no_photons},
+                      {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"},
+                      {render.neighbours > 0, "render.neighbours is given"},
+                      {render.store != PhotonStore::fluence, "it needs fluence photons"},
+                      {needs_.specular, "photons are stored evenly"},
+                      {true, "photons do not depend on the view"}}));
+    add(Stage::surface_photons, needs_.surface_photons,
+        first_reason(
+            {{needs_.surface_photons,
+              "mirrors, metal, glass and the medium send light on to surfaces: photons bring it"},
+             {!runs(Stage::surface_photons),
+              fmt::format("the {} estimator shoots no photons", estimator_.name)},
+             {true, "paths find what the medium sends on to surfaces"}}));
+  }
+
+  void add_map() {
+    add(Stage::map, needs_.photons, needs_.photons ? "photons are gathered" : no_photons);
+    const bool fixed = scene_.render.kernel == KernelRadius::fixed;
+    add(Stage::neighbours, needs_.photons && !fixed,
+        first_reason({{!needs_.photons, no_photons},
+                      {fixed, "the kernel's radius is fixed"},
+                      {true, "kernels are as wide as photons are sparse"}}));
+    add(Stage::photon_directions, needs_.photons && needs_.anisotropic,
+        first_reason({{!needs_.photons, no_photons},
+                      {!needs_.anisotropic, "all phase functions are isotropic"},
+                      {true, "how much a photon sends to the camera depends on its direction"}}));
+    const bool grid = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
+                                  [](const VolumeSettings& v) { return !v.color_grid.empty(); });
+    add(Stage::photon_color, needs_.photons && needs_.colored,
+        first_reason({{!needs_.photons, no_photons},
+                      {grid, "a grid of colours multiplies the albedo"},
+                      {!needs_.colored, "all colours are grey"},
+                      {true, "albedo, extinction or lights differ between red, green and blue"}}));
+  }
+
+  void add_camera_rays() {
+    add(Stage::spectral_tracking, needs_.scatters && needs_.chromatic,
+        needs_.chromatic ? "extinction differs between channels" : "extinction is grey");
+    add(Stage::depth_profiles, needs_.visible,
+        first_reason(
+            {{!needs_.medium, no_medium},
+             {!needs_.visible, out_of_view},
+             {true, "the medium dims what lies behind it: optical depth along each ray"}}));
+    add(Stage::emission, needs_.glow_visible,
+        first_reason({{!needs_.glows, "no volume glows"},
+                      {!needs_.glow_visible, "the camera sees nothing of what glows"},
+                      {true, "a volume glows"}}));
+    add(Stage::shadow_rays, needs_.shadow_rays(),
+        first_reason(
+            {{!needs_.scatters, no_scattering_},
+             {!needs_.shadow_rays(), "every light is left to photons or to escaping rays"},
+             {true, "light that scatters once is found from camera rays, towards the lights"}}));
+  }
+
+  void add_gathering() {
+    for (const Stage stage : {Stage::beam_query, Stage::march})
+      add(stage, needs_.photons && runs(stage),
+          first_reason({{!needs_.photons, no_photons},
+                        {!runs(stage), other_estimator},
+                        {stage == Stage::march, "photons are gathered in steps along each ray"},
+                        {true, "photons are gathered along each whole camera ray"}}));
+    const bool paths = runs(Stage::paths);
+    add(Stage::paths, needs_.scatters && paths,
+        first_reason({{!paths, other_estimator},
+                      {!needs_.scatters, no_scattering_},
+                      {true, "light that scatters more often is found by random walks"}}));
+  }
+
+  void add_bias() {
+    const bool asked = scene_.render.bias_rays > 0;
+    add(Stage::bias, needs_.photons && asked && runs(Stage::bias) && !needs_.specular,
+        first_reason(
+            {{!needs_.photons, no_photons},
+             {!asked, "render.bias_rays is 0"},
+             {needs_.specular, "path tracing may miss light that mirrors or glass focus"},
+             {true, "kernels blur: some rays are followed by path tracing to tell how much"}}));
+  }
+
+  const Scene& scene_;
+  const EstimatorKind& estimator_;
+  const PlanNeeds& needs_;
+  const char* no_scattering_;
+  std::vector<PlanStage> stages_;
+};
+
+std::uint64_t volume_memory(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    bytes += DensityField::bytes_of_voxels(volumes[i].active_voxels) +
+             EmissionField::bytes_of_voxels(volumes[i].glowing_voxels);
+    if (!scene.volumes[i].color_grid.empty())
+      bytes += ColorField::bytes_of_voxels(volumes[i].active_voxels);
+  }
+  return bytes;
+}
+
+/// How many copies of volumes a shutter needs at least that sees them at several moments: two
+/// moments, and what they are made from where it is not the world itself.
+int copies_of_moments(const Scene& scene) {
+  int copies = 0;
+  for (const VolumeSettings& volume : scene.volumes)
+    if (!scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
+        volume.velocity.scale != 0)
+      copies =
+          std::max(copies, volume.glows() || volume.remap.changes() || volume.box_lower ? 3 : 2);
+  return copies;
+}
+
+/// A ray that ends in opaque matter after the whole medium has the most pieces.
+std::uint64_t deep_memory(const ImageSettings& image) {
+  constexpr double by_depth = 16, share = 1.0 / 3;
+  const double pieces = share * (1 / image.deep_alpha + by_depth);
+  return static_cast<std::uint64_t>(pieces * image.raster_width() * image.raster_height() *
+                                    static_cast<double>(DeepFilm::bytes_per_piece()));
+}
+
+/// The largest number stands for whatever does not fit in 64 bits.
+std::uint64_t photon_memory(std::uint64_t photons, int channels, bool directions) {
+  const std::uint64_t bytes = PhotonMap::build_bytes_per_photon(channels, directions);
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  return photons > most / bytes ? most : photons * bytes;
+}
+
+} // namespace
+
+RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
+  const EstimatorKind& estimator = estimator_kind(scene.render.estimator);
+  const PlanNeeds needs = find_needs(scene, volumes, estimator);
+  RenderPlan plan;
+  plan.estimator = estimator.name;
+  plan.stages = Planner(scene, estimator, needs).plan();
+  plan.shadow_ray_lights = needs.shadow_ray_lights;
+  plan.unbiased =
+      !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
+  plan.volume_bytes = volume_memory(scene, volumes);
+  if (needs.photons)
+    plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
+                                      needs.colored ? 3 : 1, needs.anisotropic);
+  plan.moment_bytes = static_cast<std::uint64_t>(copies_of_moments(scene)) * plan.volume_bytes;
+  if (scene.image.deep)
+    plan.deep_bytes = deep_memory(scene.image);
+  plan.film_bytes = film_memory(
+      scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(),
+      light_group_names(scene).size(),
+      scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
+  if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
+      scene.render.final_gather != FinalGathering::never && scene.surfaces.empty())
+    plan.film_bytes += WalkPass::bytes_per_pixel() *
+                       static_cast<std::uint64_t>(scene.image.raster_width()) *
+                       static_cast<std::uint64_t>(scene.image.raster_height());
+  return plan;
+}
+
+std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
+                                      const Camera& camera, bool moves) {
+  std::vector<VolumeFacts> volumes;
+  // Where the shutter is open, what is out of view may come into it.
+  for (const WorldFacts::Voxels& voxels : facts.volumes)
+    volumes.push_back({voxels.density == 0, voxels.density, moves || may_see_medium(world, camera),
+                       voxels.emission});
+  return volumes;
+}
+
+RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes) {
+  scene.render.estimator = EstimatorType::path;
+  return plan_stages(scene, volumes);
+}
+
+std::uint64_t film_memory(const ImageSettings& image, int width, int height, bool glows,
+                          std::size_t groups, std::size_t objects, std::size_t planes) {
+  const auto pixels = [](int w, int h) {
+    return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
+  };
+  constexpr std::size_t cryptomatte = 2 * CryptomatteWriter::ranks * sizeof(float);
+  return (objects > 0 ? cryptomatte : 0) * pixels(width, height) +
+         objects * Film::bytes_per_pixel_of_object() * pixels(width, height) +
+         planes * Film::bytes_per_pixel_of_plane() * pixels(width, height) +
+         PassImage::bytes_per_pixel(glows) * pixels(image.raster_width(), image.raster_height()) +
+         groups * sizeof(Rgb) * pixels(image.raster_width(), image.raster_height()) +
+         (Film::bytes_per_pixel(glows) + Film::developed_bytes_per_pixel(glows) +
+          groups * Film::bytes_per_pixel_of_group()) *
+             pixels(width, height);
+}
+
+} // namespace vdbeam

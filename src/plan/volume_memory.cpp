@@ -1,0 +1,243 @@
+#include "grids/edited_field.h"
+#include "machine/memory.h"
+#include "plan/memory_model.h"
+#include "prepare/read_volumes.h"
+#include "volume/emission_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace vdbeam {
+namespace {
+
+constexpr std::uint64_t brick_bytes = DensityField::brick_size * sizeof(float);
+constexpr std::uint64_t leaf_values = 512;
+/// Index table and largest values of a field, per cell.
+constexpr std::uint64_t table_bytes = sizeof(std::int32_t) + sizeof(float);
+/// What a leaf of OpenVDB's tree takes beyond its values: masks, origin, the allocator.
+constexpr std::uint64_t leaf_overhead = 112;
+/// A process that reads a file takes so much beyond the grid: pages that it copies, buffers.
+constexpr std::uint64_t reader_bytes = std::uint64_t{8} << 20;
+/// Ranges of a leaf's values, and its origin, while bricks are made.
+constexpr std::uint64_t leaf_range_bytes = 64 + 12;
+/// Columns of a refined field grow as vectors do, by doubling.
+constexpr double growing = 1.5;
+/// Bricks that a velocity brings something to, beside those of the grid at rest.
+constexpr double moved_share = 1.15;
+
+/// A field and the most that is taken while it is made, itself included.
+struct FieldMemory {
+  CellSet set;
+  std::uint64_t bytes = 0, peak = 0;
+  Affine to_world; ///< of its cells
+};
+
+std::uint64_t field_bytes(const CellSet& set) {
+  return set.count() * brick_bytes + set.cells() * table_bytes;
+}
+
+Affine cells_to_world(const Affine& index_to_world, double scale) {
+  Affine cells = index_to_world;
+  for (Vec3d& row : cells.rows)
+    row = row * (scale * DensityField::cell_width);
+  return cells;
+}
+
+class VolumeEstimate {
+public:
+  VolumeEstimate(const Scene& scene, const VolumeSettings& volume)
+      : scene_(scene), volume_(volume) {}
+
+  /// The grid of this name, refined and displaced as the volume has it.
+  FieldMemory source(const std::string& name) {
+    const GridShape& shape = shape_of(name);
+    const GridSummary header = read_grid_header(volume_.file, name);
+    std::optional<WantedBox::Voxels> wanted;
+    if (const auto box = wanted_box(volume_, nullptr);
+        box && scene_.moments.empty() && header.grid_class != "Level Set")
+      wanted = box->voxels(header.index_to_world);
+    FieldMemory field;
+    field.set = CellSet(shape, 1, 0, wanted);
+    field.bytes = field_bytes(field.set);
+    field.peak = reading_bytes(shape, field.set);
+    field.to_world = cells_to_world(header.index_to_world, 1);
+    if (volume_.interpolation == Interpolation::cubic)
+      refine(shape, wanted, header.index_to_world, field);
+    if (volume_.noise.amplitude > 0)
+      displace(field);
+    return field;
+  }
+
+  const GridShape& shape_of(const std::string& name) {
+    auto found = shapes_.find(name);
+    if (found == shapes_.end())
+      found = shapes_.emplace(name, read_grid_shape(volume_.file, name)).first;
+    return found->second;
+  }
+
+private:
+  /// OpenVDB's tree and the memory file beside it, or the bricks that replace the file.
+  static std::uint64_t reading_bytes(const GridShape& shape, const CellSet& set) {
+    const std::uint64_t leaves = shape.leaves.size();
+    const std::uint64_t file = leaves * leaf_values * sizeof(float);
+    const std::uint64_t child = reader_bytes + file + shape.node_bytes +
+                                leaves * (leaf_values * shape.value_bytes + leaf_overhead);
+    constexpr std::uint64_t batch = 4096 * brick_bytes;
+    const std::uint64_t bricks = field_bytes(set);
+    const std::uint64_t parent = leaves * leaf_range_bytes + set.cells() * sizeof(std::int32_t) +
+                                 std::max(file, bricks) + std::min(batch, bricks);
+    return std::max(child, parent);
+  }
+
+  /// A step of the preparation that makes a field from another.
+  static void replace(FieldMemory& field, CellSet set, double while_made) {
+    const std::uint64_t bytes = field_bytes(set);
+    field.peak =
+        std::max(field.peak,
+                 field.bytes + static_cast<std::uint64_t>(while_made * static_cast<double>(bytes)));
+    field.bytes = bytes;
+    field.set = std::move(set);
+  }
+
+  void refine(const GridShape& shape, const std::optional<WantedBox::Voxels>& wanted,
+              const Affine& index_to_world, FieldMemory& field) {
+    replace(field, CellSet(shape, 2, 3, wanted), growing);
+    field.to_world = cells_to_world(index_to_world, 0.5);
+  }
+
+  void displace(FieldMemory& field) {
+    const Affine from_world = field.to_world.inverse();
+    Vec3<int> lower, upper;
+    for (int a = 0; a < 3; ++a) {
+      const Vec3d& row = from_world.rows[static_cast<std::size_t>(a)];
+      const double most =
+          volume_.noise.amplitude * (std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+      lower[a] = static_cast<int>(std::floor(-0.25 - most));
+      upper[a] = static_cast<int>(std::floor(1.125 + most));
+    }
+    replace(field, field.set.spread(lower, upper), 1);
+  }
+
+  const Scene& scene_;
+  const VolumeSettings& volume_;
+  std::map<std::string, GridShape> shapes_;
+};
+
+/// How a frame's shutter multiplies a volume.
+bool moves(const Scene& scene, const VolumeSettings& volume) {
+  return !scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
+         volume.velocity.scale != 0;
+}
+
+struct VolumeMemory {
+  std::uint64_t kept = 0, peak = 0; ///< `peak`: while it is prepared, in all
+  std::uint64_t sources = 0;        ///< kept for the moments beside it
+};
+
+void take_density(const Scene& scene, const VolumeSettings& volume, VolumeEstimate& estimate,
+                  VolumesMemory& all, VolumeMemory& memory) {
+  FieldMemory field = estimate.source(volume.density);
+  std::uint64_t others = 0;
+  for (std::string names = volume.add + "," + volume.mask; !names.empty();) {
+    const std::size_t comma = names.find(',');
+    std::string name = names.substr(0, comma);
+    names = comma == names.npos ? "" : names.substr(comma + 1);
+    name.erase(0, name.find_first_not_of(' '));
+    if (name.empty())
+      continue;
+    const FieldMemory other = estimate.source(name);
+    memory.peak = std::max(memory.peak, field.bytes + others + other.peak);
+    others += other.bytes;
+  }
+  if (others > 0)
+    field.peak = std::max(field.peak, 2 * field.bytes + others);
+  const bool edited = volume.remap.changes() || !volume.mask.empty() || volume.box_lower;
+  if (edited)
+    field.peak = std::max(field.peak, 2 * field.bytes);
+  memory.peak = std::max(memory.peak, field.peak);
+  memory.kept += field.bytes;
+  if (moves(scene, volume) && edited)
+    memory.sources += field.bytes;
+  if (!volume.color_grid.empty()) {
+    const std::uint64_t colors = 3 * field.set.count() * brick_bytes;
+    memory.kept += 2 * colors; // the grid that was read stays beside them
+    memory.peak = std::max(memory.peak, memory.kept + colors);
+  }
+  all.cells += field.set.cells();
+  all.to_world.push_back(Affine::from_matrix(volume.transform).after(field.to_world));
+  all.sets.push_back(std::move(field.set));
+}
+
+void take_emission(const Scene& scene, const VolumeSettings& volume, VolumeEstimate& estimate,
+                   VolumesMemory& all, VolumeMemory& memory) {
+  std::uint64_t made_from = 0;
+  CellSet largest;
+  Affine place;
+  for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
+    if (name.empty())
+      continue;
+    FieldMemory field = estimate.source(name);
+    memory.peak = std::max(memory.peak, memory.kept + made_from + field.peak);
+    made_from += field.bytes;
+    if (field.set.count() > largest.count()) {
+      largest = std::move(field.set);
+      place = field.to_world;
+    }
+  }
+  const std::uint64_t glow = largest.count() * brick_bytes * 3 + largest.cells() * 4;
+  memory.peak = std::max(memory.peak, memory.kept + made_from + glow);
+  memory.kept += glow;
+  if (moves(scene, volume))
+    memory.sources += made_from;
+  all.to_world.push_back(Affine::from_matrix(volume.transform).after(place));
+  all.sets.push_back(std::move(largest));
+}
+
+std::string reason(const VolumeSettings& volume) {
+  if (volume.interpolation == Interpolation::cubic)
+    return "interpolation = \"cubic\"";
+  return volume.noise.amplitude > 0 ? "noise_amplitude" : "";
+}
+
+} // namespace
+
+VolumesMemory estimate_volumes(const Scene& scene) {
+  VolumesMemory all;
+  std::uint64_t most = 0, sources = 0, moving = 0;
+  for (const VolumeSettings& volume : scene.volumes) {
+    if (!volume.present)
+      continue;
+    VolumeEstimate estimate(scene, volume);
+    VolumeMemory memory;
+    if (volume.needs_density())
+      take_density(scene, volume, estimate, all, memory);
+    if (volume.glows())
+      take_emission(scene, volume, estimate, all, memory);
+    if (moves(scene, volume)) {
+      moving += static_cast<std::uint64_t>(moved_share * static_cast<double>(memory.kept));
+      // A velocity has three numbers where the density has one.
+      sources += memory.sources + 3 * memory.kept;
+      memory.peak += 3 * memory.kept;
+    }
+    const std::uint64_t before = all.still + sources;
+    all.reading = std::max(all.reading, before + memory.peak);
+    all.still += memory.kept;
+    if (memory.peak > most) {
+      most = memory.peak;
+      all.largest = volume.file;
+      all.why = reason(volume);
+    }
+  }
+  all.kept = all.still + sources;
+  if (moving > 0) {
+    const std::uint64_t moments = std::min<std::uint64_t>(
+        scene.moments.size(), static_cast<std::uint64_t>(scene.render.passes.value_or(1 << 20)));
+    const std::uint64_t room = std::max(2 * moving, granted_memory() / 4);
+    all.kept += std::min(moments * moving, room);
+    all.reading += moving;
+  }
+  return all;
+}
+
+} // namespace vdbeam

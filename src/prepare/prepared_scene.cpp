@@ -1,0 +1,204 @@
+#include "prepare/prepared_scene.h"
+
+#include "geometry/gltf_files.h"
+#include "keys/scene_keys.h"
+#include "machine/memory.h"
+#include "machine/stopwatch.h"
+#include "prepare/read_volumes.h"
+#include "scene/working_space.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace vdbeam {
+namespace {
+
+/// The values of all keys that `wanted` names.
+template <class Wanted>
+std::string settings_text(const Scene& scene, const Wanted& wanted) {
+  std::string text;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.get || !wanted(key))
+      continue;
+    for (std::size_t i = 0; i < section_count(scene, key.section); ++i) {
+      const std::string value = key.format(key.get(scene, i));
+      text += key_path(key, i) + "=" + value + ";";
+      if (key.kind == KeyKind::file)
+        text += model_identity(std::get<std::string>(key.get(scene, i))) + ";";
+    }
+  }
+  return text;
+}
+
+/// Every value that a world is made from. Sizes and cameras are not among them, but for the way up,
+/// about which skies turn.
+std::string world_settings(const Scene& scene) {
+  std::string text = settings_text(scene, [](const SceneKey& key) { return key.changes_world; });
+  for (const VolumeSettings& volume : scene.volumes)
+    text += volume.present ? "+" : "-";
+  return text;
+}
+
+std::string photon_settings(const Scene& scene) {
+  return settings_text(scene,
+                       [](const SceneKey& key) { return key.section == SceneSection::render; });
+}
+
+/// Bytes for photons that later frames may use: at most an eighth of the memory, which is less than
+/// what `vdbeam farm` asks for beyond its estimate.
+std::uint64_t cache_capacity() {
+  return std::min<std::uint64_t>(granted_memory() / 8, std::uint64_t{1} << 30);
+}
+
+void keep_facts(const DensityGrid& grid, ReadVolume& read) {
+  read.facts.index_to_world = grid.index_to_world;
+  read.facts.repairs = grid.repairs;
+  read.facts.active_voxels = grid.active_voxels;
+  read.facts.notes = grid.notes;
+  read.facts.color = grid.color;
+}
+
+/// A volume at the moments that passes see.
+std::vector<VolumeSettings> moments_of(const Scene& scene, std::size_t volume) {
+  std::vector<VolumeSettings> moments;
+  for (const Scene& moment : scene.moments) // of which several may differ by the camera alone
+    if (moments.empty() || moments.back().velocity.time != moment.volumes[volume].velocity.time)
+      moments.push_back(moment.volumes[volume]);
+  return moments;
+}
+
+} // namespace
+
+void add_work(RenderStatistics& statistics, const PreparedScene& prepared) {
+  statistics.read += prepared.seconds_read;
+  statistics.prepare += prepared.seconds_build;
+  statistics.grids_read += prepared.grids_read;
+  const WorldFacts::SurfaceWork& work = prepared.facts.surfaces;
+  statistics.meshes_read += static_cast<std::uint64_t>(work.meshes_read);
+  statistics.textures_read += static_cast<std::uint64_t>(work.textures_read);
+  statistics.trees_built += static_cast<std::uint64_t>(work.trees_built);
+}
+
+std::uint64_t PreparedScene::source_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const ReadVolume& volume : volumes)
+    for (const SourceGrid& source : volume.sources)
+      bytes += source.grid.field.bytes();
+  return bytes;
+}
+
+std::string moved_world_settings(const Scene& moment, const PreparedScene& prepared) {
+  std::string text = world_settings(moment);
+  for (std::size_t i = 0; i < moment.volumes.size() && i < prepared.volumes.size(); ++i)
+    if (prepared.volumes[i].velocity && moment.volumes[i].velocity.time != 0)
+      text += fmt::format("volume.{} moved by {};", i, moment.volumes[i].velocity.time);
+  return text;
+}
+
+namespace {
+
+/// Notes a file whose Z is up in a scene whose Y is: nothing turns it, so it lies on its side.
+void note_axes(const Scene& scene, std::size_t i, const DensityGrid& grid,
+               std::vector<std::string>& notes) {
+  const std::array<double, 12>& m = scene.volumes[i].transform;
+  const Vec3d up = normalize(scene.camera.up), z{m[2], m[6], m[10]};
+  constexpr double along = 0.9; // cosine
+  if (!grid.from_mantaflow || !(length(z) > 0) || std::abs(normalize(z).z) < along ||
+      std::abs(up.y) < along)
+    return;
+  const std::string note =
+      fmt::format("{}: its Z is up, as in Blender, whose simulator wrote it, but camera.up is Y: "
+                  "turn it by volume.{}.rotate = [-90, 0, 0], or write camera.up = [0, 0, 1]",
+                  scene.volumes[i].file, i);
+  if (notes.empty())
+    notes.push_back(note);
+}
+
+/// The same of a scene whose colours are in its working space.
+PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
+  Stopwatch watch;
+  auto prepared = std::make_shared<PreparedScene>();
+  prepared->world_settings =
+      previous ? moved_world_settings(scene, *previous) : world_settings(scene);
+  prepared->photon_settings = photon_settings(scene);
+  if (previous && previous->world_settings == prepared->world_settings) {
+    prepared->world = previous->world;
+    prepared->facts = previous->facts;
+    prepared->facts.surfaces = {};
+    prepared->volumes = previous->volumes;
+    if (previous->photon_settings == prepared->photon_settings)
+      prepared->photons = previous->photons;
+    if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
+      prepared->photons = std::make_shared<PhotonCache>(cache_capacity());
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+      ReadVolume& read = prepared->volumes[i];
+      read.sources.clear();
+      take_velocity(scene, i, previous, read);
+      keep_sources(scene.volumes[i], moments_of(scene, i), previous, read);
+      prepared->grids_read += std::exchange(read.grids_read, 0);
+    }
+    note_velocities(scene, *prepared);
+    prepared->seconds_read = prepared->grids_read > 0 ? watch.seconds() : 0;
+    return prepared;
+  }
+  std::vector<DensityGrid> grids;
+  std::vector<EmissionGrid> emissions;
+  std::map<std::string, std::size_t> readers; ///< the volume that was read, by what decides it
+  std::vector<std::string> axis_notes;
+  int kept = 0;
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const VolumeSettings& volume = scene.volumes[i];
+    ReadVolume read;
+    take_velocity(scene, i, previous, read);
+    keep_sources(volume, moments_of(scene, i), previous, read);
+    const std::string identity = volume.needs_density() ? density_identity(volume) : "";
+    const auto same = readers.find(identity);
+    if (!identity.empty() && stands_still(volume, read) && same != readers.end()) {
+      DensityGrid shared = grids[same->second]; // copies share the values
+      shared.notes.clear();                     // which are about the file, and are there once
+      grids.push_back(std::move(shared));
+      read.identity = identity;
+    } else {
+      grids.push_back(take_grid(volume, previous, read));
+      take_colors(volume, previous, read, grids.back());
+      if (!identity.empty() && stands_still(volume, read))
+        readers.try_emplace(identity, i);
+    }
+    note_axes(scene, i, grids.back(), axis_notes);
+    keep_facts(grids.back(), read);
+    emissions.push_back(take_emission(volume, previous, prepared->volumes, read));
+    read.emission = emissions.back();
+    prepared->grids_read += std::exchange(read.grids_read, 0);
+    // As build_world leaves volumes out.
+    const bool empty = grids.back().field.empty() || !volume.absorbs_or_scatters();
+    read.index = empty ? -1 : kept++;
+    if (empty && !grids.back().field.empty())
+      read.identity.clear(); // its field is not kept
+    prepared->volumes.push_back(std::move(read));
+  }
+  prepared->seconds_read = watch.restart();
+  prepared->world = std::make_shared<const World>(
+      build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
+                  previous ? previous->world.get() : nullptr));
+  prepared->seconds_build = watch.seconds();
+  prepared->facts.notes.insert(prepared->facts.notes.end(), axis_notes.begin(), axis_notes.end());
+  note_velocities(scene, *prepared);
+  for (ReadVolume& read : prepared->volumes)
+    if (read.index >= 0 &&
+        prepared->world->medium.volumes[static_cast<std::size_t>(read.index)].limited)
+      read.identity.clear(); // another frame's extinction may ask for other limits
+  return prepared;
+}
+
+} // namespace
+
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
+  if (scene.image.working_space == ColorSpace::rec709)
+    return prepare(scene, previous);
+  return prepare(in_working_space(scene), previous);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,306 @@
+#include "rays/direct_light.h"
+
+#include "medium/distance_sampling.h"
+#include "medium/equi_angular.h"
+
+#include <optional>
+
+namespace vdbeam {
+
+namespace {
+
+/// How much light a point scatters by an angle, where its medium may lack a forward peak.
+///
+/// Light that is scattered once has all of the scene's phase function p, but on its way before and
+/// after it goes straight on at every further scattering by the peak, as in the medium without it:
+/// the TMS method (Nakajima and Tanaka 1988). Light that only the peak scatters would then count
+/// once for each of those scatterings, all from where the light is. Towards the light, and from a
+/// light that surrounds the medium, it counts at the last of them only, seen through the scene's
+/// own medium, and comes spread by those before (Aureole).
+struct SinglePhase {
+  const PhaseFunction& phase; ///< the scene's
+  const PhaseFunction* gathered = nullptr;
+  const Aureole* aureole = nullptr;
+  float forward = 0;    ///< share of the peak that was taken out
+  Rgb through{1, 1, 1}; ///< transmittance to the point of what was taken out
+
+  float evaluate(float cosine) const { return phase.evaluate(cosine); }
+  /// What a scattering weighs, of which the medium at hand counts the share 1 - forward.
+  /// `taken_out`: optical depth of the peak on the way from the light.
+  Rgb weight(bool surrounds, float p, float cosine, const Rgb& taken_out) const {
+    const float tms = p / (1 - forward);
+    const float share = surrounds ? 1 : share_of_aureole(cosine);
+    if (!(forward > 0) || share == 0)
+      return Rgb(tms);
+    const float smooth = gathered->evaluate(cosine), peak = p - (1 - forward) * smooth;
+    Rgb spread(aureole->spread(peak, cosine, taken_out.x));
+    for (int c = 1; c < 3; ++c)
+      if (taken_out[c] != taken_out.x)
+        spread[c] = aureole->spread(peak, cosine, taken_out[c]);
+    const Rgb exact = Rgb(smooth) + through * spread * (1 / (1 - forward));
+    return exact * share + Rgb(tms * (1 - share));
+  }
+
+private:
+  /// Up to 10 degrees all; from 35 on, where TMS is about as good, nothing (docs/decisions.md).
+  static float share_of_aureole(float cosine) {
+    constexpr float begin = 0.8192f, end = 0.9848f;
+    const float x = std::clamp((cosine - begin) / (end - begin), 0.0f, 1.0f);
+    return x * x * (3 - 2 * x);
+  }
+};
+
+/// Radiance that one light scatters at a point into the ray, per unit of weight.
+Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& single,
+                    const Vec3f& point, const Vec3f& direction, Rng& rng,
+                    std::uint64_t& shadow_rays) {
+  const Light& light = world.lights[index];
+  const bool surrounds = world.lights.traits(index).surrounds;
+  const PhaseFunction& phase = single.phase;
+  Rgb sum;
+  const float u = rng.uniform(), v = rng.uniform();
+  const IncidentSample sample = light.sample_incident(point, u, v);
+  if (max_component(sample.value) > 0) {
+    const float cosine = dot(direction, sample.wi), p = phase.evaluate(cosine);
+    const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
+    if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
+      ++shadow_rays;
+      Rgb taken_out;
+      const Rgb through = estimate_transmittance(
+          world.medium, {{point, sample.wi}, 0, sample.distance}, rng.uniform(), &taken_out);
+      sum += sample.value * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
+    }
+  }
+  if (light.is_delta())
+    return sum;
+  const float u_lobe = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
+  const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
+  const LightHit hit = light.emitted_radiance({{point, wi}});
+  if (max_component(hit.radiance) > 0 && unoccluded(world, Vec3d(point), wi, hit.distance)) {
+    const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
+    ++shadow_rays;
+    Rgb taken_out;
+    const Rgb through = estimate_transmittance(world.medium, {{point, wi}, 0, hit.distance},
+                                               rng.uniform(), &taken_out);
+    sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
+           (p + light.incident_pdf(point, wi));
+  }
+  return sum;
+}
+
+/// Single scattering along one camera ray.
+class RayLighting {
+public:
+  RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
+              const std::vector<bool>& sampled, const ShadowLattices& shadows, Rng& rng,
+              std::uint64_t& shadow_rays, const DeepRay& deep, const VolumeLights& volumes,
+              float share)
+      : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
+        rng_(rng), shadow_rays_(shadow_rays), deep_(deep), volumes_(volumes), share_(share) {
+    for (std::size_t l = 0; l < world.lights.size(); ++l) {
+      if (!sampled[l])
+        continue;
+      lights_.push_back({l, near_light(world.lights[l]), {}});
+      if (l < shadows.size() && shadows[l])
+        weigh_pieces(*shadows[l], lights_.back());
+    }
+  }
+
+  /// All lights at a distance drawn by what scatters.
+  Rgb by_medium(float u) {
+    const bool chromatic = world_.medium.chromatic;
+    const int c = chromatic ? std::min(2, static_cast<int>(rng_.uniform() * 3)) : 0;
+    Rgb sum;
+    if (!(distances_.opacity(c) > 0))
+      return sum;
+    const ScatterPoint point = distances_.sample(u, c);
+    if (!(point.pdf > 0)) // in a medium too dense for single precision to place the point
+      return sum;
+    for (const SampledLight& light : lights_) {
+      if (!light.pieces.empty())
+        continue;
+      const float other = light.near ? light.near->pdf(point.t) : 0;
+      sum += scattered(point, light.index, point.pdf / (point.pdf + other));
+    }
+    deep_.add_light_at(point.t, sum * share_);
+    return sum;
+  }
+
+  /// Lights with a shadow lattice, at distances drawn by the weights of their pieces.
+  Rgb by_shadow(float u) {
+    Rgb sum;
+    for (const SampledLight& light : lights_) {
+      if (light.pieces.empty())
+        continue;
+      const float x = u * light.pieces.back().weight;
+      std::size_t i = 0;
+      while (i + 1 < light.pieces.size() && light.pieces[i].weight <= x)
+        ++i;
+      const Piece before = i > 0 ? light.pieces[i - 1] : Piece{0, 0};
+      const Piece& piece = light.pieces[i];
+      const float weight = piece.weight - before.weight, seen = piece.opacity - before.opacity;
+      if (!(weight > 0))
+        continue;
+      const float opacity = distances_.opacity(0);
+      const float within = std::clamp((x - before.weight) / weight, 0.0f, 1.0f);
+      const ScatterPoint point =
+          distances_.sample(std::min((before.opacity + within * seen) / opacity, 1.0f), 0);
+      // By the medium alone, the piece is drawn with its share of the opacity.
+      const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
+      if (point.pdf > 0)
+        sum += take_down(point, scattered(point, light.index, share / drawn));
+    }
+    return sum;
+  }
+
+  /// Each light that stands in or near the medium, at a distance drawn by its 1 / r^2.
+  Rgb by_nearness(float u) {
+    Rgb sum;
+    for (const SampledLight& light : lights_) {
+      if (!light.near)
+        continue;
+      const ScatterPoint point = distances_.at(light.near->sample(u));
+      const float other = light.near->pdf(point.t);
+      if (point.pdf > 0)
+        sum += take_down(point, scattered(point, light.index, point.pdf / (point.pdf + other)));
+    }
+    return sum;
+  }
+
+private:
+  /// Of the ray: opacity and weight from its beginning to the end of the piece.
+  struct Piece {
+    float opacity, weight;
+  };
+  struct SampledLight {
+    std::size_t index;
+    std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
+    std::vector<Piece> pieces;       ///< where a lattice tells what is shadowed; else empty
+  };
+
+  /// Distances by nearness, where they are of use: to a light that is near, or that shines on a
+  /// part of the ray only.
+  std::optional<EquiAngular> near_light(const Light& light) const {
+    constexpr float small_part = 0.5f;
+    const Segment all{ray_, profile_.front(), profile_.back()};
+    if (light.position() == nullptr || all.empty())
+      return {};
+    const Segment lit = light.lit_part(all);
+    if (lit.empty())
+      return {};
+    const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end);
+    const bool small = lit.t_end - lit.t_begin < small_part * (all.t_end - all.t_begin);
+    return small || near.useful() ? std::optional(near) : std::nullopt;
+  }
+
+  /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
+  void weigh_pieces(const ShadowLattice& shadow, SampledLight& light) {
+    constexpr float fewest = 32;            // pieces of equal opacity at least
+    constexpr float lit_everywhere = 0.05f; // of the mean light: what the lattice may have missed
+    const float opacity = distances_.opacity(0);
+    const std::size_t last = profile_.knots() - 1;
+    float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
+    for (std::size_t k = 1; k <= last; ++k) {
+      const float now = opacity_of(profile_.total(k));
+      const bool small = now - seen < opacity / fewest && profile_.t(k) - t < shadow.step();
+      if (k < last && (now == seen || small))
+        continue;
+      t = profile_.t(k);
+      const float after = shadow.transmittance(ray_.at(t));
+      sum += (now - seen) * 0.5f * (before + after);
+      light.pieces.push_back({now, sum});
+      before = after;
+      seen = now;
+    }
+    const float least = opacity > 0 ? lit_everywhere * sum / opacity + 1e-6f : 0;
+    for (Piece& piece : light.pieces)
+      piece.weight += least * piece.opacity;
+  }
+
+  /// Light of one of the samples, which adds so much to the deep picture.
+  const Rgb& take_down(const ScatterPoint& point, const Rgb& light) {
+    deep_.add_light_at(point.t, light * share_);
+    return light;
+  }
+
+  /// Times a factor. Balance heuristic (Veach and Guibas 1995): the point's weights hold
+  /// 1 / point.pdf already.
+  Rgb scattered(const ScatterPoint& point, std::size_t light, float factor) {
+    const Medium& medium = world_.medium;
+    Rgb sum;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+      const Rgb& weight = (*point.weights)[v];
+      if (!(max_component(weight) > 0))
+        continue;
+      const Rgb radiance =
+          weight * scattered_light(world_, light,
+                                   single_phase(medium.volumes[v].phase_index, point.t),
+                                   point.position, ray_.direction, rng_, shadow_rays_);
+      volumes_.add(medium.volumes[v].setting, radiance * (factor * share_));
+      sum += radiance;
+    }
+    return sum * factor;
+  }
+
+  SinglePhase single_phase(int index, float t) const {
+    const Medium& medium = world_.medium;
+    const auto i = static_cast<std::size_t>(index);
+    if (!medium.peak)
+      return {medium.phases[i]};
+    const PeakTakenOut& peak = *medium.peak;
+    ProfileCursor cursor(profile_);
+    cursor.move_to(t);
+    Rgb through;
+    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
+      through += peak.excess[v] * cursor.tau(v);
+    for (int c = 0; c < 3; ++c)
+      through[c] = std::exp(-through[c]);
+    return {peak.original[i], &peak.gathered[i], &peak.aureoles[i], peak.forward[i], through};
+  }
+
+  const World& world_;
+  const Ray& ray_;
+  const DepthProfile& profile_;
+  DistanceSampler distances_;
+  Rng& rng_;
+  std::uint64_t& shadow_rays_;
+  const DeepRay& deep_;
+  const VolumeLights& volumes_;
+  float share_; ///< of one sample
+  std::vector<SampledLight> lights_;
+};
+
+} // namespace
+
+Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
+                 const std::vector<bool>& sampled, int samples, Rng& rng,
+                 std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep,
+                 const VolumeLights& volumes, const StopToken* stop) {
+  constexpr int samples_per_check = 16;
+  Rgb sum;
+  if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
+    return sum;
+  const float share = 1 / static_cast<float>(samples);
+  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, volumes,
+                       share);
+  for (int i = 0; i < samples; ++i) {
+    if (i % samples_per_check == samples_per_check - 1 && stop && stop->stopped())
+      break;
+    sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
+    if (!shadows.empty())
+      sum += lighting.by_shadow((static_cast<float>(i) + rng.uniform()) * share);
+    sum += lighting.by_nearness((static_cast<float>(i) + rng.uniform()) * share);
+  }
+  return sum * share;
+}
+
+ShadowLattices make_shadow_lattices(const World& world, const std::vector<bool>& sampled,
+                                    double rays) {
+  ShadowLattices lattices(world.lights.size());
+  for (std::size_t l = 0; l < lattices.size(); ++l)
+    if (const Vec3f* towards = world.lights[l].narrow_direction(); towards && sampled[l])
+      lattices[l] = std::make_unique<ShadowLattice>(world.medium, *towards, rays);
+  return lattices;
+}
+
+} // namespace vdbeam

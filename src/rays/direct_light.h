@@ -1,0 +1,38 @@
+#pragma once
+
+#include "layers/deep_ray.h"
+#include "layers/ray_layers.h"
+#include "math/rng.h"
+#include "math/stop_token.h"
+#include "medium/depth_profile.h"
+#include "medium/shadow_lattice.h"
+#include "transport/world.h"
+
+#include <memory>
+
+namespace vdbeam {
+
+/// By light; null for lights that do without.
+using ShadowLattices = std::vector<std::unique_ptr<const ShadowLattice>>;
+
+/// Single scattering along a camera ray by shadow rays: distances are drawn from the depth profile
+/// by inverse CDF, stratified over `samples`; at each, next-event estimation, with multiple
+/// importance sampling against the phase function for lights that a ray can meet. Lights near the
+/// ray also get distances drawn by their 1 / r^2 (EquiAngular), combined by the balance heuristic.
+/// `sampled[i]` is true for the lights to include. Lights with a shadow lattice (grey media only)
+/// get distances of their own, drawn by what scatters times what of the light is expected there.
+/// Where `stop` asks to end meanwhile, the result is of no use.
+/// Adds the number of traced rays to `shadow_rays`, and takes down in `deep` where the light is
+/// scattered, and in `volumes` which volume scatters it.
+Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
+                 const std::vector<bool>& sampled, int samples, Rng& rng,
+                 std::uint64_t& shadow_rays, const ShadowLattices& shadows = {},
+                 const DeepRay& deep = {}, const VolumeLights& volumes = {},
+                 const StopToken* stop = nullptr);
+
+/// A lattice for each light that is sampled and comes from one direction; `rays`: shadow rays to
+/// spend on each.
+ShadowLattices make_shadow_lattices(const World& world, const std::vector<bool>& sampled,
+                                    double rays);
+
+} // namespace vdbeam

@@ -1,0 +1,133 @@
+#include "rays/profile_shading.h"
+
+#include "layers/deep_ray.h"
+#include "layers/opacity_pieces.h"
+#include "medium/emission.h"
+
+namespace vdbeam {
+
+namespace {
+
+/// Transmittance from the camera to a place on its ray.
+Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t) {
+  if (profile.empty() || t <= profile.front())
+    return Rgb(1);
+  ProfileCursor cursor(profile);
+  cursor.move_to(t);
+  Rgb tau;
+  for (std::size_t v = 0; v < profile.volume_count(); ++v)
+    tau += medium.volumes[v].channel_scale * cursor.tau(v);
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+}
+
+/// What a ray adds to PassImage::opacity and PassImage::depth.
+struct OpacityAndDepth {
+  float opacity = 0, depth = 0;
+};
+
+/// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
+/// the share that is in shadow is.
+void end_at_surface(const World& world, const CameraRay& camera, float shadow,
+                    OpacityAndDepth& seen) {
+  const Material& material = world.surfaces->material(*camera.hit);
+  if (material.is_holdout())
+    return;
+  const auto distance = static_cast<float>(camera.hit->t / world.space.scale);
+  if (material.is_shadow_catcher()) {
+    const float more = (1 - seen.opacity) * shadow;
+    seen.depth += more * distance;
+    seen.opacity += more;
+    return;
+  }
+  seen.depth += (1 - seen.opacity) * distance;
+  seen.opacity = 1;
+}
+
+/// How much of the pixel each object covers: the integral of Tr sigma_t dt of a volume, and what is
+/// left of the ray for the surface at its end. Together they are the opacity.
+void add_coverage(const EstimatorInput& input, const CameraRay& camera, const DepthProfile& profile,
+                  float left, std::size_t pixel, PassImage& image) {
+  const Medium& medium = input.world.medium;
+  std::vector<float> sums(medium.volumes.size());
+  for (std::size_t knot = 1; !profile.empty() && knot < profile.knots(); ++knot)
+    add_opacity(medium, profile, knot, [&](std::size_t v, float share) { sums[v] += share; });
+  const SceneObjects& objects = *input.objects;
+  for (std::size_t v = 0; v < sums.size(); ++v)
+    image.coverage[objects.of_volume[medium.volumes[v].setting]][pixel] += sums[v];
+  if (camera.hit)
+    image.coverage[objects.of_mesh[static_cast<std::size_t>(camera.hit->surface)]][pixel] += left;
+}
+
+} // namespace
+
+Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                   const Rgb& tr, bool camera,
+                   const std::function<float(std::size_t light)>& weight) {
+  Rgb beyond, sum;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    if ((camera && !world.lights.traits(i).visible) || world.lights[i].surface() >= 0)
+      continue;
+    LightHit hit = world.lights[i].emitted_radiance(segment);
+    if (weight)
+      hit.radiance *= weight(i);
+    if (hit.distance == infinity)
+      beyond += hit.radiance;
+    else
+      sum += hit.radiance * transmittance_to(world.medium, profile, hit.distance);
+  }
+  return sum + tr * beyond;
+}
+
+Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
+  if (profile.empty())
+    return Rgb(1);
+  const Rgb tau = profile.channels(medium, profile.knots() - 1);
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+}
+
+void shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                   std::uint64_t& emission_rays, const SeenSurface& surface) {
+  const World& world = input.world;
+  Rgb tr(1);
+  OpacityAndDepth seen;
+  if (!profile.empty()) {
+    const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
+    tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+    // Not 1 - tr, which has no digits left where the medium is thin.
+    seen.opacity = mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
+    seen.depth = static_cast<float>(
+        (profile.opacity_depth(world.medium) + camera.shift * seen.opacity) / world.space.scale);
+  }
+  Rgb background = lights_through(world, camera.whole(), profile, tr, true);
+  if (camera.hit) {
+    background += tr * surface.radiance;
+    end_at_surface(world, camera, surface.shadow, seen);
+  }
+  image.background[pixel] += background;
+  image.opacity[pixel] += seen.opacity;
+  image.depth[pixel] += seen.depth;
+  if (!image.emission.empty() && !camera.segment.empty()) {
+    ++emission_rays;
+    const VolumeLights volumes(input.layers, pixel, image);
+    std::vector<Rgb> of_emitters;
+    image.emission[pixel] +=
+        emission_along(world.medium, camera.segment, profile,
+                       static_cast<float>(input.settings.cutoff), volumes ? &of_emitters : nullptr);
+    for (std::size_t i = 0; i < of_emitters.size(); ++i)
+      volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
+  }
+  if (!image.coverage.empty())
+    add_coverage(input, camera, profile, mean_component(tr), pixel, image);
+  if (!image.planes.empty())
+    input.layers->record(world, camera, profile, mean_component(tr), surface.shadow, seen.depth,
+                         pixel, image);
+  if (const DeepRay deep(world, camera, pixel, image); deep) {
+    deep.add_opacity(world.medium, profile);
+    if (!camera.segment.empty())
+      deep.add_emission(world.medium, camera.segment, profile,
+                        static_cast<float>(input.settings.cutoff));
+  }
+}
+
+} // namespace vdbeam

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "medium/depth_profile.h"
+#include "rays/estimator_input.h"
+#include "transport/camera_ray.h"
+
+#include <functional>
+
+namespace vdbeam {
+
+/// What a camera ray sees of the surface at which it ends.
+struct SeenSurface {
+  Rgb radiance = {}; ///< that leaves it against the ray
+  float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+};
+
+/// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
+/// through the medium, and emission. They are added to what other rays gave the pixel. `surface`:
+/// what is seen of the surface at which the ray ends, if it does. Counts a ray in `emission_rays`
+/// where emission was integrated.
+void shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                   std::uint64_t& emission_rays, const SeenSurface& surface = {});
+
+/// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
+/// is `tr`. `camera`: only those that the camera sees. `weight`, if given: factor of each light.
+Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                   const Rgb& tr, bool camera,
+                   const std::function<float(std::size_t light)>& weight = {});
+
+/// exp(-tau) all along the profile.
+Rgb transmittance(const Medium& medium, const DepthProfile& profile);
+
+} // namespace vdbeam
