@@ -18,10 +18,10 @@ inline constexpr LightType LightType::distant{"distant"}, LightType::point{"poin
 /// name is not copied: a literal, or the table's own.
 struct EstimatorType {
   std::string_view name;
-  static const EstimatorType automatic, beam, march, path;
+  static const EstimatorType automatic, beam, gather, march, path;
   bool operator==(const EstimatorType&) const = default;
 };
 inline constexpr EstimatorType EstimatorType::automatic{"auto"}, EstimatorType::beam{"beam"},
-    EstimatorType::march{"march"}, EstimatorType::path{"path"};
+    EstimatorType::gather{"gather"}, EstimatorType::march{"march"}, EstimatorType::path{"path"};
 
 } // namespace vdbeam

@@ -106,4 +106,8 @@ Image merge_partials(const std::vector<std::string>& paths, const MergeSettings&
 /// The plan alone, from the scene and the grids' headers; reads no voxels.
 RenderPlan make_plan(const Scene& scene);
 
+/// The plan with what is chosen before the first pass, features and schedule: reads the scene's
+/// files and runs the pilots, as a render does. Throws InputError and FrameError.
+RenderPlan choose_plan(const Scene& scene);
+
 } // namespace vdbeam

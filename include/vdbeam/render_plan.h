@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vdbeam/pass_spec.h"
+
 #include <array>
 #include <cstdint>
 #include <initializer_list>
@@ -87,6 +89,14 @@ struct PlanStage {
   std::string reason; ///< one clause
 };
 
+/// A part of the method, and whether a frame's passes make use of it.
+struct FeatureChoice {
+  std::string_view name; ///< "forward peak", ...
+  std::string_view key;  ///< of the scene file, which forces it; empty: none
+  bool on = false;
+  std::string reason; ///< one clause: what it does, or why it is left out
+};
+
 /// A mesh or a texture of a scene, as it is found before it is rendered.
 struct SurfaceFile {
   std::string path;
@@ -101,6 +111,11 @@ struct RenderPlan {
   std::string_view estimator;
   std::string choice;            ///< why it was chosen, one clause; empty where the scene names it
   std::vector<PlanStage> stages; ///< all of them, in the order of Stage
+  /// All parts of the method with what was chosen once the volumes were read; empty before.
+  std::vector<FeatureChoice> features;
+  /// What passes are: those at which something may change, up to the last that was asked for; empty
+  /// before the volumes are read.
+  std::vector<PassSpec> schedule;
   /// Per light of the scene: single scattering is found by shadow rays. What the other lights send
   /// is left to photons, or to scattered rays that leave the scene.
   std::vector<bool> shadow_ray_lights;

@@ -21,7 +21,7 @@ namespace {
 struct PlanOptions {
   SceneOptions scene;
   std::optional<int> frame;
-  bool json = false;
+  bool json = false, no_pilot = false;
 };
 
 /// The files of meshes and textures; nothing where there are none.
@@ -63,16 +63,51 @@ std::string memory_text(const MemoryPlan& plan) {
                             format_bytes(static_cast<double>(plan.peak())));
 }
 
+/// The parts of the method with what was chosen; nothing where no pilot ran.
+std::string features_text(const RenderPlan& plan) {
+  std::string text;
+  for (const bool on : {true, false}) {
+    std::string rows;
+    for (const FeatureChoice& feature : plan.features)
+      if (feature.on == on)
+        rows += fmt::format("  {:<20} {}\n", feature.name, feature.reason);
+    if (!rows.empty())
+      text += fmt::format("\n{}\n{}", on ? "features" : "features that are off", rows);
+  }
+  return text;
+}
+
+/// What the passes are, as a table; nothing where no pilot ran.
+std::string schedule_text(const RenderPlan& plan) {
+  if (plan.schedule.empty())
+    return {};
+  const auto cell = [](double number) {
+    return number > 0 ? fmt::format("{:.3g}", number) : std::string("-");
+  };
+  std::string text =
+      fmt::format("\n{:<8}{:<10}{:>12}{:>12}{:>12}{:>12}{:>8}{:>14}\n", "pass", "estimator",
+                  "peak order", "kernels", "neighbours", "light paths", "walks", "fit [pixels]");
+  for (const PassSpec& spec : plan.schedule)
+    text += fmt::format("  {:<6}{:<10}{:>12}{:>12}{:>12}{:>12}{:>8}{:>14}\n", spec.pass,
+                        spec.estimator, cell(spec.peak_order), cell(spec.kernel_scale),
+                        cell(spec.neighbours), spec.light_paths, cell(spec.gather_walks),
+                        cell(static_cast<double>(spec.regression_radius)));
+  return text;
+}
+
 std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPlan& memory) {
   std::string text = fmt::format("{}\n\nestimator\n  {:<18} {}\n", scene.path, plan.estimator,
                                  estimator_kind(scene.render.estimator).help);
+  if (!plan.choice.empty())
+    text += fmt::format("  {:<18} {}\n", "chosen", plan.choice);
   for (const bool needed : {true, false}) {
     text += fmt::format("\n{}\n", needed ? "stages" : "left out");
     for (const PlanStage& stage : plan.stages)
       if (stage.needed == needed)
         text += fmt::format("  {:<18} {}\n", stage_name(stage.stage), stage.reason);
   }
-  return text + memory_text(memory) + surfaces_text(plan);
+  return text + features_text(plan) + schedule_text(plan) + memory_text(memory) +
+         surfaces_text(plan);
 }
 
 int run_plan(const PlanOptions& options) {
@@ -84,7 +119,15 @@ int run_plan(const PlanOptions& options) {
   const Scene scene = document.scene_at(frame);
   for (const std::string& note : scene.notes)
     log("note: {}", note);
-  const RenderPlan plan = make_plan(scene);
+  RenderPlan plan = make_plan(scene);
+  if (!options.no_pilot) {
+    RenderPlan chosen = choose_plan(scene);
+    plan.estimator = chosen.estimator;
+    plan.choice = std::move(chosen.choice);
+    plan.stages = std::move(chosen.stages);
+    plan.features = std::move(chosen.features);
+    plan.schedule = std::move(chosen.schedule);
+  }
   const MemoryPlan memory = plan_memory(scene);
   if (!options.json) {
     print_text(plan_text(scene, plan, memory));
@@ -108,6 +151,8 @@ CommandRun add_plan(CLI::App& app) {
   options->scene.declare(app);
   app.add_option("-f,--frame", options->frame, "Frame; default: the first on disk")
       ->option_text("N");
+  app.add_flag("--no-pilot", options->no_pilot,
+               "Read headers only: leave out what is chosen once the volumes are read");
   app.add_flag("--json", options->json, "Print JSON, with all settings");
   app.footer(R"(Examples:
   vdbeam plan cloud.toml

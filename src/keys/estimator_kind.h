@@ -9,6 +9,7 @@
 namespace vdbeam {
 
 class Estimator;
+class PhotonPass;
 struct EstimatorInput;
 
 /// One estimator: everything that validation, plan, merge, help and docs ask about it. It stands in
@@ -22,7 +23,9 @@ struct EstimatorKind {
   StageSet stages; ///< that it can run; the plan chooses among them
   /// Keys of [render] that only this estimator, and others that list them, read.
   std::span<const std::string_view> keys;
-  std::unique_ptr<Estimator> (*make)(const EstimatorInput& input);
+  /// `photons`: what traces and keeps the photons of a pass; null where it shoots none. Null itself
+  /// for `auto`, which stands for others.
+  std::unique_ptr<Estimator> (*make)(const EstimatorInput& input, PhotonPass* photons);
 
   bool shoots_photons() const { return stages.contains(Stage::photons); }
 };

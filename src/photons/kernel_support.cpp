@@ -66,9 +66,6 @@ void fit_kernels(const World& world, const KernelShare& share, PhotonMap& map) {
 }
 
 KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain) {
-  // Scattering events lie in the medium, wherever it is.
-  if (input.settings.store == PhotonStore::scatter)
-    return nullptr;
   const KernelSupport support(input.world.medium, input.camera);
   if (domain == KernelDomain::ball)
     return

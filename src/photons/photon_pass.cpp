@@ -5,55 +5,43 @@
 #include "photons/photon_cache.h"
 
 #include <cmath>
-#include <utility>
 
 namespace vdbeam {
 
-PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
-                       KernelDomain domain)
-    : input_(input), worlds_(input.world, default_photon_plan(input).similar),
-      world_(&worlds_.of(0)), plan_(make_plan(input.in(*world_))),
-      boundary_share_(boundary_share(input, domain)),
-      final_share_(boundary_share(input, KernelDomain::ball)) {
-  const World& world = *world_;
-  if (input.plan.needs(Stage::photons) && !plan_.trial) // kernels were tried for the paths it has
-    plan_.paths = paths_with_hidden_lights(input.in(world), plan_);
+PhotonPass::PhotonPass(const EstimatorInput& input, PassWorlds& worlds, const World& first,
+                       const PhotonPlan& plan)
+    : input_(input), worlds_(worlds), world_(&first), plan_(plan),
+      disc_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::disc) : nullptr),
+      ball_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::ball) : nullptr) {
+  const World& world = first;
   // One for many passes costs little; a moment of the shutter may serve a single pass.
   const double rays_per_pixel = input.of_scene ? 1.0 / 16 : 2;
-  if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
-      !input.stopped())
+  if (plan.shadow_lattices && !input.stopped())
     shadows_ = make_shadow_lattices(world, plan_.sampled_lights,
                                     rays_per_pixel * static_cast<double>(input.camera.width()) *
                                         input.camera.height());
 }
 
-/// The pilot belongs to no pass; its counts go with the first.
-void PhotonPass::count_pilot(RenderStatistics& statistics) {
-  if (std::exchange(pilot_counted_, true))
-    return;
-  statistics.pilot_paths += plan_.pilot_paths;
-  statistics.importance_rays += plan_.importance_rays;
-}
-
-void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
-  const bool walks = plan_.gathers_finally(pass);
-  world_ = &worlds_.of(pass, walks);
+void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
+                                 RenderStatistics& statistics) {
+  world_ = &worlds_.of(spec.peak_order);
   compared_map_ = {};
   const World& world = *world_;
-  const RadiusSettings radii = radius_settings(input_.in(world), plan_, pass);
+  const RadiusSettings radii =
+      radius_settings(input_.in(world), spec.neighbours, spec.kernel_scale);
   if (!input_.plan.needs(Stage::photons) && !input_.plan.needs(Stage::surface_photons)) {
     maps_.medium = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
     return;
   }
-  count_pilot(statistics);
   // Only the boundary's correction depends on the camera.
-  make_maps(pass, radii, statistics);
+  make_maps(spec, radii, statistics);
   const Stopwatch watch;
   clear_of_surfaces(world, maps_.medium);
-  const KernelShare& share = walks ? final_share_ : boundary_share_;
+  const bool ball = domain == KernelDomain::ball;
+  const KernelShare& share = ball ? ball_share_ : disc_share_;
   if (input_.blur_pixels) {
     compared_map_ =
-        maps_.medium.resized(walks ? BlurProbe::width_of_walks : BlurProbe::width_along_rays);
+        maps_.medium.resized(ball ? BlurProbe::width_of_walks : BlurProbe::width_along_rays);
     compared_map_.divide_power(share);
   }
   maps_.medium.divide_power(share);
@@ -68,9 +56,10 @@ void PhotonPass::trace_and_build(int pass, RenderStatistics& statistics) {
 }
 
 /// The maps of a pass: an earlier frame's, or new ones.
-void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatistics& statistics) {
+void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
+                           RenderStatistics& statistics) {
   const EstimatorInput input = input_.in(*world_);
-  PhotonPassSettings settings = pass_settings(input, plan_, static_cast<std::uint64_t>(pass));
+  PhotonPassSettings settings = pass_settings(input, plan_, static_cast<std::uint64_t>(spec.pass));
   const bool on_surfaces = input_.plan.needs(Stage::surface_photons);
   if (on_surfaces)
     settings.surface_photon_lights = lights_of_surfaces(input);
@@ -99,7 +88,7 @@ void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatisti
   if (on_surfaces)
     maps_.surfaces =
         PhotonMap::build(std::move(traced.surface_photons), input_.photon_channels(),
-                         surface_radii(input, plan_, pass), input_.settings.kernel_shape);
+                         surface_radii(input, spec.kernel_scale), input_.settings.kernel_shape);
   if (cache && !stopped)
     cache->keep(settings, radii, maps_);
 }

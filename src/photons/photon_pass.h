@@ -5,6 +5,7 @@
 #include "photons/photon_plan.h"
 #include "rays/direct_light.h"
 #include "transport/similar_medium.h"
+#include "vdbeam/pass_spec.h"
 
 namespace vdbeam {
 
@@ -12,13 +13,13 @@ namespace vdbeam {
 /// their map (or takes it over from another frame) and corrects kernels at the medium's boundary.
 class PhotonPass {
 public:
-  /// `make_plan`: chooses the plan in the world of the first pass. `domain`: what the estimator's
-  /// kernels are normalised over.
-  PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(const EstimatorInput&),
-             KernelDomain domain);
+  /// `worlds`: of the input's world; `first`: the one of them in which the plan was made. All must
+  /// outlive this.
+  PhotonPass(const EstimatorInput& input, PassWorlds& worlds, const World& first,
+             const PhotonPlan& plan);
 
-  /// Makes the map of a pass. Radii shrink from pass to pass.
-  void trace_and_build(int pass, RenderStatistics& statistics);
+  /// Makes the map of a pass. `domain`: what its kernels are normalised over.
+  void trace_and_build(const PassSpec& spec, KernelDomain domain, RenderStatistics& statistics);
 
   /// Drops the map until the next pass: where passes see different worlds, each has its own.
   void release() {
@@ -39,16 +40,14 @@ public:
   const World& world() const { return *world_; }
 
 private:
-  void make_maps(int pass, const RadiusSettings& radii, RenderStatistics& statistics);
-  void count_pilot(RenderStatistics& statistics);
+  void make_maps(const PassSpec& spec, const RadiusSettings& radii, RenderStatistics& statistics);
 
   EstimatorInput input_;
-  PassWorlds worlds_;
+  PassWorlds& worlds_;
   const World* world_; ///< of the pass at hand
-  PhotonPlan plan_;
+  const PhotonPlan& plan_;
   ShadowLattices shadows_;
-  KernelShare boundary_share_, final_share_; ///< of the estimator's kernels, and of walks'
-  bool pilot_counted_ = false;
+  KernelShare disc_share_, ball_share_; ///< of kernels, by what they are normalised over
   PhotonMaps maps_;
   PhotonMap compared_map_;
 };

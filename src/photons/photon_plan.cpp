@@ -31,7 +31,7 @@ constexpr double direct_per_collision = 12;
 constexpr int fewest_samples = 2, most_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
 /// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
-constexpr float surface_neighbours = 64;
+constexpr double surface_neighbours = 64;
 constexpr double widest_surface_kernel = 0.05;
 
 /// The nearest power of the fourth root of two: the same number, and so the same photons, for
@@ -47,23 +47,6 @@ bool common_albedo(const Medium& medium) {
         (medium.peak && volume.phase_index != medium.volumes[0].phase_index))
       return false;
   return true;
-}
-
-/// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
-/// from all around alike; photons of other lights would lose it. Scattering events are counted
-/// exactly where their number is limited, and neither the scene's own light nor that of surfaces is
-/// split from the peak's. Where the albedo changes from place to place, so would the extinction of
-/// the medium without the peak, by channel.
-bool may_take_peak_out(const EstimatorInput& input, const std::vector<bool>& sampled_lights) {
-  const World& world = input.world;
-  const RenderSettings& settings = input.settings;
-  bool possible = settings.forward_peak == ForwardPeak::automatic &&
-                  settings.store == PhotonStore::fluence && !settings.max_bounces &&
-                  world.medium.emitters.empty() && !world.surfaces && !world.medium.colored();
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    possible = possible && (sampled_lights[i] || (world.lights.traits(i).surrounds &&
-                                                  !world.lights.traits(i).wants_shadow_rays));
-  return possible;
 }
 
 bool samples_extended_light(const World& world, const PhotonPlan& plan) {
@@ -85,18 +68,6 @@ int PhotonPlan::direct_samples_of(float depth) const {
   return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
 }
 
-ScenePhotons ScenePhotons::in_units(double scale) const {
-  ScenePhotons result = *this;
-  const auto factor = static_cast<float>(scale / space.scale);
-  if (factor == 1)
-    return result;
-  result.space.scale = scale;
-  result.plan.view_reach *= factor;
-  if (plan.guide)
-    result.plan.guide = std::make_shared<const PathGuide>(plan.guide->in_units(factor));
-  return result;
-}
-
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;
@@ -115,12 +86,11 @@ double count_hits(const EstimatorInput& input) {
 }
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {
-  const World& world = input.world;
   const RenderSettings& settings = input.settings;
   PhotonPlan plan;
   plan.sampled_lights = input.shadow_ray_lights();
-  plan.similar = input.plan.needs(Stage::photons) && may_take_peak_out(input, plan.sampled_lights);
-  plan.albedo_in_power = settings.store == PhotonStore::scatter || common_albedo(world.medium);
+  plan.albedo_in_power =
+      settings.store == PhotonStore::scatter || common_albedo(input.world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
   plan.most_direct_samples = plan.direct_samples;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
@@ -157,23 +127,11 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) 
 }
 
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {
-  if (plan.sampled_lights == input.shadow_ray_lights() || input.settings.photons ||
-      !(plan.stored_per_path > 0))
+  if (!(plan.stored_per_path > 0))
     return plan.paths;
   const double paths = static_cast<double>(plan.paths);
   const double wanted = std::ceil(photons_per_hit * count_hits(input) / plan.stored_per_path);
   return static_cast<std::uint64_t>(std::clamp(wanted, paths, most_for_hidden_lights * paths));
-}
-
-PhotonPlan plan_photons(const EstimatorInput& input) {
-  PhotonPlan plan = default_photon_plan(input);
-  if (input.plan.needs(Stage::photons)) {
-    trace_pilot(input, plan);
-    plan.paths = choose_paths(input, plan.stored_per_path);
-  } else if (input.plan.needs(Stage::surface_photons)) {
-    plan.paths = choose_paths(input, 1);
-  }
-  return plan;
 }
 
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
@@ -206,37 +164,28 @@ std::vector<bool> lights_of_surfaces(const EstimatorInput& input) {
   return lights;
 }
 
-float radius_scale(int pass, double alpha) {
-  double squared = 1;
-  for (int i = 1; i <= pass; ++i)
-    squared *= (i + alpha) / (i + 1);
-  return static_cast<float>(std::sqrt(squared));
-}
-
-RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
+RadiusSettings radius_settings(const EstimatorInput& input, double neighbours, float scale) {
   const World& world = input.world;
   const RenderSettings& settings = input.settings;
-  const float scale = static_cast<float>(world.space.scale);
+  const float world_scale = static_cast<float>(world.space.scale);
   RadiusSettings radii;
   radii.mode = settings.kernel;
-  radii.fixed_radius = static_cast<float>(settings.radius) * scale;
-  radii.neighbours = static_cast<float>(plan.neighbours);
-  if (plan.gathers_finally(pass) && settings.neighbours == 0)
-    radii.neighbours *= static_cast<float>(final_gather_neighbours);
-  radii.scale = radius_scale(pass, settings.alpha);
-  radii.min_radius = settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * scale : 0;
+  radii.fixed_radius = static_cast<float>(settings.radius) * world_scale;
+  radii.neighbours = static_cast<float>(neighbours);
+  radii.scale = scale;
+  radii.min_radius =
+      settings.min_radius > 0 ? static_cast<float>(settings.min_radius) * world_scale : 0;
   // Kernels as wide as the medium would lose most of its light outside.
   radii.max_radius = 0.5f * world.region.radius;
   if (settings.kernel == KernelRadius::fixed)
     radii.max_radius = infinity;
   if (settings.max_radius > 0)
-    radii.max_radius = static_cast<float>(settings.max_radius) * scale;
+    radii.max_radius = static_cast<float>(settings.max_radius) * world_scale;
   return radii;
 }
 
-RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass) {
-  RadiusSettings radii = radius_settings(input, plan, pass);
-  radii.neighbours = surface_neighbours;
+RadiusSettings surface_radii(const EstimatorInput& input, float scale) {
+  RadiusSettings radii = radius_settings(input, surface_neighbours, scale);
   if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
     radii.max_radius = static_cast<float>(widest_surface_kernel *
                                           length(input.world.surfaces->set->bounds().size()));

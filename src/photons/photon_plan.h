@@ -1,7 +1,6 @@
 #pragma once
 
 #include "photonmap/photon_map.h"
-#include "photons/walk_plan.h"
 #include "rays/estimator_input.h"
 #include "transport/photon_tracing.h"
 
@@ -12,15 +11,11 @@
 
 namespace vdbeam {
 
-struct KernelTrialResult;
-
 /// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
 /// function of the estimator's input (by counts, never by a clock).
 struct PhotonPlan {
   /// Per light: single scattering by shadow rays instead of photons.
   std::vector<bool> sampled_lights;
-  /// Photons live in the medium without its forward peak (similar_medium).
-  bool similar = false;
   /// Shadow-ray samples per camera ray, at least and at most.
   int direct_samples = 1, most_direct_samples = 1;
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
@@ -38,37 +33,20 @@ struct PhotonPlan {
   /// Where probabilities are given by cell: they are min(1, view_factor times view_importance with
   /// the fall-off `view_reach` [render units]).
   float view_reach = 0, view_factor = 0;
-  /// What tried kernels told; null: none were tried.
-  std::shared_ptr<const KernelTrialResult> trial;
 
   /// Shadow-ray samples of a camera ray that meets the optical depth `depth`: more where it is
   /// small and lights have an extent, since what is seen there is mostly scattered once.
   int direct_samples_of(float depth) const;
 
-  /// Passes whose photons are gathered by walks (FinalGather); none: there are no such passes.
-  std::optional<WalkPlan> walks;
-  bool gathers_finally(int pass) const { return walks && pass >= walks->first; }
+  /// Kernels count with the part of them that lies inside the medium.
+  bool share_at_boundary = true;
+  /// Shadow rays go where lights of one direction reach the medium (ShadowLattice).
+  bool shadow_lattices = false;
 
   std::uint64_t pilot_paths = 0;     ///< light paths traced to find all this out
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
 };
 
-/// The photons of a scene whose moments are other worlds, and where these are.
-struct ScenePhotons {
-  PhotonPlan plan;
-  RenderSpace space; ///< in which the plan is given
-
-  /// The same where `scale` render units are one of the world. The unit of a moment is another than
-  /// the scene's where its bounds have grown over a power of two.
-  ScenePhotons in_units(double scale) const;
-};
-
-/// A plan that does not depend on what is seen of single photons: stored with one probability
-/// everywhere, kernels of the neighbours that are asked for or of a default.
-PhotonPlan plan_photons(const EstimatorInput& input);
-
-/// The parts that plan_photons is made of, for plans that go further.
-///
 /// What needs no photons to be known: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
@@ -88,9 +66,6 @@ std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const Photon
 
 /// Collisions of one path that are stored on average: more of them tell little that is new.
 inline constexpr double stored_per_path_aim = 4;
-/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
-/// out some of its noise (docs/decisions.md).
-inline constexpr double final_gather_neighbours = 0.5;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,
@@ -103,11 +78,10 @@ std::vector<bool> lights_of_surfaces(const EstimatorInput& input);
 /// How photons of a pass are traced and stored.
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
                                  std::uint64_t pass);
-/// The kernels of photons on surfaces.
-RadiusSettings surface_radii(const EstimatorInput& input, const PhotonPlan& plan, int pass);
-/// How wide the kernels of a pass are.
-RadiusSettings radius_settings(const EstimatorInput& input, const PhotonPlan& plan, int pass);
-/// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
-float radius_scale(int pass, double alpha);
+/// The kernels of photons on surfaces; `scale` as below.
+RadiusSettings surface_radii(const EstimatorInput& input, float scale);
+/// How wide the kernels of a pass are: `neighbours` photons in an adaptive kernel, radii times
+/// `scale`.
+RadiusSettings radius_settings(const EstimatorInput& input, double neighbours, float scale = 1);
 
 } // namespace vdbeam

@@ -1,7 +1,7 @@
 #include "plan/memory_model.h"
 
 #include "camera/camera.h"
-#include "estimators/gather/walk_pass.h"
+#include "estimators/gather/gather_pass.h"
 #include "film/deep_film.h"
 #include "image/deep_layout.h"
 #include "machine/threads.h"

@@ -1,6 +1,6 @@
 #include "plan/plan.h"
 
-#include "estimators/gather/walk_pass.h"
+#include "estimators/gather/gather_pass.h"
 #include "film/cryptomatte.h"
 #include "film/film.h"
 #include "layers/light_group_names.h"
@@ -249,7 +249,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
       scene.render.final_gather != FinalGathering::never && scene.surfaces.empty())
-    plan.film_bytes += WalkPass::bytes_per_pixel() *
+    plan.film_bytes += GatherPass::bytes_per_pixel() *
                        static_cast<std::uint64_t>(scene.image.raster_width()) *
                        static_cast<std::uint64_t>(scene.image.raster_height());
   return plan;

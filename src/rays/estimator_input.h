@@ -12,7 +12,7 @@
 namespace vdbeam {
 
 class PhotonCache;
-struct ScenePhotons;
+struct SceneChoices;
 
 /// What an estimator is given beyond the scene; what is pointed to must outlive it.
 struct EstimatorTask {
@@ -29,7 +29,7 @@ struct EstimatorTask {
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
   /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
   /// each group of its lights, one after the other; null: it makes plans of its own.
-  const ScenePhotons* of_scene = nullptr;
+  const SceneChoices* of_scene = nullptr;
   /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
   /// belong to the matte, which groups do not change. Null: the world has them all.
   const LightSet* all_lights = nullptr;

@@ -1,6 +1,6 @@
 #include "render/limit_notes.h"
 
-#include "photons/photon_plan.h"
+#include "choose/feature.h"
 #include "transport/camera_ray.h"
 
 #include <fmt/format.h>
@@ -89,7 +89,9 @@ std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& i
                                 "in the skin that is seen, so parts may be dark or noisy; "
                                 "render.estimator = \"path\" has no such limit",
                                 depth));
-  if (const double g = narrowest(world, !default_photon_plan(input).similar);
+  if (const double g =
+          narrowest(world, !is_possible(forward_peak_feature,
+                                        {input, estimator_kind(scene.render.estimator)}));
       std::abs(g) > narrowest_lobe)
     notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
                                 "from where it looks; render.estimator = \"path\" has less noise",

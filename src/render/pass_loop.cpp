@@ -150,8 +150,8 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
 /// Adds the next pass to the film, or nothing where it was stopped.
 void PassLoop::render_pass(Shutter& shutter) {
   const Stopwatch watch;
-  const auto [estimator, probe] = shutter.at(next_pass(), result_.statistics);
-  estimator.render_pass(next_pass(), image_, result_.statistics);
+  const auto [passes, probe] = shutter.at(next_pass(), result_.statistics);
+  passes.render_pass(next_pass(), image_, result_.statistics);
   if (stop_.requested() || !is_finished(image_, window_))
     return;
   std::vector<PixelValue> probes;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "estimators/estimator.h"
 #include "film/film_file.h"
 #include "machine/stopwatch.h"
 #include "render/shutter.h"
@@ -28,6 +27,8 @@ public:
   void run(Shutter& shutter, const EstimatorInput& quick_look);
 
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
+  /// The number of the next pass, from 0.
+  int next_pass() const { return first_pass_ + film_.passes(); }
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -57,7 +58,6 @@ private:
   double limit_seconds() const;
   void note(const std::string& line);
   double seconds() const;
-  int next_pass() const { return first_pass_ + film_.passes(); }
 
   const Scene& scene_;
   const FrameSettings& frame_;

@@ -1,7 +1,6 @@
 #include "vdbeam/render.h"
 
-#include "estimators/estimator.h"
-#include "estimators/pilot/choose_estimator.h"
+#include "choose/choose_estimator.h"
 #include "film/deep_film.h"
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
@@ -9,9 +8,9 @@
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "plan/memory_check.h"
-#include "plan/plan.h"
 #include "prepare/prepared_scene.h"
 #include "rays/make_deep_layout.h"
+#include "render/frame_setup.h"
 #include "render/limit_notes.h"
 #include "render/pass_loop.h"
 #include "render/shutter.h"
@@ -65,10 +64,68 @@ RenderResult render(const Scene& scene, const FrameSettings& frame, const Render
   return render(scene, prepare_scene(scene), frame, hooks);
 }
 
-RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
+namespace {
+
+/// The image's samples by depth; of the passes, none are rendered where there was no time for it.
+void cut_deep_rays(const Scene& scene, FrameSetup& setup, PassLoop& loop, DeepLayout& deep) {
+  if (!scene.image.deep)
+    return;
+  const std::uint64_t granted = granted_memory();
+  deep = make_deep_layout(setup.input, scene.image.deep_alpha,
+                          deep_depth(scene.image, setup.world()), [&](std::size_t pieces) {
+                            check_deep_memory(scene, pieces * DeepFilm::bytes_per_piece(), granted);
+                          });
+  if (deep.first.empty())
+    return;
+  loop.gather_deep(deep);
+  setup.input.deep = &deep;
+}
+
+/// The estimator that renders: the one that the scene names, or what `auto` takes.
+EstimatorChoice choose_for_frame(const Scene& scene, const FrameSetup& setup, RenderPlan& plan,
+                                 RenderStatistics& statistics) {
+  plan = setup.plan;
+  if (scene.render.estimator != EstimatorType::automatic)
+    return {scene.render.estimator, {}, 0, nullptr};
+  const Stopwatch watch;
+  EstimatorChoice choice = choose_estimator(setup.input, setup.path_input());
+  statistics.pilot += watch.seconds();
+  if (choice.type == EstimatorType::path)
+    plan = setup.path_plan;
+  plan.estimator = choice.type.name;
+  plan.choice = choice.reason;
+  return choice;
+}
+
+/// The type whose passes are rendered: `auto` where photons are gathered in more than one way.
+EstimatorType type_of_passes(const Scene& scene, const EstimatorChoice& choice) {
+  return choice.type == EstimatorType::path ? choice.type : scene.render.estimator;
+}
+
+} // namespace
+
+RenderPlan choose_plan(const Scene& scene) {
+  validate_scene(scene);
+  tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                            static_cast<std::size_t>(thread_count(scene.render)));
+  const PreparedScenePtr prepared = prepare_scene(scene);
+  const FrameSetup setup(scene, prepared, choose_window(scene.image, std::nullopt));
+  RenderPlan plan;
+  RenderStatistics statistics;
+  const EstimatorChoice choice = choose_for_frame(scene, setup, plan, statistics);
+  const bool path = choice.type == EstimatorType::path;
+  const EstimatorInput input = path ? setup.path_input() : setup.input;
+  const EstimatorType type = type_of_passes(scene, choice);
+  if (choice.photons)
+    describe_choices(input, type, choice.photons->choices(), plan);
+  else
+    describe_choices(input, type, choose_for_scene(input, estimator_kind(type)).choices, plan);
+  return plan;
+}
+
+RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
                     const FrameSettings& frame, const RenderHooks& hooks) {
-  validate_scene(asked);
-  Scene scene = asked;
+  validate_scene(scene);
   check_range(frame.pass_range);
   const PixelRegion window = choose_window(scene.image, frame.region);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -79,88 +136,40 @@ RenderResult render(const Scene& asked, const PreparedScenePtr& prepared,
     if (hooks.on_note)
       hooks.on_note(line);
   };
-  const World& world = *prepared->world;
   for (const std::string& line : prepared->facts.notes)
     note(line);
   add_work(result.statistics, *prepared);
-  const Camera camera(scene.camera, scene.image, world.space);
-  const std::vector<VolumeFacts> volumes =
-      volume_facts(prepared->facts, world, camera, !scene.moments.empty());
-  const auto with_sizes = [&](RenderPlan plan) {
-    plan.surface_bytes = world.surfaces ? world.surfaces->bytes() : 0;
-    plan.film_bytes = film_memory(scene.image, window.width(), window.height(), scene.glows(),
-                                  light_group_names(scene).size(),
-                                  scene.image.cryptomatte ? scene_objects(scene).names.size() : 0,
-                                  plane_names(scene).size());
-    return plan;
-  };
-  result.plan = with_sizes(plan_stages(scene, volumes));
-  check_memory(scene, result.plan, granted_memory());
-  // Correlated frames all draw the numbers of frame 1.
-  const bool correlated = scene.render.seeds == SeedPolicy::correlated;
-  const std::uint64_t key = correlated ? 1 : static_cast<std::uint64_t>(scene.frame.number);
+  FrameSetup setup(scene, prepared, window);
+  result.plan = setup.plan;
+  check_memory(scene, setup.plan, granted_memory());
   PassLoop loop(scene, frame, hooks, window, result);
-  EstimatorInput input(world, camera, scene.render, result.plan,
-                       {key, window, &loop.stop_token(), prepared->photons.get()});
-  std::vector<std::size_t> blur_pixels;
-  if (result.plan.needs(Stage::bias) && result.plan.needs(Stage::beam_query)) {
-    blur_pixels = choose_blur_pixels(window, camera.width(), loop.probe_pixels());
-    input.blur_pixels = &blur_pixels;
-  }
-  SceneObjects objects;
-  if (scene.image.cryptomatte) {
-    objects = scene_objects(scene);
-    input.objects = &objects;
-  }
-  Velocities velocities;
-  for (const ReadVolume& volume : prepared->volumes)
-    velocities.push_back(volume.velocity);
-  const RayLayers layers(scene, velocities);
-  if (layers.planes() > 0)
-    input.layers = &layers;
+  setup.input.stop = &loop.stop_token();
+  setup.probe_blur(loop.probe_pixels());
   DeepLayout deep;
-  if (scene.image.deep) {
-    const std::uint64_t granted = granted_memory();
-    deep = make_deep_layout(
-        input, scene.image.deep_alpha, deep_depth(scene.image, world), [&](std::size_t pieces) {
-          check_deep_memory(scene, pieces * DeepFilm::bytes_per_piece(), granted);
-        });
-    if (!deep.first.empty()) { // else there was no time for it, and there is none for passes
-      loop.gather_deep(deep);
-      input.deep = &deep;
-    }
-  }
-  const RenderPlan path_plan = with_sizes(plan_paths(scene, volumes));
-  const EstimatorInput path_input = input.with(path_plan);
+  cut_deep_rays(scene, setup, loop, deep);
+  const EstimatorInput path_input = setup.path_input();
   loop.show_quick_look(path_input);
-  Shutter shutter(scene, prepared, input, path_plan, loop.probe_pixels());
-  if (scene.render.estimator == EstimatorType::automatic) {
-    const Stopwatch watch;
-    EstimatorChoice choice = choose_estimator(input, path_input);
-    result.statistics.pilot += watch.seconds();
-    scene.render.estimator = choice.type;
-    if (choice.type == EstimatorType::path) {
-      result.plan = path_plan;
-      input.blur_pixels = nullptr;
-    }
-    result.plan.estimator = choice.type.name;
-    result.plan.choice = choice.reason;
-    if (choice.type == EstimatorType::path)
-      note(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
-    if (choice.beam && light_group_names(scene).empty()) {
-      if (scene.moments.empty())
-        shutter.take(std::move(choice.beam));
-      else
-        shutter.follow({{choice.beam->photons().plan(), world.space}}, result.statistics);
-    }
+  EstimatorChoice choice = choose_for_frame(scene, setup, result.plan, result.statistics);
+  const bool path = choice.type == EstimatorType::path;
+  if (path && !choice.reason.empty())
+    note(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
+  const EstimatorInput& input = path ? path_input : setup.input;
+  const EstimatorType type = type_of_passes(scene, choice);
+  Shutter shutter(scene, type, prepared, input, setup.path_plan, loop.probe_pixels());
+  if (choice.photons && light_group_names(scene).empty()) {
+    if (scene.moments.empty())
+      shutter.take(std::move(choice.photons));
+    else
+      shutter.follow({{choice.photons->choices(), setup.world().space}}, result.statistics);
   }
   for (const std::string& line : limit_notes(scene, input))
     note(line);
-  const Sight sight = look_through(world, camera, window);
-  for (const std::string& line : sight_notes(scene, world, camera, sight))
+  const Sight sight = look_through(setup.world(), setup.camera, window);
+  for (const std::string& line : sight_notes(scene, setup.world(), setup.camera, sight))
     note(line);
-  if (scene.moments.empty())
-    shutter.at(0, result.statistics); // its pilot does not count as part of a pass
+  // The pilot of the first pass does not count as part of it.
+  const PassRenderer& passes = shutter.at(loop.next_pass(), result.statistics).passes;
+  describe_choices(input, type, passes.choices(), result.plan);
   loop.run(shutter, path_input);
   if (result.quick_look || frame.pass_range)
     return result;

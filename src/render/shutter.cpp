@@ -1,7 +1,6 @@
 #include "render/shutter.h"
 
-#include "estimators/light_groups.h"
-#include "estimators/pilot/beam_plan.h"
+#include "choose/group_passes.h"
 #include "layers/light_group_names.h"
 #include "machine/memory.h"
 #include "machine/stopwatch.h"
@@ -46,9 +45,10 @@ Shutter::MomentRenderer::MomentRenderer(const PreparedScenePtr& prepared_, const
       input(*prepared->world, camera, from.settings, from.plan, task_of(from, *prepared)),
       path_input(input.with(path_plan)) {}
 
-Shutter::Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
-                 const RenderPlan& path_plan, const std::vector<std::size_t>& probe_pixels)
-    : scene_(scene), prepared_(prepared), input_(input), path_plan_(path_plan),
+Shutter::Shutter(const Scene& scene, const EstimatorType& type, const PreparedScenePtr& prepared,
+                 const EstimatorInput& input, const RenderPlan& path_plan,
+                 const std::vector<std::size_t>& probe_pixels)
+    : scene_(scene), type_(type), prepared_(prepared), input_(input), path_plan_(path_plan),
       probe_pixels_(probe_pixels) {}
 
 std::size_t Shutter::moment_of(int pass, std::size_t moments, std::uint64_t seed) {
@@ -64,12 +64,12 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
       still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
   MomentRenderer& renderer = renderer_of(moment, statistics);
   renderer.last_pass = pass;
-  if (!renderer.estimator) {
+  if (!renderer.passes) {
     const Stopwatch watch;
-    renderer.estimator = ready_ ? std::move(ready_)
-                         : light_group_names(scene_).empty()
-                             ? make_estimator(scene_.render.estimator, renderer.input)
-                             : make_grouped_estimator(scene_, renderer.input);
+    renderer.passes = ready_ ? std::move(ready_)
+                      : light_group_names(scene_).empty()
+                          ? make_pass_renderer(type_, renderer.input)
+                          : make_group_passes(scene_, type_, renderer.input);
     if (renderer.input.plan.needs(Stage::bias))
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
@@ -81,29 +81,29 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   // comes first.
   if (!still)
     renderer.camera = Camera(moment.camera, scene_.image, renderer.prepared->world->space);
-  return {*renderer.estimator, renderer.probe.get()};
+  return {*renderer.passes, renderer.probe.get()};
 }
 
-void Shutter::follow(std::vector<ScenePhotons> photons, RenderStatistics& statistics) {
-  scene_photons_ = std::move(photons);
-  for (const ScenePhotons& each : scene_photons_) {
-    statistics.pilot_paths += each.plan.pilot_paths;
-    statistics.importance_rays += each.plan.importance_rays;
+void Shutter::follow(std::vector<SceneChoices> choices, RenderStatistics& statistics) {
+  scene_choices_ = std::move(choices);
+  for (const SceneChoices& each : scene_choices_) {
+    statistics.pilot_paths += each.choices.photons.pilot_paths;
+    statistics.importance_rays += each.choices.photons.importance_rays;
   }
 }
 
-/// What moments' photons follow; empty where they do not. It depends on the scene alone, never on
-/// which moment came first.
-const std::vector<ScenePhotons>& Shutter::scene_photons(RenderStatistics& statistics) {
-  // Only `beam` looks where photons are seen.
-  if (!input_.plan.needs(Stage::photon_importance) || !scene_photons_.empty())
-    return scene_photons_;
+/// What moments follow; empty where they choose for themselves. It depends on the scene alone,
+/// never on which moment came first.
+const std::vector<SceneChoices>& Shutter::scene_choices(RenderStatistics& statistics) {
+  if (!input_.plan.needs(Stage::photon_importance) || !scene_choices_.empty())
+    return scene_choices_;
   const Stopwatch watch;
-  follow(light_group_names(scene_).empty() ? std::vector{plan_scene_photons(input_)}
-                                           : plan_group_photons(scene_, input_),
+  follow(light_group_names(scene_).empty()
+             ? std::vector{choose_for_scene(input_, estimator_kind(type_))}
+             : choose_for_groups(scene_, type_, input_),
          statistics);
   statistics.pilot += watch.seconds();
-  return scene_photons_;
+  return scene_choices_;
 }
 
 Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatistics& statistics) {
@@ -115,10 +115,10 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatist
     renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(scene_.camera, scene_.image, prepared->world->space), input_, path_plan_);
     if (&moment != &scene_)
-      for (const ScenePhotons& photons : scene_photons(statistics))
-        renderer->scene_photons.push_back(photons.in_units(prepared->world->space.scale));
-    if (!renderer->scene_photons.empty())
-      renderer->input.of_scene = renderer->scene_photons.data();
+      for (const SceneChoices& choices : scene_choices(statistics))
+        renderer->scene_choices.push_back(choices.in_units(prepared->world->space.scale));
+    if (!renderer->scene_choices.empty())
+      renderer->input.of_scene = renderer->scene_choices.data();
     if (input_.layers) {
       renderer->layers.emplace(input_.layers->at(moment));
       renderer->input.layers = &*renderer->layers;
@@ -137,11 +137,10 @@ void Shutter::make_room() {
   while (renderers_.size() > 2 && bytes > granted_memory() / 4) {
     const auto oldest =
         std::min_element(renderers_.begin(), renderers_.end(), [](const auto& a, const auto& b) {
-          const bool a_used = a.second->estimator != nullptr,
-                     b_used = b.second->estimator != nullptr;
+          const bool a_used = a.second->passes != nullptr, b_used = b.second->passes != nullptr;
           return a_used != b_used ? a_used : a.second->last_pass < b.second->last_pass;
         });
-    if (!oldest->second->estimator)
+    if (!oldest->second->passes)
       return;
     bytes -= bytes_of(*oldest->second->prepared->world);
     renderers_.erase(oldest);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "photons/photon_plan.h"
+#include "choose/pass_renderer.h"
 #include "render/bias_probe.h"
 #include "vdbeam/render.h"
 
@@ -21,20 +21,21 @@ class Shutter {
 public:
   /// What renders a pass, until the next call of `at`.
   struct Renderer {
-    Estimator& estimator;
+    PassRenderer& passes;
     BiasProbe* probe; ///< tells the bias; null where the estimator has none or nobody asks
   };
 
-  /// `input` is that of the scene itself; `path_plan` the plan of the path estimator. All must
-  /// outlive this.
-  Shutter(const Scene& scene, const PreparedScenePtr& prepared, const EstimatorInput& input,
-          const RenderPlan& path_plan, const std::vector<std::size_t>& probe_pixels);
+  /// `type`: of the estimator that renders, `auto` for those that gather photons. `input` is that
+  /// of the scene itself; `path_plan` the plan of the path estimator. All must outlive this.
+  Shutter(const Scene& scene, const EstimatorType& type, const PreparedScenePtr& prepared,
+          const EstimatorInput& input, const RenderPlan& path_plan,
+          const std::vector<std::size_t>& probe_pixels);
 
-  /// Has the estimator of a still scene without light groups that was made already.
-  void take(std::unique_ptr<Estimator> ready) { ready_ = std::move(ready); }
-  /// Has the plans of the scene's own photons, by group of its lights, that moments are to follow;
-  /// adds the work that they took.
-  void follow(std::vector<ScenePhotons> photons, RenderStatistics& statistics);
+  /// Has the passes of a still scene without light groups that were made already.
+  void take(std::unique_ptr<PassRenderer> ready) { ready_ = std::move(ready); }
+  /// Has the choices of the scene itself, by group of its lights, that moments are to follow; adds
+  /// the work that they took.
+  void follow(std::vector<SceneChoices> choices, RenderStatistics& statistics);
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -49,25 +50,26 @@ private:
 
     PreparedScenePtr prepared;
     Camera camera;
-    std::vector<ScenePhotons> scene_photons; ///< in this moment's units
+    std::vector<SceneChoices> scene_choices; ///< in this moment's units
     EstimatorInput input, path_input;
     std::optional<RayLayers> layers; ///< of this moment
-    std::unique_ptr<Estimator> estimator;
+    std::unique_ptr<PassRenderer> passes;
     std::unique_ptr<BiasProbe> probe;
     int last_pass = 0;
   };
 
   MomentRenderer& renderer_of(const Scene& moment, RenderStatistics& statistics);
-  const std::vector<ScenePhotons>& scene_photons(RenderStatistics& statistics);
+  const std::vector<SceneChoices>& scene_choices(RenderStatistics& statistics);
   void make_room();
 
   const Scene& scene_;
+  EstimatorType type_;
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
-  std::vector<ScenePhotons> scene_photons_; ///< that the moments' photons follow, by group
+  std::vector<SceneChoices> scene_choices_; ///< that the moments follow, by group
   const std::vector<std::size_t>& probe_pixels_;
-  std::unique_ptr<Estimator> ready_;
+  std::unique_ptr<PassRenderer> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>
       renderers_; ///< by what their worlds are made from
 };

@@ -103,6 +103,19 @@ void add_error_metadata(Image& image, const PassRecord& record) {
   }
 }
 
+namespace {
+
+/// "forward peak: on; final gathering: off (meshes stand in the scene); ...".
+std::string features_text(const std::vector<FeatureChoice>& features) {
+  std::string text;
+  for (const FeatureChoice& feature : features)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", feature.name,
+                        feature.on ? "on" : fmt::format("off ({})", feature.reason));
+  return text;
+}
+
+} // namespace
+
 void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result,
                         const std::string& hash) {
   for (const auto& [name, version] : component_versions())
@@ -114,6 +127,8 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:sceneHash"] = hash;
   image.metadata["vdbeam:estimator"] = std::string(
       result.plan.estimator.empty() ? scene.render.estimator.name : result.plan.estimator);
+  if (!result.plan.features.empty())
+    image.metadata["vdbeam:features"] = features_text(result.plan.features);
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   if (!scene.layers.empty())
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);

@@ -103,6 +103,34 @@ Json settings_json(const Scene& scene) {
   return settings;
 }
 
+namespace {
+
+Json features_json(const RenderPlan& plan) {
+  Json features = Json::array();
+  for (const FeatureChoice& feature : plan.features)
+    features.push_back({{"name", feature.name},
+                        {"key", feature.key},
+                        {"on", feature.on},
+                        {"reason", feature.reason}});
+  return features;
+}
+
+Json schedule_json(const RenderPlan& plan) {
+  Json passes = Json::array();
+  for (const PassSpec& spec : plan.schedule)
+    passes.push_back({{"pass", spec.pass},
+                      {"estimator", spec.estimator},
+                      {"peak_order", spec.peak_order},
+                      {"kernel_scale", spec.kernel_scale},
+                      {"neighbours", spec.neighbours},
+                      {"light_paths", spec.light_paths},
+                      {"gather_walks", spec.gather_walks},
+                      {"regression_radius", spec.regression_radius}});
+  return passes;
+}
+
+} // namespace
+
 Json plan_json(const RenderPlan& plan) {
   Json stages = Json::array();
   for (const PlanStage& stage : plan.stages)
@@ -111,6 +139,8 @@ Json plan_json(const RenderPlan& plan) {
   return {{"estimator", plan.estimator},
           {"choice", plan.choice},
           {"stages", std::move(stages)},
+          {"features", features_json(plan)},
+          {"schedule", schedule_json(plan)},
           {"memory",
            {{"volumes", plan.volume_bytes},
             {"photons", plan.photon_bytes},

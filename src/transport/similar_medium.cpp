@@ -5,38 +5,11 @@
 #include "phase/truncated_phase.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-/// How truncation shrinks from pass to pass.
-struct OrderGrowth {
-  int passes_of_first_order;
-  int factor; ///< the order grows by one when the number of passes has grown by this factor
-};
-/// Measured on backlit and on Mie clouds (docs/decisions.md): the bias of order 4 along rays is
-/// under the noise of 64 passes; of walks one order more halves the squared bias, so that it falls
-/// as fast as the noise.
-constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_walks{16, 2};
-
-/// The first order takes no larger share than this for a peak. With more, light that is scattered
-/// twice by small angles, towards which one looks at a sun through the medium, is too dark.
-constexpr float largest_first_peak = 0.6f;
-/// The same of passes that gather photons by walks (docs/decisions.md).
-constexpr float largest_peak_of_walks = 0.55f;
-
-/// The order of one pass of two is so much higher. A greater step would tell the bias of
-/// truncation with less noise, and cost more noise of the picture.
-constexpr int order_step = 2;
-
-/// In media of this typical depth without the peak or more, the first order is the lowest; in
-/// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
-/// few times, and the truncation of each scattering shows (docs/decisions.md).
-constexpr double depth_of_lowest_order = 24;
-constexpr int most_order_for_thinness = 8;
 
 /// The volume with the share `f` of its scattering taken for no scattering; adds to `peak` what
 /// leads back.
@@ -51,34 +24,6 @@ Volume similar_volume(const Volume& volume, float f, PeakTakenOut& peak) {
   peak.extinction_factor.push_back(1 / strongest);
   peak.excess.push_back(volume.channel_scale / strongest - similar.channel_scale);
   return similar;
-}
-
-/// The lowest order that takes no larger share than this of any phase function for a peak.
-int lowest_order(const Medium& medium, float largest_peak) {
-  int lowest = least_truncation_order;
-  while (lowest < most_truncation_order &&
-         std::any_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
-           return truncate_peak(phase, lowest).forward > largest_peak;
-         }))
-    ++lowest;
-  return lowest;
-}
-
-/// The order of the first passes; what is beyond a whole number is the share of passes of one more.
-double first_order(const Medium& medium) {
-  const int lowest = lowest_order(medium, largest_first_peak);
-  int highest = most_order_for_thinness;
-  // Not so high that there is no peak to take out.
-  while (highest > lowest &&
-         std::all_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
-           return truncate_peak(phase, highest).forward == 0;
-         }))
-    --highest;
-  const auto similar = highest > lowest ? similar_medium(medium, lowest) : nullptr;
-  if (!similar)
-    return lowest;
-  const double more = std::log2(depth_of_lowest_order / typical_depth(*similar));
-  return std::clamp<double>(lowest + more, lowest, highest);
 }
 
 } // namespace
@@ -149,33 +94,12 @@ double typical_depth(const Medium& medium) {
   return sum > 0 ? squares / sum : 0;
 }
 
-PassWorlds::PassWorlds(const World& world, bool take_out)
-    : world_(world), take_out_(take_out),
-      first_order_(take_out ? first_order(world.medium) : least_truncation_order),
-      first_order_of_walks_(std::max<double>(
-          first_order_,
-          take_out ? lowest_order(world.medium, largest_peak_of_walks) : least_truncation_order)) {}
-
-int PassWorlds::order(int pass, bool walks) const {
-  // Multiples of the golden ratio spread the pairs of passes of one more evenly.
-  const double spread = std::fmod(0.5 + 0.61803398875 * (pass / 2), 1.0);
-  int result = static_cast<int>((walks ? first_order_of_walks_ : first_order_) + spread);
-  const OrderGrowth growth = walks ? growth_of_walks : growth_along_rays;
-  for (std::int64_t until = growth.passes_of_first_order; pass >= until; until *= growth.factor)
-    ++result;
-  // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
-  // first as often as the second (Thue-Morse sequence): the moments of the shutter take turns too.
-  result = std::min(result, most_truncation_order - order_step);
-  const bool higher = std::popcount(static_cast<unsigned>(pass)) % 2 == 1;
-  return higher ? result + order_step : result;
-}
-
-const World& PassWorlds::of(int pass, bool walks) {
-  if (!take_out_)
+const World& PassWorlds::of(int order) {
+  if (order == 0)
     return world_;
-  const auto [at, is_new] = similar_.try_emplace(order(pass, walks));
+  const auto [at, is_new] = similar_.try_emplace(order);
   if (is_new)
-    if (const auto medium = similar_medium(world_.medium, at->first)) {
+    if (const auto medium = similar_medium(world_.medium, order)) {
       at->second = std::make_unique<World>(world_);
       at->second->medium = *medium;
     }

@@ -20,29 +20,19 @@ std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
 /// nothing was taken out.
 float truncation(const Medium& medium);
 
-/// The worlds in which the photons of each pass live: with the peak taken out by a truncation that
-/// falls from pass to pass, so that the estimate stays consistent (docs/physics.md, "Forward
-/// peaks"), or the scene's own world.
+/// The worlds in which the photons of passes live: with the peak taken out by truncations of
+/// several orders, or the scene's own.
 class PassWorlds {
 public:
-  /// `world` must outlive this. `take_out`: false where the scene's own medium is wanted.
-  PassWorlds(const World& world, bool take_out);
+  /// `world` must outlive this.
+  explicit PassWorlds(const World& world) : world_(world) {}
 
-  /// The world of a pass. `walks`: as for passes that gather photons by walks.
-  const World& of(int pass, bool walks = false);
-
-  /// The truncation order of a pass: at first one that leaves enough of each phase function, higher
-  /// where the medium is thin or where walks gather, whose kernels blur so little that truncation
-  /// would be most of the bias; then one more whenever the number of passes has tripled, or doubled
-  /// where walks gather. One pass of two takes less out, so that the difference tells the bias that
-  /// is left.
-  int order(int pass, bool walks = false) const;
+  /// The world whose phase functions are truncated at this order; the scene's own for 0, and where
+  /// no phase function has a peak. Lives as long as this.
+  const World& of(int order);
 
 private:
   const World& world_;
-  bool take_out_;
-  double first_order_; ///< what is beyond a whole number is the share of passes of one more
-  double first_order_of_walks_;                   ///< likewise
   std::map<int, std::unique_ptr<World>> similar_; ///< by order; null where no peak is taken out
 };
 

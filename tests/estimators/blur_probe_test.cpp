@@ -36,7 +36,7 @@ PassImage first_pass(const MemoryScene& scene, const std::vector<std::size_t>* b
   input.blur_pixels = blur_pixels;
   RenderStatistics statistics;
   PassImage image;
-  make_estimator(EstimatorType::beam, input)->render_pass(0, image, statistics);
+  make_pass_renderer(EstimatorType::beam, input)->render_pass(0, image, statistics);
   return image;
 }
 

@@ -1,5 +1,5 @@
 // What "auto" chooses, and that it renders what the estimator of that name does.
-#include "estimators/pilot/choose_estimator.h"
+#include "choose/choose_estimator.h"
 
 #include "support/make_field.h"
 #include "support/statistics.h"
@@ -65,13 +65,13 @@ TEST(ChooseEstimator, PathInAThinMediumUnderAnEvenSky) {
   // A walk that leaves the medium finds the same light wherever it goes.
   const Choice thin(thin_under_a_sky());
   EXPECT_EQ(thin.choice.type.name, "path");
-  EXPECT_EQ(thin.choice.beam, nullptr);
+  EXPECT_EQ(thin.choice.photons, nullptr);
 }
 
 TEST(ChooseEstimator, BeamInADeepMediumInTheSun) {
   const Choice deep(deep_in_the_sun());
   EXPECT_EQ(deep.choice.type.name, "beam");
-  ASSERT_NE(deep.choice.beam, nullptr);
+  ASSERT_NE(deep.choice.photons, nullptr);
 }
 
 TEST(ChooseEstimator, BeamWhereThereAreNoPhotons) {
@@ -131,7 +131,7 @@ TEST(ChooseEstimator, GivesBeamsOwnPicture) {
   const TestFrame frame(scene);
   PassImage chosen, named;
   RenderStatistics statistics;
-  made.choice.beam->render_pass(0, chosen, statistics);
+  made.choice.photons->render_pass(0, chosen, statistics);
   frame.estimator()->render_pass(0, named, statistics);
   for (std::size_t i = 0; i < named.direct.size(); ++i)
     ASSERT_EQ(chosen.total(i), named.total(i)) << "pixel " << i;

@@ -24,7 +24,7 @@ MemoryScene box_scene(double extinction) {
 std::vector<float> depths(MemoryScene scene, EstimatorType type, int passes = 1) {
   scene.scene.render.estimator = type;
   const test::TestFrame frame(scene);
-  const std::unique_ptr<Estimator> estimator = frame.estimator();
+  const std::unique_ptr<PassRenderer> estimator = frame.estimator();
   Film film(frame.camera.width(), frame.camera.height());
   PassImage image;
   RenderStatistics statistics;

@@ -1,7 +1,7 @@
 // When photons are gathered by walks, and that it lessens the blur of kernels.
 #include "support/render_passes.h"
 
-#include "estimators/beam/beam.h"
+#include "choose/pass_renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -30,9 +30,9 @@ MemoryScene lumps(double extinction, int width) {
 
 std::optional<int> first_final_gather(const MemoryScene& scene) {
   const TestFrame frame(scene);
-  const BeamEstimator estimator(frame.input());
-  const std::optional<WalkPlan>& walks = estimator.photons().plan().walks;
-  return walks ? std::optional(walks->first) : std::nullopt;
+  const FramePasses passes(EstimatorType::automatic, frame.input());
+  const std::optional<GatherPlan>& gather = passes.choices().gather;
+  return gather ? std::optional(gather->first) : std::nullopt;
 }
 
 /// Where the medium is thin kernels blur little, and walks are noisier than kernels.
@@ -107,7 +107,7 @@ TEST(FinalGather, TellsItsBlur) {
     EstimatorInput input = frame.input();
     input.blur_pixels = probed ? &pixels : nullptr;
     RenderStatistics statistics;
-    make_estimator(EstimatorType::beam, input)->render_pass(0, image, statistics);
+    make_pass_renderer(EstimatorType::beam, input)->render_pass(0, image, statistics);
     double sum = 0;
     for (const PixelValue& blur : image.blur)
       sum += std::abs(static_cast<double>(blur.radiance.x));

@@ -75,8 +75,8 @@ std::array<Samples, 3> render_sphere(MemoryScene scene, EstimatorType type, floa
   scene.scene.render.estimator = type;
   RenderPlan plan = plan_stages(scene.scene, volume_facts(facts, world, camera));
   plan.shadow_ray_lights = {shadow_rays};
-  const std::unique_ptr<Estimator> estimator =
-      make_estimator(type, {world, camera, scene.scene.render, plan});
+  const std::unique_ptr<PassRenderer> estimator =
+      make_pass_renderer(type, {world, camera, scene.scene.render, plan});
   std::array<Samples, 3> means;
   RenderStatistics statistics;
   for (int pass = 0; pass < passes; ++pass) {

@@ -1,6 +1,6 @@
 // Kernels are as wide as the noise and the bias of the scene ask for, found out before the first
 // pass.
-#include "estimators/pilot/kernel_pilot.h"
+#include "choose/pilot/kernel_pilot.h"
 
 #include "support/render_passes.h"
 #include "support/test_frame.h"

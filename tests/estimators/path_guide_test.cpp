@@ -1,5 +1,5 @@
 // Light paths that go where the picture is made: nothing is lost by it, and the picture gains.
-#include "estimators/pilot/beam_plan.h"
+#include "choose/choose.h"
 
 #include "support/render_passes.h"
 #include "support/test_frame.h"
@@ -39,7 +39,9 @@ void add_haze(MemoryScene& scene) {
 
 struct Planned {
   explicit Planned(const MemoryScene& scene)
-      : frame(scene), world(frame.world), plan(plan_beam_photons(frame.input())) {}
+      : frame(scene), world(frame.world),
+        plan(choose_for_scene(frame.input(), estimator_kind(EstimatorType::beam)).choices.photons) {
+  }
 
   /// Powers of the photons of one pass in the skin that is seen, two mean free paths thick, and in
   /// all of the medium.

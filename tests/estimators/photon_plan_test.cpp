@@ -1,6 +1,6 @@
 #include "photons/photon_plan.h"
 
-#include "estimators/pilot/beam_plan.h"
+#include "choose/choose.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
@@ -60,25 +60,30 @@ MemoryScene cloud_of(double size) {
   return scene;
 }
 
+PhotonPlan photons_of(const EstimatorInput& input) {
+  return choose_for_scene(input, estimator_kind(EstimatorType::beam)).choices.photons;
+}
+
 TEST(PhotonPlan, OfASceneServesMomentsWhoseUnitIsAnother) {
   const TestFrame small(cloud_of(1.9)), large(cloud_of(2.1));
   ASSERT_EQ(small.world.space.scale, 2 * large.world.space.scale);
-  const ScenePhotons photons{plan_beam_photons(small.input()), small.world.space};
-  const ScenePhotons of_moment = photons.in_units(large.world.space.scale);
-  ASSERT_NE(photons.plan.guide, nullptr);
+  const SceneChoices scene = choose_for_scene(small.input(), estimator_kind(EstimatorType::beam));
+  const SceneChoices moment = scene.in_units(large.world.space.scale);
+  const PhotonPlan &photons = scene.choices.photons, &of_moment = moment.choices.photons;
+  ASSERT_NE(photons.guide, nullptr);
   // The same place of the world, and the same light.
   const Vec3f point(0.3f, 0.2f, 0.6f);
   for (const float flux : {0.01f, 1.0f})
-    EXPECT_FLOAT_EQ(photons.plan.guide->relative_value(flux, point, 1000),
-                    of_moment.plan.guide->relative_value(flux / 4, point * 0.5f, 1000));
-  EXPECT_FLOAT_EQ(of_moment.plan.view_reach, 0.5f * photons.plan.view_reach);
+    EXPECT_FLOAT_EQ(photons.guide->relative_value(flux, point, 1000),
+                    of_moment.guide->relative_value(flux / 4, point * 0.5f, 1000));
+  EXPECT_FLOAT_EQ(of_moment.view_reach, 0.5f * photons.view_reach);
   EstimatorInput input = large.input();
-  input.of_scene = &of_moment;
-  const PhotonPlan plan = plan_beam_photons(input), own = plan_beam_photons(large.input());
+  input.of_scene = &moment;
+  const PhotonPlan plan = photons_of(input), own = photons_of(large.input());
   EXPECT_GT(own.pilot_paths, 0);
   EXPECT_EQ(plan.pilot_paths, 0);
-  EXPECT_EQ(plan.neighbours, photons.plan.neighbours);
-  EXPECT_EQ(plan.paths, photons.plan.paths);
+  EXPECT_EQ(plan.neighbours, photons.neighbours);
+  EXPECT_EQ(plan.paths, photons.paths);
   // A point as bright as that is worth as much to either plan, but for the pilots' noise.
   const float follows = plan.guide->relative_value(1, {0, 0, 0.5f}, plan.paths);
   const float asked = own.guide->relative_value(1, {0, 0, 0.5f}, own.paths);

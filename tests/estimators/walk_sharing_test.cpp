@@ -1,8 +1,8 @@
 // What pixels share of their walks: a fitted plane, and nothing with what lies at another depth.
-#include "photons/walk_sharing.h"
+#include "estimators/gather/regression.h"
 
+#include "choose/gather_plan.h"
 #include "estimators/beam/beam.h"
-#include "photons/walk_plan.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
@@ -37,26 +37,26 @@ struct Square {
   template <class Light>
   double shared(float radius, int x, int y, const Light& light) {
     double sum = 0;
-    for (const WalkSharing::Share& share : shares(radius, x, y)) {
+    for (const PixelRegression::Share& share : shares(radius, x, y)) {
       const auto pixel = static_cast<int>(share.pixel);
       sum += static_cast<double>(share.weight * opacity[share.pixel]) *
              light(pixel % width, pixel / width);
     }
     return sum / static_cast<double>(opacity[static_cast<std::size_t>(y * width + x)]);
   }
-  std::span<const WalkSharing::Share> shares(float radius, int x, int y) {
+  std::span<const PixelRegression::Share> shares(float radius, int x, int y) {
     depth.clear();
     for (std::size_t i = 0; i < opacity.size(); ++i)
       depth.push_back(opacity[i] * distance[i]);
-    return WalkSharing(camera, 1, radius)
+    return PixelRegression(camera, 1, radius)
         .shares({0, 0, width, width, opacity.data(), depth.data()}, x, y, buffer_);
   }
 
 private:
-  WalkSharing::Shares buffer_{};
+  PixelRegression::Shares buffer_{};
 };
 
-TEST(WalkSharing, KeepsPlanesOfAnyOpacity) {
+TEST(PixelRegression, KeepsPlanesOfAnyOpacity) {
   Square square;
   Rng rng({1, 1, 0}, RngStage::direct, 0);
   for (float& opacity : square.opacity)
@@ -71,12 +71,12 @@ TEST(WalkSharing, KeepsPlanesOfAnyOpacity) {
       }
 }
 
-TEST(WalkSharing, LessensNoiseTheMoreTheWiderItIs) {
+TEST(PixelRegression, LessensNoiseTheMoreTheWiderItIs) {
   Square square;
   double before = 1.01;
-  for (const float radius : SharingTrial::radii) {
+  for (const float radius : RegressionTrial::radii) {
     double left = 0;
-    for (const WalkSharing::Share& share : square.shares(radius, 4, 4))
+    for (const PixelRegression::Share& share : square.shares(radius, 4, 4))
       left += static_cast<double>(share.weight) * static_cast<double>(share.weight);
     EXPECT_LT(left, before) << radius;
     before = left;
@@ -85,19 +85,19 @@ TEST(WalkSharing, LessensNoiseTheMoreTheWiderItIs) {
 }
 
 /// The squared bias that the fit gives light that bends is as the forecast for narrow radii says.
-TEST(WalkSharing, BlursSmoothLightAsItsMeanSquareDistanceSquared) {
+TEST(PixelRegression, BlursSmoothLightAsItsMeanSquareDistanceSquared) {
   Square square;
   const auto bend = [](int px, int py) { return 100 + (px - 4) * (px - 4) + (py - 4) * (py - 4); };
   const auto bias = [&](float radius) { return square.shared(radius, 4, 4, bend) - 100; };
   const double squared = std::pow(bias(0.05f) / bias(0.25f), 2);
-  EXPECT_NEAR(WalkSharing::blur(0.05f) / WalkSharing::blur(0.25f), squared, 0.15 * squared);
-  EXPECT_EQ(WalkSharing::blur(0), 0);
-  for (std::size_t i = 1; i < SharingTrial::radii.size(); ++i)
-    EXPECT_GT(WalkSharing::blur(SharingTrial::radii[i]),
-              WalkSharing::blur(SharingTrial::radii[i - 1]));
+  EXPECT_NEAR(PixelRegression::blur(0.05f) / PixelRegression::blur(0.25f), squared, 0.15 * squared);
+  EXPECT_EQ(PixelRegression::blur(0), 0);
+  for (std::size_t i = 1; i < RegressionTrial::radii.size(); ++i)
+    EXPECT_GT(PixelRegression::blur(RegressionTrial::radii[i]),
+              PixelRegression::blur(RegressionTrial::radii[i - 1]));
 }
 
-TEST(WalkSharing, IsNotAcrossDepths) {
+TEST(PixelRegression, IsNotAcrossDepths) {
   Square square;
   for (std::size_t i = 0; i < square.distance.size(); ++i)
     square.distance[i] = i % width < 5 ? 5 : 50;
@@ -105,40 +105,40 @@ TEST(WalkSharing, IsNotAcrossDepths) {
   EXPECT_NEAR(square.shared(2, 4, 4, near_only), 1, 1e-4);
 }
 
-TEST(WalkSharing, LeavesWhatSeesNothing) {
+TEST(PixelRegression, LeavesWhatSeesNothing) {
   Square square;
   square.opacity[4 * width + 4] = 0;
   const auto shares = square.shares(2, 4, 4);
   ASSERT_EQ(shares.size(), 1u);
   EXPECT_EQ(shares[0].pixel, std::size_t{4 * width + 4});
   EXPECT_EQ(shares[0].weight, 1);
-  for (const WalkSharing::Share& share : square.shares(2, 5, 4))
+  for (const PixelRegression::Share& share : square.shares(2, 5, 4))
     EXPECT_NE(share.pixel, std::size_t{4 * width + 4});
 }
 
-TEST(WalkSharing, KeepsItsOwnLightAtTheLens) {
+TEST(PixelRegression, KeepsItsOwnLightAtTheLens) {
   Square square;
   square.distance.assign(square.distance.size(), 0);
   EXPECT_EQ(square.shared(2, 4, 4, [](int px, int) { return px; }), 4);
 }
 
-TEST(WalkPlan, SharesLessFromPassToPass) {
-  WalkPlan plan{3, 1, 0, {{1, 0.55, 0.4, 0.3, 0.28, 0.25, 0.2, 0.1, 0.07, 0.04}, 0.05}};
-  float before = plan.sharing_radius(3);
+TEST(GatherPlan, SharesLessFromPassToPass) {
+  GatherPlan plan{3, 1, 0, {{1, 0.55, 0.4, 0.3, 0.28, 0.25, 0.2, 0.1, 0.07, 0.04}, 0.05}};
+  float before = plan.regression_radius(3);
   EXPECT_GT(before, 1);
   for (int pass = 4; pass < 5000; ++pass) {
-    const float radius = plan.sharing_radius(pass);
+    const float radius = plan.regression_radius(pass);
     EXPECT_LE(radius, before) << pass;
     before = radius;
   }
   EXPECT_EQ(before, 0);
   EXPECT_LT(plan.walks(3), plan.walks(5000));
-  EXPECT_EQ(plan.walks(5000), WalkPlan::most_walks);
+  EXPECT_EQ(plan.walks(5000), GatherPlan::most_walks);
   // What blurs more is shared less, and what has no noise not at all.
-  plan.sharing.blur = 5;
-  EXPECT_LT(plan.sharing_radius(3), 1);
+  plan.regression.blur = 5;
+  EXPECT_LT(plan.regression_radius(3), 1);
   plan.noise = 0;
-  EXPECT_EQ(plan.sharing_radius(3), 0);
+  EXPECT_EQ(plan.regression_radius(3), 0);
 }
 
 /// A cube of stripes, dense and thin.
@@ -156,19 +156,19 @@ MemoryScene stripes() {
 }
 
 /// Pixels at the edge of a tile share with those of the next.
-TEST(WalkPass, FinishedTilesAreThoseOfAWholePass) {
+TEST(GatherPass, FinishedTilesAreThoseOfAWholePass) {
   const MemoryScene scene = stripes();
   const TestFrame frame(scene);
   RenderStatistics statistics;
   PassImage whole;
-  BeamEstimator estimator(frame.input());
-  ASSERT_GT(estimator.photons().plan().walks->sharing_radius(0), 0);
+  FramePasses estimator(EstimatorType::gather, frame.input());
+  ASSERT_GT(estimator.choices().gather->regression_radius(0), 0);
   estimator.render_pass(0, whole, statistics);
   for (const int milliseconds : {2, 5, 10, 20, 40}) {
     EstimatorInput input = frame.input();
     StopToken stop;
     input.stop = &stop;
-    const auto stopped = make_estimator(EstimatorType::beam, input);
+    const auto stopped = make_pass_renderer(EstimatorType::gather, input);
     stop.set_deadline(StopToken::Clock::now() + std::chrono::milliseconds(milliseconds));
     PassImage part;
     stopped->render_pass(0, part, statistics);

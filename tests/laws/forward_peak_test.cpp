@@ -1,4 +1,5 @@
 // Media whose forward peak is taken out of multiple scattering obey the laws and agree with path.
+#include "choose/schedule.h"
 #include "medium/optical_depth.h"
 #include "phase/truncated_phase.h"
 #include "photons/photon_plan.h"
@@ -200,6 +201,18 @@ TEST(TypicalDepth, IsThatOfChordsWeightedByTheirLength) {
   EXPECT_NEAR(typical_depth(scene.world().medium), opaque_optical_depth, 0.1);
 }
 
+/// The worlds of passes, as the schedule has them.
+struct OrderedWorlds {
+  explicit OrderedWorlds(const World& world)
+      : first(choose_peak_orders(world.medium)), worlds(world) {}
+
+  int order(int pass, bool gathers = false) const { return peak_order(first, pass, gathers); }
+  const World& of(int pass, bool gathers = false) { return worlds.of(order(pass, gathers)); }
+
+  PeakOrders first;
+  PassWorlds worlds;
+};
+
 /// Where light is scattered but a few times, the truncation of each scattering shows. The mean
 /// order grows steadily as the medium gets thinner, so that no frame of a sequence jumps.
 TEST(PassWorlds, TakeOutLessOfThinMedia) {
@@ -207,7 +220,7 @@ TEST(PassWorlds, TakeOutLessOfThinMedia) {
   for (const double depth : {100.0, 60.0, 40.0, 25.0, 15.0, 10.0, 6.0, 4.0, 2.5, 1.5}) {
     const MemoryScene scene = lumps(depth, henyey_greenstein(0.85));
     const World world = scene.world();
-    const PassWorlds worlds(world, true);
+    OrderedWorlds worlds(world);
     double mean = 0;
     for (int pass = 0; pass < 64; ++pass)
       mean += worlds.order(pass) / 64.0;
@@ -221,7 +234,7 @@ TEST(PassWorlds, TakeOutLessOfThinMedia) {
 TEST(PassWorlds, TakeOutLessAndLess) {
   const MemoryScene scene = lumps(1000, henyey_greenstein(0.9));
   const World world = scene.world();
-  PassWorlds worlds(world, true);
+  OrderedWorlds worlds(world);
   float before = 1;
   for (const int pass : {0, 65, 192, 576, 100000}) { // of which none is of those that take out less
     const World& similar = worlds.of(pass);
@@ -236,7 +249,7 @@ TEST(PassWorlds, TakeOutLessAndLess) {
                 b.extinction * b.albedo.x * (1 - mean_cosine(similar.medium.phases[0])),
                 1e-4f * a.extinction);
   }
-  EXPECT_FALSE(PassWorlds(world, false).of(0).medium.peak);
+  EXPECT_FALSE(PassWorlds(world).of(0).medium.peak);
 }
 
 /// One pass of each pair takes less out, and its bias is smaller by a ratio that is known.
@@ -244,7 +257,7 @@ TEST(PassWorlds, TellTruncationByTakingOutMoreAndLess) {
   const float g = 0.85f;
   const MemoryScene scene = lumps(1000, henyey_greenstein(g));
   const World world = scene.world();
-  PassWorlds worlds(world, true);
+  OrderedWorlds worlds(world);
   for (const bool walks : {false, true})
     for (const int pass : {0, 2, 40, 100, 500}) {
       EXPECT_EQ(std::abs(worlds.order(pass + 1, walks) - worlds.order(pass, walks)), 2);
@@ -259,7 +272,7 @@ TEST(PassWorlds, TellTruncationByTakingOutMoreAndLess) {
   EXPECT_EQ(truncation(world.medium), 0);
   const MemoryScene droplets = lumps(1000, henyey_greenstein(0.97));
   const World peaked = droplets.world();
-  const PassWorlds of_peaked(peaked, true);
+  OrderedWorlds of_peaked(peaked);
   for (const int pass : {0, 1000})
     EXPECT_EQ(std::abs(of_peaked.order(pass + 1) - of_peaked.order(pass)), 2)
         << "at the highest orders too";
@@ -270,7 +283,7 @@ TEST(PassWorlds, TakeOutLessWhereWalksGather) {
   for (const double g : {0.7, 0.85, 0.9}) {
     const MemoryScene scene = lumps(1000, henyey_greenstein(g));
     const World world = scene.world();
-    PassWorlds worlds(world, true);
+    OrderedWorlds worlds(world);
     for (const int pass : {16, 100, 1000}) {
       EXPECT_GE(worlds.order(pass, true), worlds.order(pass));
       const World& similar = worlds.of(pass, true);
@@ -279,7 +292,7 @@ TEST(PassWorlds, TakeOutLessWhereWalksGather) {
   }
   const MemoryScene scene = lumps(1000, henyey_greenstein(0.88));
   const World world = scene.world();
-  const PassWorlds worlds(world, true);
+  OrderedWorlds worlds(world);
   EXPECT_GT(worlds.order(8, true), worlds.order(8));
 }
 
@@ -287,7 +300,7 @@ TEST(PassWorlds, TakeOutLessWhereWalksGather) {
 TEST(PassWorlds, TakeOutLessWithEachDoublingWhereWalksGather) {
   const MemoryScene scene = lumps(1000, henyey_greenstein(0.85));
   const World world = scene.world();
-  const PassWorlds worlds(world, true);
+  OrderedWorlds worlds(world);
   const auto mean_order = [&](int first, int passes) {
     double sum = 0;
     for (int pass = first; pass < first + passes; ++pass)

@@ -115,7 +115,7 @@ public:
     const World& world = *prepared_->world;
     const Camera camera(scene.camera, scene.image, world.space);
     const RenderPlan plan = plan_stages(scene, volume_facts(prepared_->facts, world, camera));
-    const auto estimator = make_estimator(type, {world, camera, scene.render, plan});
+    const auto estimator = make_pass_renderer(type, {world, camera, scene.render, plan});
     return test::means_of(*estimator, first, count);
   }
 

@@ -1,4 +1,4 @@
-#include "estimators/estimator.h"
+#include "choose/pass_renderer.h"
 #include "film/film.h"
 #include "plan/plan.h"
 #include "prepare/prepared_scene.h"
@@ -47,7 +47,7 @@ Outcome render(const Subject& subject, EstimatorType type, int passes) {
   const World& world = *prepared->world;
   const Camera camera(scene.camera, scene.image, world.space);
   const RenderPlan plan = plan_stages(scene, volume_facts(prepared->facts, world, camera));
-  const auto estimator = make_estimator(type, {world, camera, scene.render, plan});
+  const auto estimator = make_pass_renderer(type, {world, camera, scene.render, plan});
   Film film(scene.image.width, scene.image.height);
   PassImage pass_image;
   RenderStatistics statistics;

@@ -73,7 +73,7 @@ inline void add_regions(std::vector<Samples>& regions, const PassImage& image) {
 }
 
 /// Renders the passes `first` to `first` + `count` - 1.
-inline PassMeans means_of(Estimator& estimator, int first, int count) {
+inline PassMeans means_of(PassRenderer& estimator, int first, int count) {
   PassMeans means;
   PassImage image;
   std::vector<Vec3d> sums;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "camera/camera.h"
-#include "estimators/estimator_table.h"
+#include "choose/pass_renderer.h"
 #include "plan/plan.h"
 #include "support/memory_scene.h"
 
@@ -19,8 +19,8 @@ public:
   EstimatorInput input(std::uint64_t frame = 1) const {
     return {world, camera, settings, plan, {frame}};
   }
-  std::unique_ptr<Estimator> estimator(std::uint64_t frame = 1) const {
-    return make_estimator(settings.estimator, input(frame));
+  std::unique_ptr<PassRenderer> estimator(std::uint64_t frame = 1) const {
+    return make_pass_renderer(settings.estimator, input(frame));
   }
 
 private:

@@ -1,5 +1,6 @@
 // A new estimator and a new light are one file and one line each: this program links tables that
 // are one line longer than the renderer's, and everything that reads them follows.
+#include "estimators/estimator_table.h"
 #include "keys/scene_keys.h"
 #include "lights/light_table.h"
 #include "math/color.h"
@@ -23,7 +24,7 @@ class FlatEstimator final : public Estimator {
 public:
   explicit FlatEstimator(const EstimatorInput& input) : input_(input) {}
 
-  void render_pass(int, PassImage& image, RenderStatistics& statistics) override {
+  void render(const PassSpec&, PassImage& image, RenderStatistics& statistics) override {
     const Camera& camera = input_.camera;
     image.resize(camera.width(), camera.height());
     std::fill(image.direct.begin(), image.direct.end(), Rgb(0.25f));
@@ -42,7 +43,7 @@ const EstimatorKind toy_estimator{
     .help = "a quarter everywhere",
     .stages = {Stage::depth_profiles},
     .keys = toy_keys,
-    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+    .make = [](const EstimatorInput& input, PhotonPass*) -> std::unique_ptr<Estimator> {
       return std::make_unique<FlatEstimator>(input);
     }};
 
@@ -70,8 +71,8 @@ const LightKind lantern_light{
 } // namespace
 
 std::span<const EstimatorKind* const> estimator_table() {
-  static constexpr std::array table{&auto_estimator, &beam_estimator, &march_estimator,
-                                    &path_estimator, &toy_estimator};
+  static constexpr std::array table{&auto_estimator,  &beam_estimator, &gather_estimator,
+                                    &march_estimator, &path_estimator, &toy_estimator};
   return table;
 }
 

@@ -183,16 +183,4 @@ void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
     walk.found.blur = light - radiance(*compared_);
 }
 
-bool may_gather_finally(const EstimatorInput& input, const PhotonPlan& plan) {
-  const World& world = input.world;
-  const RenderSettings& settings = input.settings;
-  if (!input.plan.needs(Stage::photons) || settings.final_gather == FinalGathering::never ||
-      settings.store != PhotonStore::fluence || settings.max_bounces || world.surfaces)
-    return false;
-  for (std::size_t l = 0; l < world.lights.size(); ++l)
-    if (!plan.sampled_lights[l] && world.lights[l].is_delta())
-      return false;
-  return true;
-}
-
 } // namespace vdbeam

@@ -49,8 +49,4 @@ private:
   bool meets_light_; ///< flights may meet light before they end
 };
 
-/// Whether walks can find all light: each light by shadow rays, or where they meet it; and no
-/// surfaces, number of scatterings or scatter storage would have to be regarded.
-bool may_gather_finally(const EstimatorInput& input, const PhotonPlan& plan);
-
 } // namespace vdbeam

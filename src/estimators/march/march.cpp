@@ -110,8 +110,8 @@ private:
 
 } // namespace
 
-void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
-  photons_.trace_and_build(pass, statistics);
+void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
+  photons_.trace_and_build(spec, KernelDomain::ball, statistics);
   const auto gather = [&](TileScratch& scratch, const RngKey& key) {
     RayMarcher marcher(input_.settings, photons_);
     for (int i = 0; i < TileRays::count && !input_.stopped(); ++i) {
@@ -132,7 +132,7 @@ void MarchEstimator::render_pass(int pass, PassImage& image, RenderStatistics& s
     Rgb straight;
     return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
   };
-  shade_tiles(input_, photons_, pass, false, image, statistics, gather, gather_along);
+  shade_tiles(input_, photons_, spec.pass, false, image, statistics, gather, gather_along);
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
 }
@@ -155,8 +155,8 @@ const EstimatorKind march_estimator{
                Stage::depth_profiles, Stage::emission, Stage::shadow_rays, Stage::spectral_tracking,
                Stage::march, Stage::bias},
     .keys = march_keys,
-    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
-      return std::make_unique<MarchEstimator>(input);
+    .make = [](const EstimatorInput& input, PhotonPass* photons) -> std::unique_ptr<Estimator> {
+      return std::make_unique<MarchEstimator>(input, *photons);
     }};
 
 } // namespace vdbeam

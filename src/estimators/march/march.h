@@ -12,14 +12,15 @@ namespace vdbeam {
 /// as `beam`; only the gather differs.
 class MarchEstimator : public Estimator {
 public:
-  explicit MarchEstimator(const EstimatorInput& input)
-      : input_(input), photons_(input, plan_photons, KernelDomain::ball) {}
+  /// `photons` must outlive this.
+  MarchEstimator(const EstimatorInput& input, PhotonPass& photons)
+      : input_(input), photons_(photons) {}
 
-  void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
+  void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
 private:
   EstimatorInput input_;
-  PhotonPass photons_;
+  PhotonPass& photons_;
 };
 
 } // namespace vdbeam

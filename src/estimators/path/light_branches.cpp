@@ -24,11 +24,19 @@ float about_light(const PhaseFunction& phase, const Vec3f& towards, const Vec3f&
   return value > least_about_light ? value : 0;
 }
 
+bool is_peaked(const PhaseFunction& phase) {
+  return 4 * pi * phase.evaluate(1) > sharp_peak;
+}
+
 } // namespace
+
+bool LightBranches::has_sharp_peak(const Medium& medium) {
+  return std::any_of(medium.phases.begin(), medium.phases.end(), is_peaked);
+}
 
 LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow_rays) {
   for (const PhaseFunction& phase : world.medium.phases)
-    if (4 * pi * phase.evaluate(1) > sharp_peak)
+    if (is_peaked(phase))
       peaked_.push_back(&phase);
   if (peaked_.empty())
     return;

@@ -26,6 +26,9 @@ public:
 
   bool any() const { return !towards_.empty(); }
 
+  /// Whether some phase function scatters so much straight on that branches are worth their time.
+  static bool has_sharp_peak(const Medium& medium);
+
   /// The direction of a branch at a scattering by this phase function of the world's; none where
   /// the walk does not branch.
   std::optional<Vec3f> sample(const PhaseFunction& phase, Rng& rng) const;

@@ -224,10 +224,10 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
   return result;
 }
 
-void PathEstimator::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
+void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
   const Stopwatch watch;
   const Camera& camera = input_.camera;
-  const RngKey pass_key = key(pass);
+  const RngKey pass_key = key(spec.pass);
   image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep,
                input_.object_count(), input_.plane_count());
   tbb::enumerable_thread_specific<Scratch> scratches;
@@ -254,7 +254,7 @@ const EstimatorKind path_estimator{
     .stages = {Stage::surfaces, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
                Stage::spectral_tracking, Stage::paths},
     .keys = {},
-    .make = [](const EstimatorInput& input) -> std::unique_ptr<Estimator> {
+    .make = [](const EstimatorInput& input, PhotonPass*) -> std::unique_ptr<Estimator> {
       return std::make_unique<PathEstimator>(input);
     }};
 

@@ -15,7 +15,7 @@ class PathEstimator : public Estimator {
 public:
   explicit PathEstimator(const EstimatorInput& input);
 
-  void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
+  void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
   /// What these pixels of the pass show, along the same camera rays as every estimator's.
   std::vector<Rgb> radiance(int pass, const std::vector<std::size_t>& pixels) const;

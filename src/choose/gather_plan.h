@@ -5,11 +5,11 @@
 
 namespace vdbeam {
 
-/// What sharing (WalkSharing) does to a picture, by its radius.
-struct SharingTrial {
+/// What regression over pixels (PixelRegression) does to a picture, by its radius.
+struct RegressionTrial {
   static constexpr std::array<float, 10> radii = {0,    0.05f, 0.1f, 0.25f, 0.5f,
                                                   0.7f, 1,     1.4f, 2,     2.8f}; ///< [pixels]
-  /// Variance of what is shared over that of what each pixel has of its own.
+  /// Variance of what is fitted over that of what each pixel has of its own.
   std::array<double, radii.size()> noise = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   double blur = 0; ///< squared bias by the widest, in units like MRSE
 
@@ -18,11 +18,11 @@ struct SharingTrial {
 };
 
 /// How passes gather finally (FinalGather).
-struct WalkPlan {
+struct GatherPlan {
   int first = 0;            ///< pass from which on they do
   double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
-  SharingTrial sharing;
+  RegressionTrial regression;
 
   /// Mean square error of what photons bring to a picture, after the time of so many passes that
   /// gather along camera rays; with the best radius, or with one of the trial's.
@@ -30,7 +30,7 @@ struct WalkPlan {
   double error_after(double passes_along, std::size_t radius) const;
   /// The radius [pixels] of a pass: smaller from pass to pass, so that its bias vanishes as noise
   /// does.
-  float sharing_radius(int pass) const;
+  float regression_radius(int pass) const;
   /// Walks from each camera ray of a pass.
   int walks(int pass) const;
   static constexpr int most_walks = 12;

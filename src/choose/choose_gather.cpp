@@ -1,5 +1,7 @@
-#include "estimators/pilot/choose_final_gather.h"
+#include "choose/choose_gather.h"
 
+#include "choose/feature.h"
+#include "choose/schedule.h"
 #include "estimators/gather/final_gather.h"
 #include "rays/tile_rays.h"
 
@@ -23,9 +25,9 @@ struct GatherNoise {
 };
 
 /// Each pixel's ray looks at each map twice.
-GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
+GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
                           const KernelTrial& trial) {
-  const std::vector<TrialPixel>& pixels = plan.trial->pixels;
+  const std::vector<TrialPixel>& pixels = choices.trial->pixels;
   const auto width = static_cast<std::size_t>(input.camera.width());
   const RngKey key{input.settings.seed, input.frame, pilot_pass};
   std::vector<GatherNoise> noise(pixels.size());
@@ -42,10 +44,10 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
     std::vector<Rgb> means;
     Rgb mean, walks;
     for (const PhotonMap& map : trial.maps) {
-      const FinalGather gather(input.world, plan, map);
+      const FinalGather gather(input.world, choices.photons, map);
       const auto light = [&] {
         const GatheredLight found =
-            gather.gather(ray.camera.ray(), ray.profile, WalkPlan::most_walks, 1, rng, uncounted);
+            gather.gather(ray.camera.ray(), ray.profile, GatherPlan::most_walks, 1, rng, uncounted);
         return found.direct + found.indirect;
       };
       const Rgb a = light(), b = light(), d = a - b;
@@ -67,42 +69,28 @@ GatherNoise measure_noise(const EstimatorInput& input, const PhotonPlan& plan,
   return sum;
 }
 
-/// Whether walks find the scene's lights without rare, bright values, which the pilot would miss:
-/// lights beyond the medium, by shadow rays or, where one surrounds it evenly, by leaving it. Close
-/// to a lamp a shadow ray's value has no bound, and a small light is met by chance only.
-bool lights_are_easy(const EstimatorInput& input, const PhotonPlan& plan) {
-  const LightSet& lights = input.world.lights;
-  for (std::size_t l = 0; l < input.plan.shadow_ray_lights.size(); ++l) {
-    const LightTraits& traits = lights.traits(l);
-    if (plan.sampled_lights[l] ? !traits.surrounds && !lights[l].narrow_direction()
-                               : !traits.surrounds || traits.wants_shadow_rays)
-      return false;
-  }
-  return true;
-}
-
 } // namespace
 
-std::optional<WalkPlan> choose_final_gather(const EstimatorInput& input, const PhotonPlan& plan,
-                                            const KernelTrial& trial, double paths_share) {
-  const bool asked_for = input.settings.final_gather == FinalGathering::always;
-  if (!plan.trial || plan.trial->pixels.empty() || trial.maps.size() < 2 ||
-      !may_gather_finally(input, plan) || (!asked_for && !lights_are_easy(input, plan)))
+std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
+                                        const Choices& choices, const KernelTrial& trial,
+                                        double paths_share) {
+  const PhotonPlan& plan = choices.photons;
+  if (choices.trial->pixels.empty() || trial.maps.size() < 2 ||
+      !is_possible(final_gather_feature, {input, kind, plan.sampled_lights}))
     return std::nullopt;
-  const GatherNoise noise = measure_noise(input, plan, trial);
+  const GatherNoise noise = measure_noise(input, choices, trial);
   const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
-  const double of_photons =
-      in_trial * trial.neighbours / (final_gather_neighbours * plan.neighbours);
-  WalkPlan walks{0, noise.walks, of_photons, plan.trial->sharing};
-  if (asked_for)
-    return walks;
+  const double of_photons = in_trial * trial.neighbours / (neighbours_of_gather * plan.neighbours);
+  GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
+  if (forces_final_gather(kind, input.settings))
+    return gather;
   for (int first = 0; first <= most_passes_before;
        first = std::max(fewest_passes_before, 2 * first)) {
     const int passes = compared_passes * std::max(1, first);
-    const double error = walks.error_after(passes);
-    walks.first = first;
-    if (error > 0 && error < plan.trial->model.error(plan.neighbours, passes))
-      return walks;
+    const double error = gather.error_after(passes);
+    gather.first = first;
+    if (error > 0 && error < choices.trial->model.error(plan.neighbours, passes))
+      return gather;
   }
   return std::nullopt;
 }

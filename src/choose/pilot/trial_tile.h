@@ -1,7 +1,7 @@
 #pragma once
 
+#include "estimators/gather/regression.h"
 #include "photons/photon_plan.h"
-#include "photons/walk_sharing.h"
 #include "rays/tile_rays.h"
 
 #include <array>

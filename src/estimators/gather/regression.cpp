@@ -1,4 +1,4 @@
-#include "photons/walk_sharing.h"
+#include "estimators/gather/regression.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,10 +44,10 @@ struct Moments {
 
 } // namespace
 
-WalkSharing::WalkSharing(const Camera& camera, double world_scale, float radius)
+PixelRegression::PixelRegression(const Camera& camera, double world_scale, float radius)
     : camera_(camera), world_scale_(world_scale), radius_(radius), reach_(reach_of(radius)) {}
 
-double WalkSharing::blur(float radius) {
+double PixelRegression::blur(float radius) {
   const int reach = reach_of(radius);
   Moments moments;
   for (int dy = -reach; dy <= reach; ++dy)
@@ -59,14 +59,14 @@ double WalkSharing::blur(float radius) {
   return mean_square * mean_square / std::sqrt(1 + mean_square * mean_square);
 }
 
-float WalkSharing::deepest(const SeenMedium& seen, int x, int y, float distance) const {
+float PixelRegression::deepest(const SeenMedium& seen, int x, int y, float distance) const {
   const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
                                            static_cast<double>(distance) * world_scale_);
   return deepest_over_width * (radius_ + 0.5f) * static_cast<float>(pixel / world_scale_);
 }
 
-std::span<const WalkSharing::Share> WalkSharing::shares(const SeenMedium& seen, int x, int y,
-                                                        Shares& shares) const {
+std::span<const PixelRegression::Share> PixelRegression::shares(const SeenMedium& seen, int x,
+                                                                int y, Shares& shares) const {
   const auto at = [&](int px, int py) {
     return static_cast<std::size_t>(py) * static_cast<std::size_t>(seen.width) +
            static_cast<std::size_t>(px);

@@ -1,6 +1,6 @@
-#include "estimators/pilot/fit_path_guide.h"
+#include "choose/pilot/fit_path_guide.h"
 
-#include "estimators/pilot/trial_tile.h"
+#include "choose/pilot/trial_tile.h"
 #include "photons/view_thinning.h"
 
 #include <tbb/parallel_for.h>

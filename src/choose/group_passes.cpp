@@ -1,6 +1,4 @@
-#include "estimators/light_groups.h"
-
-#include "estimators/pilot/beam_plan.h"
+#include "choose/group_passes.h"
 
 #include "layers/light_group_names.h"
 
@@ -40,7 +38,7 @@ struct Group {
   World world;
   RenderPlan plan;
   EstimatorInput input;
-  std::unique_ptr<Estimator> estimator;
+  std::unique_ptr<PassRenderer> passes;
 };
 
 std::vector<std::unique_ptr<Group>> groups_of(const Scene& scene, const EstimatorInput& input) {
@@ -72,19 +70,19 @@ void add_blur(std::vector<PixelValue>& to, const std::vector<PixelValue>& what) 
     to.push_back({pixel, radiance});
 }
 
-class GroupedEstimator : public Estimator {
+class GroupPasses final : public PassRenderer {
 public:
-  GroupedEstimator(const Scene& scene, const EstimatorInput& input)
+  GroupPasses(const Scene& scene, const EstimatorType& type, const EstimatorInput& input)
       : input_(input), groups_(groups_of(scene, input)) {
     for (const std::unique_ptr<Group>& group : groups_)
-      group->estimator = make_estimator(scene.render.estimator, group->input);
+      group->passes = std::make_unique<FramePasses>(type, group->input);
   }
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override {
     PassImage part;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       PassImage& target = g == 0 ? image : part;
-      groups_[g]->estimator->render_pass(pass, target, statistics);
+      groups_[g]->passes->render_pass(pass, target, statistics);
       std::vector<Rgb> light(target.direct.size());
       for (std::size_t i = 0; i < light.size(); ++i)
         light[i] = target.total(i);
@@ -97,6 +95,8 @@ public:
       }
     }
   }
+
+  const Choices& choices() const override { return groups_[0]->passes->choices(); }
 
 private:
   void add_part(const PassImage& part, PassImage& image) const {
@@ -125,15 +125,17 @@ private:
 
 } // namespace
 
-std::unique_ptr<Estimator> make_grouped_estimator(const Scene& scene, const EstimatorInput& input) {
-  return std::make_unique<GroupedEstimator>(scene, input);
+std::unique_ptr<PassRenderer> make_group_passes(const Scene& scene, const EstimatorType& type,
+                                                const EstimatorInput& input) {
+  return std::make_unique<GroupPasses>(scene, type, input);
 }
 
-std::vector<ScenePhotons> plan_group_photons(const Scene& scene, const EstimatorInput& input) {
-  std::vector<ScenePhotons> plans;
+std::vector<SceneChoices> choose_for_groups(const Scene& scene, const EstimatorType& type,
+                                            const EstimatorInput& input) {
+  std::vector<SceneChoices> choices;
   for (const std::unique_ptr<Group>& group : groups_of(scene, input))
-    plans.push_back(plan_scene_photons(group->input));
-  return plans;
+    choices.push_back(choose_for_scene(group->input, estimator_kind(type)));
+  return choices;
 }
 
 } // namespace vdbeam

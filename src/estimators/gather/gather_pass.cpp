@@ -1,4 +1,4 @@
-#include "estimators/gather/walk_pass.h"
+#include "estimators/gather/gather_pass.h"
 
 #include "estimators/gather/final_gather.h"
 #include "photons/blur_probe.h"
@@ -37,29 +37,29 @@ void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
       pieces[i + c] += light[static_cast<int>(c)] * pieces[i + 3] / all;
 }
 
-/// What narrow sharing is: of half the radius, so that both have much of their noise in common; of
-/// the pixel's own light where so little would change.
+/// The radius of the narrow fit: half of the other, so that both have much of their noise in
+/// common; the pixel's own light where half would change little.
 float narrower(float radius) {
   return radius <= 1 ? 0 : radius / 2;
 }
 
-/// All that sharing blurs over what it blurs beyond narrower sharing; 0 where nothing is shared.
+/// All that the fit blurs over what it blurs beyond the narrow one; 0 where nothing is fitted.
 float blur_over_difference(float narrow, float wide) {
   if (!(wide > 0))
     return 0;
-  const double of_narrow = std::sqrt(WalkSharing::blur(narrow) / WalkSharing::blur(wide));
+  const double of_narrow = std::sqrt(PixelRegression::blur(narrow) / PixelRegression::blur(wide));
   return static_cast<float>(1 / (1 - of_narrow));
 }
 
 } // namespace
 
-WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int pass)
+GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec)
     : wide_(input), window_(wanted(input)), photons_(photons),
-      sharing_(input.camera, input.world.space.scale, photons.plan().walks->sharing_radius(pass)),
-      narrow_(input.camera, input.world.space.scale, narrower(sharing_.radius())),
-      blur_over_difference_(blur_over_difference(narrow_.radius(), sharing_.radius())),
-      walks_(photons.plan().walks->walks(pass)) {
-  wide_.window = widened(window_, sharing_.reach(), input.camera);
+      regression_(input.camera, input.world.space.scale, spec.regression_radius),
+      narrow_(input.camera, input.world.space.scale, narrower(regression_.radius())),
+      blur_over_difference_(blur_over_difference(narrow_.radius(), regression_.radius())),
+      walks_(spec.gather_walks) {
+  wide_.window = widened(window_, regression_.reach(), input.camera);
   const auto pixels = static_cast<std::size_t>(input.camera.width()) *
                       static_cast<std::size_t>(input.camera.height());
   walked_.direct.resize(pixels);
@@ -68,7 +68,8 @@ WalkPass::WalkPass(const EstimatorInput& input, const PhotonPass& photons, int p
     walked_.planes.assign(input.plane_count(), std::vector<float>(pixels));
 }
 
-void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image) {
+void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur,
+                        PassImage& image) {
   const World& world = photons_.world();
   const PhotonMap* compared = wide_.blur_pixels ? &photons_.compared_map() : nullptr;
   const FinalGather gather(world, photons_.plan(), photons_.map());
@@ -108,7 +109,7 @@ void WalkPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, 
 }
 
 /// Whether the tile and those around it that are wanted are finished.
-bool WalkPass::finished_around(int column, int row, const PassImage& image) const {
+bool GatherPass::finished_around(int column, int row, const PassImage& image) const {
   for (int r = row - 1; r <= row + 1; ++r)
     for (int c = column - 1; c <= column + 1; ++c) {
       const int x = c * tile_width, y = r * tile_width;
@@ -121,7 +122,7 @@ bool WalkPass::finished_around(int column, int row, const PassImage& image) cons
   return true;
 }
 
-void WalkPass::share(BlurProbe& blur, PassImage& image) const {
+void GatherPass::fit(BlurProbe& blur, PassImage& image) const {
   const int columns = image.tile_columns();
   std::vector<std::uint8_t> finished(image.finished_tiles.size(), 0);
   tbb::parallel_for(std::size_t{0}, finished.size(), [&](std::size_t tile) {
@@ -131,38 +132,38 @@ void WalkPass::share(BlurProbe& blur, PassImage& image) const {
     const int x0 = column * tile_width, y0 = row * tile_width;
     for (int y = std::max(y0, window_.y0); y < std::min(y0 + tile_width, window_.y1); ++y)
       for (int x = std::max(x0, window_.x0); x < std::min(x0 + tile_width, window_.x1); ++x)
-        share_pixel(x, y, blur, image);
+        fit_pixel(x, y, blur, image);
     finished[tile] = 1;
   });
   image.finished_tiles = std::move(finished);
 }
 
-GatheredLight WalkPass::shared(std::span<const WalkSharing::Share> shares) const {
+GatheredLight GatherPass::fitted(std::span<const PixelRegression::Share> shares) const {
   GatheredLight light;
-  for (const WalkSharing::Share& share : shares) {
+  for (const PixelRegression::Share& share : shares) {
     light.direct += walked_.direct[share.pixel] * share.weight;
     light.indirect += walked_.indirect[share.pixel] * share.weight;
   }
   return light;
 }
 
-void WalkPass::share_pixel(int x, int y, BlurProbe& blur, PassImage& image) const {
+void GatherPass::fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const {
   const SeenMedium seen{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x);
-  WalkSharing::Shares buffer;
+  PixelRegression::Shares buffer;
   if (PixelValue* probe = blur.find(pixel)) {
-    const GatheredLight wide = shared(sharing_.shares(seen, x, y, buffer));
-    const GatheredLight narrow = shared(narrow_.shares(seen, x, y, buffer));
+    const GatheredLight wide = fitted(regression_.shares(seen, x, y, buffer));
+    const GatheredLight narrow = fitted(narrow_.shares(seen, x, y, buffer));
     probe->radiance +=
         (wide.direct + wide.indirect - narrow.direct - narrow.indirect) * blur_over_difference_;
   }
-  const std::span<const WalkSharing::Share> shares = sharing_.shares(seen, x, y, buffer);
-  const GatheredLight light = shared(shares);
+  const std::span<const PixelRegression::Share> shares = regression_.shares(seen, x, y, buffer);
+  const GatheredLight light = fitted(shares);
   image.direct[pixel] += light.direct;
   image.indirect[pixel] = light.indirect;
   for (std::size_t plane = 0; plane < walked_.planes.size(); ++plane)
-    for (const WalkSharing::Share& share : shares)
+    for (const PixelRegression::Share& share : shares)
       image.planes[plane][pixel] += walked_.planes[plane][share.pixel] * share.weight;
   add_by_opacity(light.direct + light.indirect - walked_.direct[pixel] - walked_.indirect[pixel],
                  pixel, image);

@@ -8,7 +8,7 @@
 
 namespace vdbeam {
 
-/// Opacity and depth of a rectangle of pixels, which sharing goes by: as in PassImage, row by row.
+/// Opacity and depth of a rectangle of pixels, which the fit goes by: as in PassImage, row by row.
 struct SeenMedium {
   int x0, y0, width, height; ///< where the rectangle lies in the picture
   const float* opacity;
@@ -21,10 +21,10 @@ struct SeenMedium {
 /// *Local Polynomial Modelling and Its Applications*, 1996). The fit is linear in the light, and
 /// its weights depend on opacity and depth only, which have next to no noise: so it blurs, but has
 /// no other bias, and opacity keeps its edges. Neighbours of another depth do not count.
-class WalkSharing {
+class PixelRegression {
 public:
   /// `radius` [pixels]: 0 shares nothing, 1 with the 8 pixels around. At most `widest`.
-  WalkSharing(const Camera& camera, double world_scale, float radius);
+  PixelRegression(const Camera& camera, double world_scale, float radius);
 
   /// The light of the pixel (x, y) is the sum of these weights times that of the pixels.
   struct Share {

@@ -1,7 +1,7 @@
-#include "estimators/pilot/kernel_pilot.h"
+#include "choose/pilot/kernel_pilot.h"
 
-#include "estimators/pilot/sharing_trial.h"
-#include "estimators/pilot/trial_tile.h"
+#include "choose/pilot/regression_trial.h"
+#include "choose/pilot/trial_tile.h"
 
 #include <tbb/parallel_for.h>
 
@@ -115,7 +115,7 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
       std::clamp(hits / fewest_samples, std::size_t{1}, pixels_between_samples);
   for (const TrialTile& view : views)
     add_pixels(view, step, dark, errors.pixels);
-  errors.sharing = measure_sharing(input, views, dark);
+  errors.regression = measure_regression(input, views, dark);
   return errors;
 }
 

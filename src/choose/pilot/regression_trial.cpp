@@ -1,4 +1,4 @@
-#include "estimators/pilot/sharing_trial.h"
+#include "choose/pilot/regression_trial.h"
 
 #include "rays/pixel_tiles.h"
 
@@ -15,20 +15,20 @@ namespace {
 /// many times as large (docs/decisions.md).
 constexpr double blur_of_walks = 1.5;
 
-/// Sums over a tile's pixels that share with others of the tile only.
-struct SharingSums {
-  std::array<double, SharingTrial::radii.size()> noise{};
+/// Sums over a tile's pixels that are fitted to others of the tile only.
+struct RegressionSums {
+  std::array<double, RegressionTrial::radii.size()> noise{};
   double blur = 0, light = 0;
   double values = 0;
 
-  SharingSums(const EstimatorInput& input, const TrialTile& tile, double dark) {
+  RegressionSums(const EstimatorInput& input, const TrialTile& tile, double dark) {
     const SeenMedium seen = tile.seen();
     const std::size_t channels = tile.channels();
     for (std::size_t i = 0; i < tile.pixels.size(); ++i) {
       const auto width = static_cast<std::size_t>(input.camera.width());
       const int x = static_cast<int>(tile.pixels[i] % width) - seen.x0;
       const int y = static_cast<int>(tile.pixels[i] / width) - seen.y0;
-      constexpr int reach = WalkSharing::widest;
+      constexpr int reach = PixelRegression::widest;
       if (std::min(x, y) < reach || std::max(x, y) >= tile_width - reach)
         continue;
       for (std::size_t c = 0; c < channels; ++c) {
@@ -44,13 +44,13 @@ struct SharingSums {
 private:
   void add_pixel(const EstimatorInput& input, const TrialTile& tile, std::size_t i, int x, int y,
                  double dark) {
-    WalkSharing::Shares shares;
+    PixelRegression::Shares shares;
     const std::size_t channels = tile.channels();
     for (std::size_t r = 0; r < noise.size(); ++r) {
-      const WalkSharing sharing(input.camera, input.world.space.scale, SharingTrial::radii[r]);
-      const std::span<const WalkSharing::Share> found = sharing.shares(tile.seen(), x, y, shares);
+      const PixelRegression fit(input.camera, input.world.space.scale, RegressionTrial::radii[r]);
+      const std::span<const PixelRegression::Share> found = fit.shares(tile.seen(), x, y, shares);
       double left = 0;
-      for (const WalkSharing::Share& share : found)
+      for (const PixelRegression::Share& share : found)
         left += static_cast<double>(share.weight) * static_cast<double>(share.weight);
       for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t at = i * channels + c, place = tile.places[at];
@@ -62,7 +62,7 @@ private:
         PairedSums changes;
         for (const std::vector<float>& picture : tile.narrow) {
           float change = -picture[place];
-          for (const WalkSharing::Share& share : found)
+          for (const PixelRegression::Share& share : found)
             change += share.weight * picture[c * TileRays::count + tile.ray_of[share.pixel]];
           changes.add(static_cast<double>(change));
         }
@@ -75,14 +75,14 @@ private:
 
 } // namespace
 
-SharingTrial measure_sharing(const EstimatorInput& input, const std::vector<TrialTile>& tiles,
-                             double dark) {
-  std::vector<std::optional<SharingSums>> sums(tiles.size());
+RegressionTrial measure_regression(const EstimatorInput& input, const std::vector<TrialTile>& tiles,
+                                   double dark) {
+  std::vector<std::optional<RegressionSums>> sums(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(),
                     [&](std::size_t i) { sums[i].emplace(input, tiles[i], dark); });
-  SharingTrial trial;
+  RegressionTrial trial;
   double light = 0, values = 0, blur = 0;
-  std::array<double, SharingTrial::radii.size()> noise{};
+  std::array<double, RegressionTrial::radii.size()> noise{};
   for (const auto& tile : sums) { // in their order, for any number of threads
     light += tile->light;
     values += tile->values;

@@ -1,8 +1,10 @@
-#include "estimators/pilot/choose_estimator.h"
+#include "choose/choose_estimator.h"
 
-#include "estimators/beam/beam.h"
+#include "choose/feature.h"
+#include "choose/pilot/kernel_pilot.h"
+#include "estimators/estimator_table.h"
+
 #include "estimators/path/path.h"
-#include "estimators/pilot/kernel_pilot.h"
 #include "estimators/tile_shading.h"
 #include "transport/similar_medium.h"
 
@@ -104,31 +106,32 @@ double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>
   return spread(pixels, images);
 }
 
-/// By which factor the error of `path` is greater than that of `beam` after the same time.
-double lead_of_beam(const EstimatorInput& beam_input, const PhotonPass& photons,
-                    const EstimatorInput& path_input) {
-  const PhotonPlan& plan = photons.plan();
-  const std::vector<TrialPixel>& pixels = plan.trial->pixels;
+/// By which factor the error of `path` is greater than that of photons after the same time.
+double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& passes,
+                       const EstimatorInput& path_input) {
+  const Choices& choices = passes.choices();
+  const PhotonPlan& plan = choices.photons;
+  const std::vector<TrialPixel>& pixels = choices.trial->pixels;
   const double rays = static_cast<double>(pixels.size()) * trial_passes_of(pixels.size());
   RenderStatistics path_counts, beam_counts;
   const double path_spread = spread_of_path(path_input, pixels, path_counts);
   // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
-  const double beside =
-      std::min(path_spread, spread_beside_photons(beam_input, photons, pixels, beam_counts));
+  const double beside = std::min(
+      path_spread, spread_beside_photons(photon_input, passes.photons(), pixels, beam_counts));
   const double path_time =
       time_of_ray + time_of_walks +
       (time_of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
        time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
           rays;
-  const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(beam_input);
+  const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(photon_input);
   const double beam_time =
       beam_share * (time_of_ray + time_of_query +
                     time_of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
                     paths_per_ray * (time_of_light_collision * plan.collisions_per_path +
                                      time_of_photon * plan.stored_per_path));
-  const double of_photons = plan.gathers_finally(0)
-                                ? plan.walks->error_after(compared_passes)
-                                : plan.trial->model.error(plan.neighbours, compared_passes);
+  const double of_photons = choices.gathers_finally(0)
+                                ? choices.gather->error_after(compared_passes)
+                                : choices.trial->model.error(plan.neighbours, compared_passes);
   const double beam_error = of_photons + beside / compared_passes;
   const double path_error = path_spread * path_time / (compared_passes * beam_time);
   return beam_error > 0 ? path_error / beam_error : 1;
@@ -141,8 +144,11 @@ double collisions_of_light_paths(const EstimatorInput& input) {
   if (!input.plan.needs(Stage::photons) || input.world.medium.empty())
     return 0;
   const PhotonPlan plan = default_photon_plan(input);
-  PassWorlds worlds(input.world, plan.similar);
-  const EstimatorInput in = input.in(worlds.of(0));
+  PassWorlds worlds(input.world);
+  const PeakOrders peak = is_possible(forward_peak_feature, {input, auto_estimator})
+                              ? choose_peak_orders(input.world.medium)
+                              : PeakOrders();
+  const EstimatorInput in = input.in(worlds.of(peak_order(peak, 0, false)));
   PhotonPassSettings settings = pass_settings(in, plan, probe_pass);
   settings.paths = probe_paths;
   settings.store_probability = 0;
@@ -151,29 +157,41 @@ double collisions_of_light_paths(const EstimatorInput& input) {
 
 } // namespace
 
-EstimatorChoice choose_estimator(const EstimatorInput& beam_input,
+EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
                                  const EstimatorInput& path_input) {
   // In such a medium the photons that are seen lie in a thin skin, and most paths end by chance.
   constexpr double most_collisions = 4096;
-  if (const double collisions = collisions_of_light_paths(beam_input);
-      collisions > most_collisions && !beam_input.stopped())
+  if (const double collisions = collisions_of_light_paths(photon_input);
+      collisions > most_collisions && !photon_input.stopped())
     return {EstimatorType::path,
             fmt::format("a light path has some {:.1g} collisions, too many to trace photons",
                         collisions),
             0, nullptr};
-  auto beam = std::make_unique<BeamEstimator>(beam_input);
-  const PhotonPass& photons = beam->photons();
-  if (!photons.plan().trial || photons.plan().trial->pixels.empty())
-    return {EstimatorType::beam, "without a kernel pilot there is nothing to compare", 0,
-            std::move(beam)};
-  const double lead = lead_of_beam(beam_input, photons, path_input);
-  if (lead < 1 / safe_lead && !beam_input.stopped())
-    return {EstimatorType::path,
-            fmt::format("in as much time beam would have {:.2g} times its error", 1 / lead), lead,
-            nullptr};
-  return {EstimatorType::beam,
-          fmt::format("in as much time path would have {:.2g} times its error", lead), lead,
-          std::move(beam)};
+  auto passes = std::make_unique<FramePasses>(EstimatorType::automatic, photon_input);
+  const Choices& choices = passes->choices();
+  const EstimatorType type =
+      choices.gathers_finally(0) ? EstimatorType::gather : EstimatorType::beam;
+  if (!choices.trial || choices.trial->pixels.empty())
+    return {type, "without a kernel pilot there is nothing to compare", 0, std::move(passes)};
+  const double lead = lead_of_photons(photon_input, *passes, path_input);
+  if (lead < 1 / safe_lead && !photon_input.stopped())
+    return {
+        EstimatorType::path,
+        fmt::format("in as much time {} would have {:.2g} times its error", type.name, 1 / lead),
+        lead, nullptr};
+  std::string reason = fmt::format("in as much time path would have {:.2g} times its error", lead);
+  if (choices.gather && choices.gather->first > 0)
+    reason += fmt::format("; gather goes on after {} passes", choices.gather->first);
+  return {type, std::move(reason), lead, std::move(passes)};
 }
+
+// It reads the keys of beam, and is planned as beam; the choice is made before the first pass.
+const EstimatorKind auto_estimator{
+    .name = "auto",
+    .help = "gather, beam or path, whichever a short trial forecasts the smallest error for",
+    .unbiased = false,
+    .stages = gather_stages,
+    .keys = {},
+    .make = nullptr};
 
 } // namespace vdbeam

@@ -1,13 +1,13 @@
-#include "estimators/pilot/beam_plan.h"
+#include "choose/choose.h"
 
-#include "estimators/gather/final_gather.h"
-#include "estimators/pilot/choose_final_gather.h"
-#include "estimators/pilot/fit_path_guide.h"
-#include "estimators/pilot/kernel_pilot.h"
+#include "choose/choose_gather.h"
+#include "choose/feature.h"
+#include "choose/pilot/fit_path_guide.h"
+#include "choose/pilot/kernel_pilot.h"
+#include "choose/schedule.h"
 #include "photons/kernel_support.h"
 #include "photons/view_importance.h"
 #include "photons/view_thinning.h"
-#include "transport/similar_medium.h"
 
 #include <cmath>
 #include <utility>
@@ -53,7 +53,7 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
     sample.position.push_back(pilot.position[i]);
     sample.power.push_back(pilot.power[i]);
   }
-  RadiusSettings radii = radius_settings(input, plan, 0);
+  RadiusSettings radii = radius_settings(input, plan.neighbours);
   const double photons =
       plan.stored_per_path * static_cast<double>(choose_paths(input, plan.stored_per_path));
   radii.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
@@ -70,7 +70,8 @@ TracedPhotons trace_guided_pilot(const EstimatorInput& input, PhotonPlan& plan) 
 }
 
 /// Sends light paths to where the camera sees them, and stores their collisions there.
-void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& plan) {
+void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedPhotons pilot,
+                 PhotonPlan& plan) {
   const auto wanted_per_path = [&] {
     const double collisions = pilot.mean_collisions;
     return std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
@@ -79,7 +80,7 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
   plan.view_reach = typical_radius(input, plan, pilot.photons);
   CellTables importance = view_importance(input.world, input.camera, plan.view_reach,
                                           least_importance, plan.importance_rays);
-  if (input.settings.store == PhotonStore::fluence)
+  if (is_possible(path_guide_feature, {input, kind}))
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
     pilot = trace_guided_pilot(input, plan);
@@ -98,15 +99,19 @@ void follow_view(const EstimatorInput& input, TracedPhotons pilot, PhotonPlan& p
 
 /// Whether the moment's photons can follow the plan of the scene: they have the same lights, and
 /// lengths of the same unit.
-bool may_follow(const EstimatorInput& input, const ScenePhotons& scene) {
+bool may_follow(const EstimatorInput& input, const SceneChoices& scene) {
+  const auto& guide = scene.choices.photons.guide;
   return scene.space.scale == input.world.space.scale &&
-         (!scene.plan.guide || scene.plan.guide->light_shares.size() == input.world.lights.size());
+         (!guide || guide->light_shares.size() == input.world.lights.size());
 }
 
-/// The plan of the scene itself, put where the moment's render space has it. What is stored follows
-/// the moment's own cells.
-PhotonPlan follow_scene(const EstimatorInput& input, const ScenePhotons& scene) {
-  PhotonPlan plan = scene.plan;
+/// The choices of the scene itself, put where the moment's render space has them. What is stored
+/// follows the moment's own cells.
+void follow_scene(const EstimatorInput& input, const SceneChoices& scene, Choices& choices) {
+  const PeakOrders own = choices.peak;
+  choices = scene.choices;
+  choices.peak = own;
+  PhotonPlan& plan = choices.photons;
   plan.pilot_paths = plan.importance_rays = 0;
   if (plan.guide) {
     const Vec3d by = (scene.space.origin - input.world.space.origin) * scene.space.scale;
@@ -119,12 +124,12 @@ PhotonPlan follow_scene(const EstimatorInput& input, const ScenePhotons& scene) 
         store_by_view(view_importance(input.world, input.camera, plan.view_reach, least_importance,
                                       plan.importance_rays),
                       plan.view_factor));
-  return plan;
 }
 
-/// Chooses the neighbours at which pictures of narrow and wide kernels tell that the error is
-/// least.
-void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
+/// Chooses the neighbours at which the error of trial pictures in narrow and wide kernels is least,
+/// and whether light is gathered finally.
+void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices& choices) {
+  PhotonPlan& plan = choices.photons;
   const World& world = input.world;
   const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
@@ -144,7 +149,7 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
     if (input.stopped())
       return;
     for (KernelTrial* trial : {&narrow, &wide}) {
-      RadiusSettings radii = radius_settings(input, plan, 0);
+      RadiusSettings radii = radius_settings(input, plan.neighbours);
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
       trial->maps.push_back(PhotonMap::build(traced.photons, input.photon_channels(), radii,
                                              input.settings.kernel_shape));
@@ -154,35 +159,73 @@ void try_kernels(const EstimatorInput& input, PhotonPlan& plan) {
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
   const KernelModel model(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
   plan.neighbours = in_kernel_steps(model.best_neighbours());
-  plan.trial = std::make_shared<const KernelTrialResult>(
-      KernelTrialResult{model, errors.pixels, errors.sharing});
-  plan.walks = choose_final_gather(input, plan, narrow, trial_paths / paths);
+  choices.trial = std::make_shared<const KernelTrialResult>(
+      KernelTrialResult{model, errors.pixels, errors.regression});
+  choices.gather = choose_gather(input, kind, choices, narrow, trial_paths / paths);
+}
+
+/// Chooses lights, photons, kernels and gathering for an estimator that shoots photons, in the
+/// world of the first pass.
+void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choices& choices) {
+  PhotonPlan& plan = choices.photons;
+  plan = default_photon_plan(input);
+  if (!input.plan.needs(Stage::photons)) {
+    if (input.plan.needs(Stage::surface_photons))
+      plan.paths = choose_paths(input, 1);
+    return;
+  }
+  TracedPhotons pilot = trace_pilot(input, plan);
+  if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
+    follow_view(input, kind, std::move(pilot), plan);
+  plan.paths = choose_paths(input, plan.stored_per_path);
+  const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
+  if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
+    try_kernels(input, kind, choices);
+  const FeatureFacts facts(input, kind, plan.sampled_lights);
+  if (!choices.gather && forces_final_gather(kind, input.settings) &&
+      is_possible(final_gather_feature, facts))
+    choices.gather.emplace();
+  plan.share_at_boundary = is_possible(boundary_share_feature, facts);
+  if (!choices.trial && is_possible(hidden_lights_feature, facts))
+    plan.paths = paths_with_hidden_lights(input, plan);
 }
 
 } // namespace
 
-ScenePhotons plan_scene_photons(const EstimatorInput& input) {
-  PassWorlds worlds(input.world, default_photon_plan(input).similar);
-  return {plan_beam_photons(input.in(worlds.of(0))), input.world.space};
+SceneChoices SceneChoices::in_units(double scale) const {
+  SceneChoices result = *this;
+  const auto factor = static_cast<float>(scale / space.scale);
+  if (factor == 1)
+    return result;
+  result.space.scale = scale;
+  result.choices.photons.view_reach *= factor;
+  if (const auto& guide = choices.photons.guide)
+    result.choices.photons.guide = std::make_shared<const PathGuide>(guide->in_units(factor));
+  return result;
 }
 
-PhotonPlan plan_beam_photons(const EstimatorInput& input) {
-  if (input.of_scene && may_follow(input, *input.of_scene))
-    return follow_scene(input, *input.of_scene);
-  PhotonPlan plan = default_photon_plan(input);
-  if (!input.plan.needs(Stage::photons))
-    return plan_photons(input);
-  TracedPhotons pilot = trace_pilot(input, plan);
-  if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
-    follow_view(input, std::move(pilot), plan);
-  plan.paths = choose_paths(input, plan.stored_per_path);
-  const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
-  if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
-    try_kernels(input, plan);
-  if (input.settings.final_gather == FinalGathering::always && !plan.walks &&
-      may_gather_finally(input, plan))
-    plan.walks.emplace();
-  return plan;
+Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {
+  Choices choices;
+  const bool mixed =
+      kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::gather.name;
+  choices.estimator = mixed ? EstimatorType::beam.name : kind.name;
+  if (!kind.shoots_photons())
+    return choices;
+  if (is_possible(forward_peak_feature, {input, kind}))
+    choices.peak = choose_peak_orders(input.world.medium);
+  const EstimatorInput first = input.in(worlds.of(peak_order(choices.peak, 0, false)));
+  if (input.of_scene && may_follow(first, *input.of_scene))
+    follow_scene(first, *input.of_scene, choices);
+  else
+    choose_photons(first, kind, choices);
+  PhotonPlan& plan = choices.photons;
+  plan.shadow_lattices = is_possible(shadow_lattice_feature, {first, kind, plan.sampled_lights});
+  return choices;
+}
+
+SceneChoices choose_for_scene(const EstimatorInput& input, const EstimatorKind& kind) {
+  PassWorlds worlds(input.world);
+  return {choose(input, kind, worlds), input.world.space};
 }
 
 } // namespace vdbeam

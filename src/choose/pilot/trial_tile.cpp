@@ -1,4 +1,4 @@
-#include "estimators/pilot/trial_tile.h"
+#include "choose/pilot/trial_tile.h"
 
 #include "estimators/beam/beam_weights.h"
 #include "rays/direct_light.h"

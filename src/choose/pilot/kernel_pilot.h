@@ -1,7 +1,7 @@
 #pragma once
 
+#include "choose/gather_plan.h"
 #include "photons/photon_plan.h"
-#include "photons/walk_plan.h"
 
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,7 @@ struct KernelErrors {
   double change = 0;       ///< mean square change of the mean picture between the trials, unbiased
   double change_error = 0; ///< its standard error
   std::vector<TrialPixel> pixels; ///< a few of them
-  SharingTrial sharing;           ///< what sharing would do to the pictures in narrow kernels
+  RegressionTrial regression;     ///< what it would do to the pictures in narrow kernels
 };
 
 /// Looks at the trials through some tiles of the camera's picture. Adds to `rays` those that it
@@ -72,7 +72,7 @@ private:
 struct KernelTrialResult {
   KernelModel model;
   std::vector<TrialPixel> pixels;
-  SharingTrial sharing;
+  RegressionTrial regression;
 };
 
 } // namespace vdbeam

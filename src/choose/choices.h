@@ -1,0 +1,34 @@
+#pragma once
+
+#include "choose/gather_plan.h"
+#include "choose/peak_orders.h"
+#include "photons/photon_plan.h"
+
+namespace vdbeam {
+
+struct KernelTrialResult;
+
+/// How the passes of a frame are rendered: chosen once, before the first pass, as a pure function
+/// of the estimator's input (by counts, never by a clock).
+struct Choices {
+  std::string_view estimator;       ///< of the passes that do not gather finally
+  PeakOrders peak;                  ///< of phase functions, which photons live without
+  PhotonPlan photons;               ///< lights, light paths, photons and kernels
+  std::optional<GatherPlan> gather; ///< of passes that gather finally; empty: there are none
+  /// What tried kernels found; null: none were tried.
+  std::shared_ptr<const KernelTrialResult> trial;
+
+  bool gathers_finally(int pass) const { return gather && pass >= gather->first; }
+};
+
+/// The choices of a scene whose moments are other worlds, and where these are.
+struct SceneChoices {
+  Choices choices;
+  RenderSpace space; ///< in which the choices are given
+
+  /// The same where `scale` render units are one of the world. The unit of a moment is another than
+  /// the scene's where its bounds have grown over a power of two.
+  SceneChoices in_units(double scale) const;
+};
+
+} // namespace vdbeam

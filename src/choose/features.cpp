@@ -1,0 +1,232 @@
+#include "choose/feature.h"
+#include "estimators/path/light_branches.h"
+
+#include <algorithm>
+
+namespace vdbeam {
+
+namespace {
+
+using Facts = FeatureFacts;
+
+bool stores_scattered_flux(const Facts& facts) {
+  return facts.input.settings.store == PhotonStore::scatter;
+}
+bool limits_bounces(const Facts& facts) {
+  return facts.input.settings.max_bounces.has_value();
+}
+bool has_surfaces(const Facts& facts) {
+  return facts.input.world.surfaces != nullptr;
+}
+bool shoots_no_photons(const Facts& facts) {
+  return !facts.kind.shoots_photons();
+}
+bool is_forced(const Facts& facts) {
+  return forces_final_gather(facts.kind, facts.input.settings);
+}
+bool gathers_along_rays(const Facts& facts) {
+  return facts.kind.name != EstimatorType::automatic.name && !is_forced(facts);
+}
+
+/// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
+/// from all around alike; photons of other lights would lose it.
+bool has_light_that_loses_its_peak(const Facts& facts) {
+  const LightSet& lights = facts.input.world.lights;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!facts.sampled_lights[i] &&
+        (!lights.traits(i).surrounds || lights.traits(i).wants_shadow_rays))
+      return true;
+  return false;
+}
+
+/// Walks meet no light that has but one point or direction.
+bool has_light_that_walks_miss(const Facts& facts) {
+  const LightSet& lights = facts.input.world.lights;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!facts.sampled_lights[i] && lights[i].is_delta())
+      return true;
+  return false;
+}
+
+/// Close to a lamp a shadow ray's value has no bound, and a small light is met by chance only: rare
+/// and bright values, which a pilot would miss.
+bool has_light_that_pilots_miss(const Facts& facts) {
+  if (is_forced(facts))
+    return false;
+  const LightSet& lights = facts.input.world.lights;
+  for (std::size_t l = 0; l < facts.input.plan.shadow_ray_lights.size(); ++l) {
+    const LightTraits& traits = lights.traits(l);
+    if (facts.sampled_lights[l] ? !traits.surrounds && !lights[l].narrow_direction()
+                                : !traits.surrounds || traits.wants_shadow_rays)
+      return true;
+  }
+  return false;
+}
+
+bool has_no_narrow_light(const Facts& facts) {
+  const LightSet& lights = facts.input.world.lights;
+  for (std::size_t l = 0; l < lights.size(); ++l)
+    if (facts.sampled_lights[l] && lights[l].narrow_direction())
+      return false;
+  return true;
+}
+
+bool has_no_sharp_peak(const Facts& facts) {
+  return !LightBranches::has_sharp_peak(facts.input.world.medium);
+}
+
+constexpr std::string_view by_scattered_flux = "photons store scattered flux (render.store)";
+constexpr std::string_view by_bounces = "render.max_bounces counts every scattering";
+constexpr std::string_view by_surfaces = "meshes stand in the scene";
+
+} // namespace
+
+bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings) {
+  const bool asked =
+      settings.final_gather == FinalGathering::always &&
+      (kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::beam.name);
+  return kind.name == EstimatorType::gather.name || asked;
+}
+
+const Feature view_importance_feature{.name = "view importance",
+                                      .key = "render.thinning",
+                                      .help = "photons are stored where the camera sees them",
+                                      .stage = Stage::photon_importance,
+                                      .conditions = {}};
+
+namespace {
+constexpr FeatureCondition path_guide_conditions[] = {{stores_scattered_flux, by_scattered_flux}};
+}
+const Feature path_guide_feature{
+    .name = "path guide",
+    .key = "",
+    .help = "light paths begin, split and end by what they bring to the picture",
+    .stage = Stage::photon_importance,
+    .conditions = path_guide_conditions,
+    .used = [](const Facts&, const Choices& choices) { return choices.photons.guide != nullptr; },
+    .unused = "the pilot left too few photons to learn from"};
+
+const Feature kernel_pilot_feature{
+    .name = "kernel pilot",
+    .key = "render.neighbours",
+    .help = "kernels are as wide as noise and bias of trial maps ask for",
+    .stage = Stage::kernel_pilot,
+    .conditions = {},
+    .used = [](const Facts&, const Choices& choices) { return choices.trial != nullptr; },
+    .unused = "photons are too few for a trial"};
+
+namespace {
+constexpr FeatureCondition forward_peak_conditions[] = {
+    {[](const Facts& facts) { return facts.input.settings.forward_peak != ForwardPeak::automatic; },
+     "render.forward_peak keeps it"},
+    {stores_scattered_flux, by_scattered_flux},
+    {limits_bounces, by_bounces},
+    {[](const Facts& facts) { return facts.input.world.medium.isotropic(); },
+     "phase functions are isotropic"},
+    {[](const Facts& facts) { return !facts.input.world.medium.emitters.empty(); },
+     "a volume glows"},
+    {has_surfaces, by_surfaces},
+    {[](const Facts& facts) { return facts.input.world.medium.colored(); },
+     "a grid of colours changes the albedo from place to place"},
+    {has_light_that_loses_its_peak,
+     "photons alone bring a light that does not shine from all around"}};
+}
+const Feature forward_peak_feature{
+    .name = "forward peak",
+    .key = "render.forward_peak",
+    .help = "light paths live in a medium without the forward peak of its phase functions",
+    .stage = Stage::photons,
+    .conditions = forward_peak_conditions};
+
+namespace {
+constexpr FeatureCondition final_gather_conditions[] = {
+    {gathers_along_rays, "render.estimator names another method"},
+    {[](const Facts& facts) {
+       return facts.input.settings.final_gather == FinalGathering::never && !is_forced(facts);
+     },
+     "render.final_gather is \"never\""},
+    {stores_scattered_flux, by_scattered_flux},
+    {limits_bounces, by_bounces},
+    {has_surfaces, by_surfaces},
+    {has_light_that_walks_miss, "photons alone bring a light of one point or direction"},
+    {has_light_that_pilots_miss, "a lamp or a small light makes walks too noisy to forecast"}};
+}
+const Feature final_gather_feature{
+    .name = "final gathering",
+    .key = "render.estimator",
+    .help = "photons are gathered where walks from the camera rays arrive",
+    .stage = Stage::photons,
+    .conditions = final_gather_conditions,
+    .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
+    .unused = "the pilot forecasts a smaller error along camera rays, or had too few photons"};
+
+namespace {
+constexpr FeatureCondition shadow_lattice_conditions[] = {
+    {shoots_no_photons, "the estimator shoots no photons"},
+    {[](const Facts& facts) { return facts.input.world.medium.empty(); }, "there is no medium"},
+    {[](const Facts& facts) { return facts.input.world.medium.chromatic; },
+     "extinction differs between channels"},
+    {has_no_narrow_light, "no light has a single direction"}};
+}
+const Feature shadow_lattice_feature{
+    .name = "shadow lattice",
+    .key = "",
+    .help = "shadow rays go where lights of one direction reach the medium",
+    .stage = Stage::shadow_rays,
+    .conditions = shadow_lattice_conditions};
+
+namespace {
+constexpr FeatureCondition boundary_share_conditions[] = {
+    {stores_scattered_flux, "photons of scattered flux lie in the medium, wherever it is"}};
+}
+const Feature boundary_share_feature{
+    .name = "boundary correction",
+    .key = "",
+    .help = "kernels count with the part of them that lies inside the medium",
+    .stage = Stage::photons,
+    .conditions = boundary_share_conditions};
+
+namespace {
+constexpr FeatureCondition hidden_lights_conditions[] = {
+    {[](const Facts& facts) { return facts.input.settings.photons.has_value(); },
+     "render.photons is given"},
+    {[](const Facts& facts) { return facts.sampled_lights == facts.input.shadow_ray_lights(); },
+     "shadow rays reach every light that they look for"}};
+}
+const Feature hidden_lights_feature{
+    .name = "hidden lights",
+    .key = "render.photons",
+    .help = "more light paths, for lights that no shadow ray reaches",
+    .stage = Stage::photons,
+    .conditions = hidden_lights_conditions,
+    .used = [](const Facts&, const Choices& choices) { return choices.trial == nullptr; },
+    .unused = "kernels were tried for the light paths that there are"};
+
+namespace {
+constexpr FeatureCondition edges_conditions[] = {
+    {has_surfaces, by_surfaces}, {gathers_along_rays, "render.estimator names another method"}};
+}
+const Feature edges_feature{
+    .name = "refined edges",
+    .key = "",
+    .help = "several rays look at pixels where opacity or depth is uneven",
+    .stage = Stage::photons,
+    .conditions = edges_conditions,
+    .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
+    .unused = "only passes that gather finally refine them"};
+
+namespace {
+constexpr FeatureCondition branches_conditions[] = {
+    {[](const Facts& facts) { return facts.kind.shoots_photons(); },
+     "photons carry the light: only probes of the bias walk"},
+    {has_surfaces, by_surfaces},
+    {has_no_sharp_peak, "no phase function has a peak that is sharp enough"},
+    {has_no_narrow_light, "no light with shadow rays has a single direction"}};
+}
+const Feature branches_feature{.name = "branches",
+                               .key = "",
+                               .help = "walks of the path tracer branch towards narrow lights",
+                               .stage = std::nullopt,
+                               .conditions = branches_conditions};
+
+} // namespace vdbeam

@@ -1,0 +1,36 @@
+#include "choose/pass_renderer.h"
+
+#include <utility>
+
+namespace vdbeam {
+
+FramePasses::FramePasses(const EstimatorType& type, const EstimatorInput& input)
+    : input_(input), worlds_(input.world), choices_(choose(input_, estimator_kind(type), worlds_)) {
+  if (estimator_kind(type).shoots_photons())
+    photons_.emplace(input_, worlds_, worlds_.of(peak_order(choices_.peak, 0, false)),
+                     choices_.photons);
+}
+
+Estimator& FramePasses::estimator(std::string_view name) {
+  std::unique_ptr<Estimator>& made = estimators_[name];
+  if (!made)
+    made = estimator_kind({name}).make(input_, photons_ ? &*photons_ : nullptr);
+  return *made;
+}
+
+void FramePasses::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
+  // The pilot belongs to no pass; its counts go with the first.
+  if (!std::exchange(pilot_counted_, true)) {
+    statistics.pilot_paths += choices_.photons.pilot_paths;
+    statistics.importance_rays += choices_.photons.importance_rays;
+  }
+  const PassSpec spec = schedule(choices_, input_.settings, pass);
+  estimator(spec.estimator).render(spec, image, statistics);
+}
+
+std::unique_ptr<PassRenderer> make_pass_renderer(const EstimatorType& type,
+                                                 const EstimatorInput& input) {
+  return std::make_unique<FramePasses>(type, input);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "choose/choose.h"
+#include "choose/schedule.h"
+#include "estimators/estimator.h"
+#include "photons/photon_pass.h"
+
+#include <map>
+
+namespace vdbeam {
+
+/// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
+/// number), whatever the threads.
+class PassRenderer {
+public:
+  virtual ~PassRenderer() = default;
+
+  /// Renders pass `pass` (from 0) into `image`, which is resized; adds to `statistics`. Where the
+  /// input's `stop` asked to end meanwhile, only `image.finished_tiles` hold what the pass is to
+  /// be.
+  virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
+
+  /// What was chosen; of groups of lights, for the first.
+  virtual const Choices& choices() const = 0;
+};
+
+/// The passes of a frame under all of its lights:
+///   choices = choose(input), spec = schedule(choices, pass), image = estimators[spec](spec).
+class FramePasses final : public PassRenderer {
+public:
+  FramePasses(const EstimatorType& type, const EstimatorInput& input);
+  FramePasses(const FramePasses&) = delete;
+
+  void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
+
+  const Choices& choices() const override { return choices_; }
+  /// Requires an estimator that shoots photons.
+  const PhotonPass& photons() const { return *photons_; }
+
+private:
+  Estimator& estimator(std::string_view name);
+
+  EstimatorInput input_;
+  PassWorlds worlds_;
+  Choices choices_;
+  std::optional<PhotonPass> photons_;
+  std::map<std::string_view, std::unique_ptr<Estimator>> estimators_; ///< made when first needed
+  bool pilot_counted_ = false;
+};
+
+/// The passes of the estimator that a scene names. Throws InputError for one that there is not.
+std::unique_ptr<PassRenderer> make_pass_renderer(const EstimatorType& type,
+                                                 const EstimatorInput& input);
+
+} // namespace vdbeam

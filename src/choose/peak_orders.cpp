@@ -1,0 +1,61 @@
+#include "choose/peak_orders.h"
+
+#include "phase/truncated_phase.h"
+#include "transport/similar_medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// The first order takes no larger share than this for a peak. With more, light that is scattered
+/// twice by small angles, towards which one looks at a sun through the medium, is too dark.
+constexpr float largest_first_peak = 0.6f;
+/// The same of passes that gather finally (docs/decisions.md).
+constexpr float largest_peak_of_gather = 0.55f;
+
+/// In media of this typical depth without the peak or more, the first order is the lowest; in
+/// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
+/// few times, and the truncation of each scattering shows (docs/decisions.md).
+constexpr double depth_of_lowest_order = 24;
+constexpr int most_order_for_thinness = 8;
+
+/// The lowest order that takes no larger share than this of any phase function for a peak.
+int lowest_order(const Medium& medium, float largest_peak) {
+  int lowest = least_truncation_order;
+  while (lowest < most_truncation_order &&
+         std::any_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
+           return truncate_peak(phase, lowest).forward > largest_peak;
+         }))
+    ++lowest;
+  return lowest;
+}
+
+/// The order of the first passes that gather along rays.
+double first_order(const Medium& medium) {
+  const int lowest = lowest_order(medium, largest_first_peak);
+  int highest = most_order_for_thinness;
+  // Not so high that there is no peak to take out.
+  while (highest > lowest &&
+         std::all_of(medium.phases.begin(), medium.phases.end(), [&](const PhaseFunction& phase) {
+           return truncate_peak(phase, highest).forward == 0;
+         }))
+    --highest;
+  const auto similar = highest > lowest ? similar_medium(medium, lowest) : nullptr;
+  if (!similar)
+    return lowest;
+  const double more = std::log2(depth_of_lowest_order / typical_depth(*similar));
+  return std::clamp<double>(lowest + more, lowest, highest);
+}
+
+} // namespace
+
+PeakOrders choose_peak_orders(const Medium& medium) {
+  const double along_rays = first_order(medium);
+  return {true, along_rays,
+          std::max<double>(along_rays, lowest_order(medium, largest_peak_of_gather))};
+}
+
+} // namespace vdbeam

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "choose/gather_plan.h"
+#include "choose/pilot/trial_tile.h"
+
+namespace vdbeam {
+
+/// What regression over pixels would do to what the tiles gather in narrow kernels, and from that
+/// to what walks find. `dark`: of the weights (trial_weight).
+RegressionTrial measure_regression(const EstimatorInput& input, const std::vector<TrialTile>& tiles,
+                                   double dark);
+
+} // namespace vdbeam

@@ -1,0 +1,85 @@
+#include "choose/schedule.h"
+
+#include "phase/truncated_phase.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+namespace vdbeam {
+
+namespace {
+
+/// How truncation shrinks from pass to pass.
+struct OrderGrowth {
+  int passes_of_first_order;
+  int factor; ///< the order grows by one when the number of passes has grown by this factor
+};
+/// Measured on backlit and on Mie clouds (docs/decisions.md): the bias of order 4 along rays is
+/// under the noise of 64 passes; of walks one order more halves the squared bias, so that it falls
+/// as fast as the noise.
+constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_gather{16, 2};
+
+/// The order of one pass of two is so much higher. A greater step would show the bias of truncation
+/// with less noise, and cost more noise of the picture.
+constexpr int order_step = 2;
+
+} // namespace
+
+int peak_order(const PeakOrders& first, int pass, bool gathers_finally) {
+  if (!first.taken_out)
+    return 0;
+  // Multiples of the golden ratio spread the pairs of passes of one more evenly.
+  const double spread = std::fmod(0.5 + 0.61803398875 * (pass / 2), 1.0);
+  int result = static_cast<int>((gathers_finally ? first.of_gather : first.along_rays) + spread);
+  const OrderGrowth growth = gathers_finally ? growth_of_gather : growth_along_rays;
+  for (std::int64_t until = growth.passes_of_first_order; pass >= until; until *= growth.factor)
+    ++result;
+  // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
+  // first as often as the second (Thue-Morse sequence): the moments of the shutter take turns too.
+  result = std::min(result, most_truncation_order - order_step);
+  const bool higher = std::popcount(static_cast<unsigned>(pass)) % 2 == 1;
+  return higher ? result + order_step : result;
+}
+
+float radius_scale(int pass, double alpha) {
+  double squared = 1;
+  for (int i = 1; i <= pass; ++i)
+    squared *= (i + alpha) / (i + 1);
+  return static_cast<float>(std::sqrt(squared));
+}
+
+PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pass) {
+  const bool gathers = choices.gathers_finally(pass);
+  PassSpec spec;
+  spec.pass = pass;
+  spec.estimator = gathers ? EstimatorType::gather.name : choices.estimator;
+  spec.peak_order = peak_order(choices.peak, pass, gathers);
+  spec.kernel_scale = radius_scale(pass, settings.alpha);
+  spec.neighbours = choices.photons.neighbours;
+  spec.light_paths = choices.photons.paths;
+  if (!gathers)
+    return spec;
+  if (settings.neighbours == 0)
+    spec.neighbours *= neighbours_of_gather;
+  spec.regression_radius = choices.gather->regression_radius(pass);
+  spec.gather_walks = choices.gather->walks(pass);
+  return spec;
+}
+
+std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& settings) {
+  constexpr int passes_without_limit = 1024;
+  const int last = settings.passes.value_or(passes_without_limit) - 1;
+  std::set<int> passes{0, last};
+  for (int pass = 1; pass < last; pass *= 2)
+    passes.insert({pass, std::min(last, pass + 1)}); // truncation takes turns from pass to pass
+  if (choices.gather && choices.gather->first <= last)
+    passes.insert(choices.gather->first);
+  std::vector<PassSpec> list;
+  for (const int pass : passes)
+    list.push_back(schedule(choices, settings, pass));
+  return list;
+}
+
+} // namespace vdbeam

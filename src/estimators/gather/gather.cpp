@@ -1,0 +1,42 @@
+#include "estimators/gather/gather.h"
+
+#include "estimators/estimator_table.h"
+#include "estimators/gather/gather_pass.h"
+#include "photons/blur_probe.h"
+
+namespace vdbeam {
+
+void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
+  photons_.trace_and_build(spec, KernelDomain::ball, statistics);
+  BlurProbe blur(input_, photons_);
+  GatherPass walks(input_, photons_, spec);
+  shade_tiles(
+      walks.input(), photons_, spec.pass, true, image, statistics,
+      [&](TileScratch& scratch, const RngKey& key) { walks.gather(scratch, key, blur, image); },
+      nullptr); // no ray goes on behind a surface: there are none
+  walks.fit(blur, image);
+  image.blur = blur.take();
+  image.truncation = truncation(photons_.world().medium);
+  photons_.release();
+}
+
+namespace {
+
+constexpr std::string_view gather_keys[] = {
+    "photons",    "store",      "direct", "kernel",   "kernel_shape", "radius",      "neighbours",
+    "min_radius", "max_radius", "alpha",  "thinning", "bias_rays",    "forward_peak"};
+
+} // namespace
+
+const EstimatorKind gather_estimator{
+    .name = "gather",
+    .help = "final gathering: photons, gathered where random walks from the camera ray arrive; "
+            "along camera rays where surfaces or a limit of bounces exclude that",
+    .unbiased = false,
+    .stages = gather_stages,
+    .keys = gather_keys,
+    .make = [](const EstimatorInput& input, PhotonPass* photons) -> std::unique_ptr<Estimator> {
+      return std::make_unique<GatherEstimator>(input, *photons);
+    }};
+
+} // namespace vdbeam

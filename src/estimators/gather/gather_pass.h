@@ -1,0 +1,50 @@
+#pragma once
+
+#include "estimators/gather/final_gather.h"
+#include "estimators/gather/regression.h"
+#include "estimators/tile_shading.h"
+#include "photons/photon_pass.h"
+#include "vdbeam/pass_spec.h"
+
+#include <span>
+
+namespace vdbeam {
+
+class BlurProbe;
+
+/// The camera side of a pass that gathers finally: walks from the rays of all pixels, and then the
+/// fit of what they found to the pixels around.
+class GatherPass {
+public:
+  /// The arguments must outlive this. The picture has as many pixels as the camera.
+  GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec);
+
+  /// The input, its window widened to the pixels to which those that are wanted are fitted.
+  const EstimatorInput& input() const { return wide_; }
+
+  /// Sends the walks of a tile's rays; of any thread, each tile once.
+  void gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image);
+
+  /// After all tiles: adds the fitted light to `image`, which has the pixels' opacity and depth.
+  /// Tiles around which some were not finished are no longer finished themselves.
+  void fit(BlurProbe& blur, PassImage& image) const;
+
+  /// What a pass takes beyond its picture; layers of volumes twice.
+  static constexpr std::size_t bytes_per_pixel() { return 2 * sizeof(Rgb); }
+
+private:
+  void fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const;
+  /// The weighted sum of what the walks of pixels found.
+  GatheredLight fitted(std::span<const PixelRegression::Share> shares) const;
+  bool finished_around(int column, int row, const PassImage& image) const;
+
+  EstimatorInput wide_;
+  PixelRegion window_; ///< of pixels that are wanted
+  const PhotonPass& photons_;
+  PixelRegression regression_, narrow_; ///< the latter shows how much the former blurs
+  float blur_over_difference_; ///< all that the fit blurs over what it blurs beyond the narrow one
+  int walks_;                  ///< of a ray
+  PassImage walked_;           ///< what the walks of each pixel gathered
+};
+
+} // namespace vdbeam
