@@ -165,15 +165,16 @@ constexpr FeatureCondition shadow_lattice_conditions[] = {
     {shoots_no_photons, "the estimator shoots no photons"},
     {[](const Facts& facts) { return facts.input.world.medium.empty(); }, "there is no medium"},
     {[](const Facts& facts) { return facts.input.world.medium.chromatic; },
-     "extinction differs between channels"},
-    {has_no_narrow_light, "no light has a single direction"}};
+     "extinction differs between channels"}};
 }
 const Feature shadow_lattice_feature{
     .name = "shadow lattice",
     .key = "",
     .help = "shadow rays go where lights of one direction reach the medium",
     .stage = Stage::shadow_rays,
-    .conditions = shadow_lattice_conditions};
+    .conditions = shadow_lattice_conditions,
+    .used = [](const Facts& facts, const Choices&) { return !has_no_narrow_light(facts); },
+    .unused = "no light has a single direction"};
 
 namespace {
 constexpr FeatureCondition boundary_share_conditions[] = {

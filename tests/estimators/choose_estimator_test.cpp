@@ -68,9 +68,9 @@ TEST(ChooseEstimator, PathInAThinMediumUnderAnEvenSky) {
   EXPECT_EQ(thin.choice.photons, nullptr);
 }
 
-TEST(ChooseEstimator, BeamInADeepMediumInTheSun) {
+TEST(ChooseEstimator, GatherInADeepMediumInTheSun) {
   const Choice deep(deep_in_the_sun());
-  EXPECT_EQ(deep.choice.type.name, "beam");
+  EXPECT_EQ(deep.choice.type.name, "gather");
   ASSERT_NE(deep.choice.photons, nullptr);
 }
 
@@ -125,14 +125,14 @@ TEST(ChooseEstimator, IsTheSameForAnyNumberOfThreads) {
 }
 
 /// The estimator that comes with the choice has its pilot behind it, and draws no other numbers.
-TEST(ChooseEstimator, GivesBeamsOwnPicture) {
+TEST(ChooseEstimator, GivesItsOwnPicture) {
   const MemoryScene scene = deep_in_the_sun();
   Choice made(scene);
   const TestFrame frame(scene);
   PassImage chosen, named;
   RenderStatistics statistics;
   made.choice.photons->render_pass(0, chosen, statistics);
-  frame.estimator()->render_pass(0, named, statistics);
+  make_pass_renderer(EstimatorType::automatic, frame.input())->render_pass(0, named, statistics);
   for (std::size_t i = 0; i < named.direct.size(); ++i)
     ASSERT_EQ(chosen.total(i), named.total(i)) << "pixel " << i;
 }

@@ -123,8 +123,8 @@ TEST(UnevenPixels, KeepTheirMeansAndLoseNoise) {
   MemoryScene plain = scene;
   plain.scene.render.final_gather = FinalGathering::never;
   constexpr int passes = 48;
-  const PassMeans fine = render_passes(scene, EstimatorType::beam, passes);
-  const PassMeans coarse = render_passes(plain, EstimatorType::beam, passes);
+  const PassMeans fine = render_passes(scene, EstimatorType::automatic, passes);
+  const PassMeans coarse = render_passes(plain, EstimatorType::automatic, passes);
   EXPECT_GT(fine.statistics.camera_rays, coarse.statistics.camera_rays);
   EXPECT_LT(fine.statistics.camera_rays, 3 * coarse.statistics.camera_rays);
   const auto compare = [](const Samples& a, const Samples& b) {

@@ -69,7 +69,7 @@ MemoryScene probe(const Equilibrium& e) {
   MemoryScene scene = cavity(e);
   scene.look({0, 0, 2000}, {0, 0, 0}, 0.001, 4, 4);
   RenderSettings& render = scene.scene.render;
-  render.photons = 20000;
+  render.photons = e.depth < 100 ? 20000 : 100000; // of short paths, where most is absorbed
   render.thinning = PhotonThinning::even;
   render.kernel = KernelRadius::fixed;
   render.radius = 0.25;

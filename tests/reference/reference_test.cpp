@@ -79,7 +79,7 @@ TEST_P(SlowReference, PathAgrees) {
 }
 
 TEST_P(SlowReference, BeamAgrees) {
-  const Outcome outcome = render(GetParam(), EstimatorType::beam, 24);
+  const Outcome outcome = render(GetParam(), EstimatorType::automatic, 24);
   test::expect_mean(outcome.means, 1, 0.005);
   EXPECT_LT(outcome.means.error(), 0.002);
   // The noise of both, and the bias of the default's wide kernels: after so few passes up to 2.5 %

@@ -37,13 +37,13 @@ TEST(Auto, IsTheDefault) {
   EXPECT_EQ(RenderSettings().estimator.name, "auto");
 }
 
-TEST(Auto, RendersACloudByBeam) {
+TEST(Auto, RendersACloudByGather) {
   const Scene scene = small_cloud(EstimatorType::automatic);
   const RenderResult result = render(scene);
-  EXPECT_EQ(result.plan.estimator, "beam");
-  EXPECT_EQ(report_json(scene, result, {})["plan"]["estimator"], "beam");
+  EXPECT_EQ(result.plan.estimator, "gather");
+  EXPECT_EQ(report_json(scene, result, {})["plan"]["estimator"], "gather");
   EXPECT_FALSE(result.plan.unbiased);
-  expect_same_picture(result.image, render(small_cloud(EstimatorType::beam)).image);
+  expect_same_picture(result.image, render(small_cloud(EstimatorType::gather)).image);
 }
 
 TEST(Auto, RendersHazeUnderAnEvenSkyByPath) {

@@ -140,7 +140,7 @@ TEST_P(ErrorCalibrationSlow, TrueErrorLiesInItsIntervalAndTargetsAreMet) {
   settings.passes = 300;
   RenderResult truth = render_seed(scene, 12345);
   const double truth_noise = truth.passes.back().noise_estimate;
-  settings.estimator = EstimatorType::beam;
+  settings.estimator = EstimatorType::automatic;
   settings.passes = 11;
   settings.bias_rays = 0.2;
   FrameSettings frame;

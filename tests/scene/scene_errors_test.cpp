@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadScene{
             "[render]\nestimator = 'beams'\n",
-            "s.toml:2: render.estimator must be auto, beam, march or path, got \"beams\"; did you "
+            "s.toml:2: render.estimator must be auto, beam, gather, march or path, got \"beams\"; did you "
             "mean beam?"},
         BadScene{
             "[[light]]\ntype = 'sun'\n",
