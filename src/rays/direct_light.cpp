@@ -2,6 +2,7 @@
 
 #include "medium/distance_sampling.h"
 #include "medium/equi_angular.h"
+#include "transport/next_event.h"
 
 #include <optional>
 
@@ -58,17 +59,16 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
   const bool surrounds = world.lights.traits(index).surrounds;
   const PhaseFunction& phase = single.phase;
   Rgb sum;
-  const float u = rng.uniform(), v = rng.uniform();
-  const IncidentSample sample = light.sample_incident(point, u, v);
-  if (max_component(sample.value) > 0) {
-    const float cosine = dot(direction, sample.wi), p = phase.evaluate(cosine);
-    const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
+  if (const auto shadow_ray = sample_shadow_ray(
+          light, point, rng, [&](const Vec3f& wi) { return phase.evaluate(dot(direction, wi)); })) {
+    const Vec3f& wi = shadow_ray->direction;
+    const float cosine = dot(direction, wi), p = phase.evaluate(cosine), mis = shadow_ray->weight;
+    if (p * mis > 0 && unoccluded(world, Vec3d(point), wi, shadow_ray->distance)) {
       ++shadow_rays;
       Rgb taken_out;
       const Rgb through = estimate_transmittance(
-          world.medium, {{point, sample.wi}, 0, sample.distance}, rng.uniform(), &taken_out);
-      sum += sample.value * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
+          world.medium, {{point, wi}, 0, shadow_ray->distance}, rng.uniform(), &taken_out);
+      sum += shadow_ray->light * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
     }
   }
   if (light.is_delta())

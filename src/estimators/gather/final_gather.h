@@ -32,12 +32,18 @@ public:
                        Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
                        const VolumeLights& of_volumes = {}) const;
 
-private:
   struct Walk;
 
+  // What happens at the collisions of a flight (step_flight).
+  static constexpr bool bounds_null_collisions = true;
+  void meet(Walk& walk, const Collision& hit) const;
+  bool pass(Walk&) const { return true; }
+  bool collide(Walk& walk, const Collision& hit) const;
+  bool leave(Walk& walk) const;
+
+private:
   void follow(Walk& walk) const;
-  std::optional<Collision> fly(Walk& walk) const;
-  void meet_light(Walk& walk, float begin, float end) const;
+  void meet_light(Walk& walk, float end) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume) const;
 
