@@ -174,6 +174,7 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
     outcome.status = "skipped";
     outcome.reason = "its finished image is there";
     renderer_.remove_side_files(outcome.frame);
+    renderer_.remove_dead_files(outcome.frame);
     return tell(outcome.reason);
   }
   if (loaded.frame.scene.black) {

@@ -8,6 +8,7 @@
 #include "image/deep_check.h"
 #include "image/output_formats.h"
 #include "machine/stopwatch.h"
+#include "machine/temporary_files.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
 #include "report/side_files.h"
@@ -125,6 +126,12 @@ void FrameRenderer::remove_side_files(int frame) const {
   for (const std::string& pattern : options_.parts)
     if (const std::string part = substitute_frame(pattern, frame); holds_film(part))
       std::filesystem::remove(part, ignored);
+}
+
+void FrameRenderer::remove_dead_files(int frame) const {
+  for (const OutputKind& kind : output_kinds())
+    if (const std::string file = path(kind.output, frame); !file.empty() && !is_stdout(file))
+      remove_dead_temporaries(std::filesystem::path(file).parent_path().string());
 }
 
 std::string FrameRenderer::region_text() const {
