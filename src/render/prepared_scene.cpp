@@ -179,10 +179,12 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       read.identity.clear(); // its field is not kept
     prepared->volumes.push_back(std::move(read));
   }
+  return_freed_memory();
   prepared->seconds_read = watch.restart();
   prepared->world = std::make_shared<const World>(
       build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
                   previous ? previous->world.get() : nullptr));
+  return_freed_memory();
   prepared->seconds_build = watch.seconds();
   prepared->facts.notes.insert(prepared->facts.notes.end(), axis_notes.begin(), axis_notes.end());
   note_velocities(scene, *prepared);
