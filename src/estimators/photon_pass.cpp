@@ -18,13 +18,16 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PhotonPlan (*make_plan)(cons
   const World& world = *world_;
   if (input.plan.needs(Stage::photons) && !plan_.trial) // kernels were tried for the paths it has
     plan_.paths = paths_with_hidden_lights(input.in(world), plan_);
-  // One for many passes costs little; a moment of the shutter may serve a single pass.
-  const double rays_per_pixel = input.of_scene ? 1.0 / 16 : 2;
+  const double rays_per_pixel = shadow_rays_per_pixel(input.of_scene != nullptr);
   if (input.plan.needs(Stage::shadow_rays) && !world.medium.empty() && !world.medium.chromatic &&
       !input.stopped())
     shadows_ = make_shadow_lattices(world, plan_.sampled_lights,
                                     rays_per_pixel * static_cast<double>(input.camera.width()) *
                                         input.camera.height());
+}
+
+double PhotonPass::shadow_rays_per_pixel(bool of_moment) {
+  return of_moment ? 1.0 / 16 : 2;
 }
 
 /// The pilot belongs to no pass; its counts go with the first.
