@@ -2,6 +2,7 @@
 
 #include "estimators/blur_probe.h"
 #include "estimators/photon_cache.h"
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
 
 #include <cmath>
@@ -87,6 +88,7 @@ void PhotonPass::make_maps(int pass, const RadiusSettings& radii, RenderStatisti
   }
   const Stopwatch watch;
   TracedPhotons traced = trace_photons(*world_, settings);
+  return_freed_memory(); // the threads' own lists, as large as the one that was made of them
   statistics.trace += watch.seconds();
   const bool stopped = input_.stopped();
   if (stopped)

@@ -1,8 +1,11 @@
 #include "render/memory_model.h"
 
+#include "estimators/estimator_table.h"
 #include "estimators/photon_pass.h"
+#include "estimators/plane_layers.h"
 #include "estimators/walk_pass.h"
 #include "film/deep_film.h"
+#include "film/film.h"
 #include "image/deep_layout.h"
 #include "machine/threads.h"
 #include "photonmap/photon_blocks.h"
@@ -153,12 +156,13 @@ private:
     const double count = photons();
     const bool directions = plan_.needs(Stage::photon_directions);
     const int channels = plan_.needs(Stage::photon_color) ? 3 : 1;
-    // What threads traced, which the C library keeps once it is joined.
-    const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions) +
-                             PhotonList::bytes_per_photon(directions);
+    const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions);
     add("photons", "render.photons", "ask for fewer photons and more passes", 0, times(count, each),
         0);
-    if (scene_.render.seeds == SeedPolicy::correlated && count > 0) {
+    // Frames of which nothing but the camera moves, for which photons are stored evenly, share
+    // them.
+    if (scene_.render.seeds == SeedPolicy::correlated &&
+        scene_.render.thinning == PhotonThinning::even && count > 0) {
       const std::uint64_t maps = times(count * scene_.render.passes.value_or(1 << 20),
                                        PhotonBlocks::bytes_per_photon(channels, directions));
       const std::uint64_t kept = std::min(maps, photon_cache_capacity());
@@ -168,7 +172,8 @@ private:
 
   /// Each group has shadows of its own lights, each moment of the shutter coarse ones.
   void add_shadows() {
-    if (!plan_.needs(Stage::shadow_rays))
+    if (!plan_.needs(Stage::shadow_rays) ||
+        !estimator_kind(scene_.render.estimator).shoots_photons())
       return;
     Boxd bounds;
     for (const SeenCells& seen : volumes_.seen)
@@ -189,8 +194,11 @@ private:
     const bool walks = plan_.needs(Stage::photons) && plan_.needs(Stage::beam_query) &&
                        scene_.render.final_gather != FinalGathering::never &&
                        scene_.surfaces.empty();
-    const std::uint64_t film = plan_.film_bytes;
-    add("film", "image", "ask for a smaller picture", 0, film, film / 3);
+    // The picture that is written is developed once photons are gone.
+    const std::uint64_t film = plan_.film_bytes,
+                        developed = pixels_ * (Film::developed_bytes_per_pixel(scene_.glows()) +
+                                               sizeof(float) * plane_names(scene_).size());
+    add("film", "image", "ask for a smaller picture", 0, film - developed, film);
     if (walks)
       add("walks", "image", "ask for a smaller picture", 0,
           pixels_ * PassImage::bytes_per_pixel(scene_.glows()), 0);

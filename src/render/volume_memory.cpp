@@ -23,8 +23,8 @@ constexpr std::uint64_t leaf_overhead = 112;
 constexpr std::uint64_t reader_bytes = std::uint64_t{8} << 20;
 /// Ranges of a leaf's values, and its origin, while bricks are made.
 constexpr std::uint64_t leaf_range_bytes = 64 + 12;
-/// Columns of a refined field grow as vectors do, by doubling.
-constexpr double growing = 1.5;
+/// A refined field is put together from columns, which hold its values once more.
+constexpr double while_refined = 2;
 /// Bricks that a velocity brings something to, beside those of the grid at rest.
 constexpr double moved_share = 1.15;
 
@@ -33,6 +33,10 @@ struct FieldMemory {
   CellSet set;
   std::uint64_t bytes = 0, peak = 0;
   Affine to_world; ///< of its cells
+  /// Of the grid itself, before it is refined and displaced: by its voxels it is known best what
+  /// the camera sees.
+  CellSet grid;
+  Affine grid_to_world;
 };
 
 std::uint64_t times(double factor, std::uint64_t bytes) {
@@ -67,7 +71,8 @@ public:
     field.set = CellSet(shape, 1, 0, wanted);
     field.bytes = field_bytes(field.set);
     field.peak = reading_bytes(shape, field.set);
-    field.to_world = cells_to_world(header.index_to_world, 1);
+    field.to_world = field.grid_to_world = cells_to_world(header.index_to_world, 1);
+    field.grid = field.set;
     if (volume_.interpolation == Interpolation::cubic)
       refine(shape, wanted, header.index_to_world, field);
     if (volume_.noise.amplitude > 0)
@@ -106,7 +111,7 @@ private:
 
   void refine(const GridShape& shape, const std::optional<WantedBox::Voxels>& wanted,
               const Affine& index_to_world, FieldMemory& field) {
-    replace(field, CellSet(shape, 2, 3, wanted), growing);
+    replace(field, CellSet(shape, 2, 3, wanted), while_refined);
     field.to_world = cells_to_world(index_to_world, 0.5);
   }
 
@@ -151,10 +156,7 @@ public:
       area_ += columns[a] / 3 * length(cross(edge((a + 1) % 3), edge((a + 2) % 3)));
     const Rgb& by_channel = volume.extinction_scale;
     const double scale = static_cast<double>(by_channel.x + by_channel.y + by_channel.z) / 3;
-    // A cell of the field as it lies in the file has 8^3 voxels, one that was refined 4^3 of them.
-    const double width = volume.interpolation == Interpolation::cubic
-                             ? 0.5 * DensityField::cell_width
-                             : DensityField::cell_width;
+    constexpr double width = DensityField::cell_width;
     const double voxel = std::abs(dot(edge(0), cross(edge(1), edge(2)))) / (width * width * width);
     opacity_ += volume.extinction * scale * shape.value_sum * voxel;
   }
@@ -205,15 +207,15 @@ void take_density(const VolumeSettings& volume, VolumeEstimate& estimate, Volume
     memory.peak = std::max(memory.peak, memory.kept + colors);
   }
   all.cells += field.set.cells();
-  const Affine to_world = Affine::from_matrix(volume.transform).after(field.to_world);
-  depth.add(volume, estimate.shape_of(volume.density), field.set, to_world);
-  all.seen.push_back({std::move(field.set), to_world, volume.absorbs_or_scatters()});
+  const Affine to_world = Affine::from_matrix(volume.transform).after(field.grid_to_world);
+  depth.add(volume, estimate.shape_of(volume.density), field.grid, to_world);
+  all.seen.push_back({std::move(field.grid), to_world, volume.absorbs_or_scatters()});
 }
 
 void take_emission(const VolumeSettings& volume, VolumeEstimate& estimate, VolumesMemory& all,
                    VolumeMemory& memory) {
   std::uint64_t made_from = 0;
-  CellSet largest;
+  CellSet largest, seen;
   Affine place;
   for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
     if (name.empty())
@@ -223,7 +225,8 @@ void take_emission(const VolumeSettings& volume, VolumeEstimate& estimate, Volum
     made_from += field.bytes;
     if (field.set.count() > largest.count()) {
       largest = std::move(field.set);
-      place = field.to_world;
+      seen = std::move(field.grid);
+      place = field.grid_to_world;
     }
   }
   const std::uint64_t glow = largest.count() * brick_bytes * 3 + largest.cells() * 4;
@@ -232,8 +235,7 @@ void take_emission(const VolumeSettings& volume, VolumeEstimate& estimate, Volum
   memory.in_file = std::max(memory.in_file, made_from);
   if (memory.moves)
     memory.sources += made_from;
-  all.seen.push_back(
-      {std::move(largest), Affine::from_matrix(volume.transform).after(place), false});
+  all.seen.push_back({std::move(seen), Affine::from_matrix(volume.transform).after(place), false});
 }
 
 std::string reason(const VolumeSettings& volume) {
