@@ -97,19 +97,20 @@ std::vector<ActiveBox> find_leaves(const Tree& tree, bool with_values, ShapeHead
     header.active_voxels += leaf->onVoxelCount();
     double sum = 0;
     std::uint64_t blocks = 0;
+    openvdb::CoordBBox box;                                         // of what it holds
     for (openvdb::Index i = 0; i < Tree::LeafNodeType::SIZE; ++i) { // x-major, 8 along an axis
       const double value = with_values ? light_of(leaf->getValue(i)) : 0;
       sum += value;
-      if (with_values ? value > 0 : leaf->isValueOn(i))
+      if (with_values ? value > 0 : leaf->isValueOn(i)) {
         blocks |= std::uint64_t{1} << (16 * (i >> 7) + 4 * (i >> 4 & 3) + (i >> 1 & 3));
+        box.expand(leaf->offsetToGlobalCoord(i));
+      }
     }
     if (with_values && sum == 0)
       continue;
     header.value_sum += sum;
-    openvdb::CoordBBox box;
-    leaf->evalActiveBoundingBox(box);
     // A leaf without active voxels may hold values all the same.
-    boxes.push_back(box_of(leaf->onVoxelCount() > 0 ? box : leaf->getNodeBoundingBox()));
+    boxes.push_back(box_of(blocks != 0 ? box : leaf->getNodeBoundingBox()));
     if (blocks != 0)
       boxes.back().blocks = blocks;
   }
