@@ -134,6 +134,7 @@ int Batch::run() {
     if (read_ahead.deferred) {
       if (!read_ahead.fits_after)
         loaded.reset();
+      return_freed_memory();
       next = load_aside(frames_[i], loaded, true);
       read_ahead = wait_for(next);
     }

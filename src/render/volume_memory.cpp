@@ -215,21 +215,20 @@ void take_density(const VolumeSettings& volume, VolumeEstimate& estimate, Volume
 void take_emission(const VolumeSettings& volume, VolumeEstimate& estimate, VolumesMemory& all,
                    VolumeMemory& memory) {
   std::uint64_t made_from = 0;
-  CellSet largest, seen;
+  CellSet glows, seen;
   Affine place;
+  // What glows has the shape of the intensity where there is one.
   for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
     if (name.empty())
       continue;
     FieldMemory field = estimate.source(name);
     memory.peak = std::max(memory.peak, memory.kept + made_from + field.peak);
     made_from += field.bytes;
-    if (field.set.count() > largest.count()) {
-      largest = std::move(field.set);
-      seen = std::move(field.grid);
-      place = field.grid_to_world;
-    }
+    glows = std::move(field.set);
+    seen = std::move(field.grid);
+    place = field.grid_to_world;
   }
-  const std::uint64_t glow = largest.count() * brick_bytes * 3 + largest.cells() * 4;
+  const std::uint64_t glow = glows.count() * brick_bytes * 3 + glows.cells() * 4;
   memory.peak = std::max(memory.peak, memory.kept + made_from + glow);
   memory.kept += glow;
   memory.in_file = std::max(memory.in_file, made_from);
