@@ -15,8 +15,9 @@
 namespace vdbeam {
 namespace {
 
-/// Values of so many voxels are read, which takes a moment.
-constexpr std::uint64_t most_values = std::uint64_t{1} << 24;
+/// Values of so many voxels are read, which takes a moment, and little memory beside the frame that
+/// is being rendered.
+constexpr std::uint64_t most_values = std::uint64_t{1} << 22;
 
 /// Reads the tree of a grid without its voxels' values, which lie behind it in the file, unless
 /// they are few. OpenVDB's own File does that for delayed loading only.
