@@ -201,7 +201,14 @@ std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
   if (!options_.merged.empty() &&
       why(substitute_frame(options_.merged, loaded.frame()), image).empty())
     return "";
-  return why(output(loaded.frame()), part);
+  const std::string reason = why(output(loaded.frame()), part);
+  const std::string report = path(Output::report, loaded.frame());
+  std::error_code error;
+  // A part is written before its report, which a kill may have kept from being written.
+  if (reason.empty() && !report.empty() && !is_stdout(report) &&
+      !std::filesystem::exists(report, error))
+    return "has no report";
+  return reason;
 }
 
 void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
