@@ -112,10 +112,8 @@ Json plan_json(const RenderPlan& plan) {
           {"choice", plan.choice},
           {"stages", std::move(stages)},
           {"memory",
-           {{"volumes", plan.volume_bytes},
-            {"photons", plan.photon_bytes},
+           {{"photons", plan.photon_bytes},
             {"film", plan.film_bytes},
-            {"moments", plan.moment_bytes},
             {"surfaces", plan.surface_bytes},
             {"deep", plan.deep_bytes}}}};
 }
