@@ -1,6 +1,7 @@
 #include "machine/memory.h"
 #include "render/memory_model.h"
 #include "render/read_volumes.h"
+#include "vdbeam/error.h"
 #include "volume/edited_field.h"
 #include "volume/emission_field.h"
 #include "volume/vector_reader.h"
@@ -122,6 +123,9 @@ private:
       const Vec3d& row = from_world.rows[static_cast<std::size_t>(a)];
       const double most =
           volume_.noise.amplitude * (std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+      constexpr double far = 1 << 24; // cells, more than any table has
+      if (!(most < far))
+        throw FrameError(volume_.file + ": is displaced too far for any table of its blocks");
       lower[a] = static_cast<int>(std::floor(-0.25 - most));
       upper[a] = static_cast<int>(std::floor(1.125 + most));
     }

@@ -1,6 +1,7 @@
 #include "render/read_volumes.h"
 #include "support/ball_scene.h"
 #include "vdbeam/error.h"
+#include "vdbeam/memory_plan.h"
 #include "volume/edited_field.h"
 
 namespace vdbeam {
