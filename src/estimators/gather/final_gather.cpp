@@ -60,7 +60,7 @@ FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Photo
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
                                   float ray_weight, Rng& rng, RenderStatistics& counts,
-                                  const DeepRay& deep, const VolumeLights& of_volumes) const {
+                                  const RaySink& sink) const {
   const Medium& medium = world_.medium;
   DistanceSampler distances(medium, ray, profile);
   const float stratum = 1 / static_cast<float>(walks);
@@ -86,8 +86,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
     ++counts.gather_walks;
     const float counted = std::copysign(stratum * ray_weight, weight);
     const Rgb light = (walk.found.direct + walk.found.indirect) * counted;
-    deep.add_light_at(point.t, light);
-    of_volumes.add(volume.setting, light);
+    sink.add(point.t, volume.setting, light);
     sum.direct += walk.found.direct * counted;
     sum.indirect += walk.found.indirect * counted;
     sum.blur += walk.found.blur * counted;

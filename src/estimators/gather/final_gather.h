@@ -1,7 +1,6 @@
 #pragma once
 
-#include "layers/deep_ray.h"
-#include "layers/ray_layers.h"
+#include "layers/ray_sink.h"
 #include "photons/photon_plan.h"
 
 namespace vdbeam {
@@ -29,8 +28,7 @@ public:
   /// So many walks from the ray, whose profile is not empty, their distances stratified.
   /// `ray_weight`: of the ray among those of its pixel.
   GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float ray_weight,
-                       Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
-                       const VolumeLights& of_volumes = {}) const;
+                       Rng& rng, RenderStatistics& counts, const RaySink& sink = {}) const;
 
   struct Walk;
 

@@ -1,7 +1,6 @@
 #include "estimators/path/path.h"
 
 #include "estimators/estimator_table.h"
-#include "layers/deep_ray.h"
 #include "machine/stopwatch.h"
 #include "medium/distance_sampling.h"
 #include "rays/caught_shadow.h"
@@ -108,10 +107,9 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
-  image.direct[target] =
-      direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_, rng,
-                   scratch.counts.shadow_rays, {}, DeepRay(world, camera, target, image),
-                   VolumeLights(input_.layers, target, image), input_.stop);
+  image.direct[target] = direct_light(
+      world, camera.ray(), profile, {shadow_rays_, direct_samples_, nullptr, input_.stop}, rng,
+      scratch.counts.shadow_rays, RaySink(world, camera, input_.layers, target, image));
   DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < walks_per_ray_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);
