@@ -112,32 +112,40 @@ bool RayLayers::is_light(std::size_t plane) const {
   return plane_layer_of(names_[plane]).name == "volume_" && !names_[plane].ends_with(".A");
 }
 
-void RayLayers::record(const World& world, const CameraRay& camera, const DepthProfile& profile,
-                       float left, float shadow, float depth, std::size_t pixel,
-                       PassImage& image) const {
-  const auto add = [&](int plane, double value) {
+namespace {
+
+/// A point of render space in the world.
+Vec3d in_world(const RenderSpace& space, const Vec3d& point) {
+  return point / space.scale + space.origin;
+}
+
+} // namespace
+
+/// The planes' values at a pixel.
+class RayLayers::Planes {
+public:
+  Planes(std::size_t pixel, PassImage& image) : pixel_(pixel), image_(image) {}
+
+  /// `plane`: -1 for one that nobody asks for.
+  void add(int plane, double value) const {
     if (plane >= 0)
-      image.planes[static_cast<std::size_t>(plane)][pixel] += static_cast<float>(value);
-  };
-  const auto add_vector = [&](int first, const Vec3d& value) {
+      image_.planes[static_cast<std::size_t>(plane)][pixel_] += static_cast<float>(value);
+  }
+  void add(int first, const Vec3d& value) const {
     for (int a = 0; a < 3 && first >= 0; ++a)
       add(first + a, value[a]);
-  };
-  const Medium& medium = world.medium;
-  const Ray& ray = camera.ray();
-  const double scale = world.space.scale;
-  const auto in_world = [&](const Vec3d& point) { return point / scale + world.space.origin; };
-  // Of the surface at the end, what the ray shows of it.
-  float behind = 0;
-  if (camera.hit) {
-    const Material& material = world.surfaces->material(*camera.hit);
-    if (material.is_holdout())
-      add(holdout_, static_cast<double>(left));
-    else
-      behind = material.is_shadow_catcher() ? left * shadow : left;
-    if (material.is_shadow_catcher())
-      add(shadow_, static_cast<double>(behind));
   }
+
+private:
+  std::size_t pixel_;
+  PassImage& image_;
+};
+
+void RayLayers::record(const World& world, const CameraRay& camera, const DepthProfile& profile,
+                       const Seen& seen, std::size_t pixel, PassImage& image) const {
+  const Planes planes(pixel, image);
+  const Medium& medium = world.medium;
+  const float behind = record_surface(world, camera, seen, planes);
   const float through = profile.empty() ? 0 : opacity_at(medium, profile, profile.knots() - 1);
   const float opacity = through + behind;
   if (!(opacity > 0))
@@ -146,43 +154,70 @@ void RayLayers::record(const World& world, const CameraRay& camera, const DepthP
     const float end = behind > 0 ? camera.whole().t_end : profile.empty() ? 0 : profile.back();
     return (static_cast<double>(distance_of(medium, profile, share * opacity, end)) +
             camera.shift) /
-           scale;
+           world.space.scale;
   };
   if (near_ >= 0)
-    add(near_, opacity * distance(near_share));
+    planes.add(near_, opacity * distance(near_share));
   if (far_ >= 0)
-    add(far_, opacity * distance(far_share));
+    planes.add(far_, opacity * distance(far_share));
   if (position_ >= 0) {
-    const Vec3d eye = in_world(Vec3d(ray.origin) - Vec3d(ray.direction) * camera.shift);
-    add_vector(position_, eye * static_cast<double>(opacity) +
-                              Vec3d(ray.direction) * static_cast<double>(depth));
+    const Ray& ray = camera.ray();
+    const Vec3d eye =
+        in_world(world.space, Vec3d(ray.origin) - Vec3d(ray.direction) * camera.shift);
+    planes.add(position_, eye * static_cast<double>(opacity) +
+                              Vec3d(ray.direction) * static_cast<double>(seen.depth));
   }
   if (camera.hit && motion_ >= 0 && behind > 0) {
     const SceneMotion::Pixels moved = scene_motion_->of_mesh(
-        static_cast<std::size_t>(camera.hit->surface), in_world(camera.hit->position));
+        static_cast<std::size_t>(camera.hit->surface), in_world(world.space, camera.hit->position));
     for (int a = 0; a < 2; ++a)
-      add(motion_ + a, behind * moved[static_cast<std::size_t>(a)]);
+      planes.add(motion_ + a, behind * moved[static_cast<std::size_t>(a)]);
   }
+  record_pieces(world, camera, profile, planes);
+}
+
+/// The planes of the surface at the ray's end; returns what the ray shows of it.
+float RayLayers::record_surface(const World& world, const CameraRay& camera, const Seen& seen,
+                                const Planes& planes) const {
+  if (!camera.hit)
+    return 0;
+  const Material& material = world.surfaces->material(*camera.hit);
+  if (material.is_holdout()) {
+    planes.add(holdout_, static_cast<double>(seen.left));
+    return 0;
+  }
+  if (!material.is_shadow_catcher())
+    return seen.left;
+  const float behind = seen.left * seen.shadow;
+  planes.add(shadow_, static_cast<double>(behind));
+  return behind;
+}
+
+/// The planes of the medium that the ray meets, piece by piece of its profile.
+void RayLayers::record_pieces(const World& world, const CameraRay& camera,
+                              const DepthProfile& profile, const Planes& planes) const {
   if (motion_ < 0 && gradient_ < 0 && !tells_volumes_)
     return;
+  const Medium& medium = world.medium;
+  const double scale = world.space.scale;
   for_each_piece(medium, profile, [&](const Piece& piece) {
-    const Vec3f point = ray.at(piece.t);
+    const Vec3f point = camera.ray().at(piece.t);
     Vec3f gradient;
     for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
       const Volume& volume = medium.volumes[v];
       const auto share = static_cast<double>(piece.added[v]);
       if (volume_planes_[volume.setting] >= 0)
-        add(volume_planes_[volume.setting] - 1, share);
+        planes.add(volume_planes_[volume.setting] - 1, share);
       if (gradient_ >= 0)
         gradient += extinction_gradient(volume, point);
       if (motion_ < 0 || !(share > 0))
         continue;
       const SceneMotion::Pixels moved =
-          scene_motion_->of_volume(volume.setting, in_world(Vec3d(point)));
-      add(motion_, share * moved[0]);
-      add(motion_ + 1, share * moved[1]);
+          scene_motion_->of_volume(volume.setting, in_world(world.space, Vec3d(point)));
+      planes.add(motion_, share * moved[0]);
+      planes.add(motion_ + 1, share * moved[1]);
     }
-    add_vector(gradient_, Vec3d(gradient) * (scale * scale * static_cast<double>(piece.total)));
+    planes.add(gradient_, Vec3d(gradient) * (scale * scale * static_cast<double>(piece.total)));
   });
 }
 

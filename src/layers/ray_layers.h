@@ -24,13 +24,22 @@ public:
   /// Light adds up over groups of lights; all else is the same for each of them.
   bool is_light(std::size_t plane) const;
 
-  /// What the ray sees, but for the light of volumes. `left`: what the medium lets through of the
-  /// light behind; `shadow`: of the surface at its end, that of a shadow catcher; `depth`: what the
-  /// ray adds to PassImage::depth.
-  void record(const World& world, const CameraRay& camera, const DepthProfile& profile, float left,
-              float shadow, float depth, std::size_t pixel, PassImage& image) const;
+  /// What a ray's medium leaves of what lies behind it.
+  struct Seen {
+    float left;   ///< what the medium lets through of the light behind
+    float shadow; ///< of the surface at the ray's end, that of a shadow catcher
+    float depth;  ///< what the ray adds to PassImage::depth
+  };
+  /// What the ray sees, but for the light of volumes.
+  void record(const World& world, const CameraRay& camera, const DepthProfile& profile,
+              const Seen& seen, std::size_t pixel, PassImage& image) const;
 
 private:
+  class Planes;
+  float record_surface(const World& world, const CameraRay& camera, const Seen& seen,
+                       const Planes& planes) const;
+  void record_pieces(const World& world, const CameraRay& camera, const DepthProfile& profile,
+                     const Planes& planes) const;
   int find(const std::string& name) const;
 
   std::vector<std::string> names_;

@@ -158,9 +158,10 @@ HWY_INLINE hn::Mask<D16> reaches_cone(const PlacedPhotons& p, const SubtileFrame
 /// Place, size and knots of the hit photons.
 HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
                             const PlacedPhotons& p, hn::Mask<D16> hit, const LaneWriter& writer,
-                            std::size_t at, Candidates& out) {
+                            Candidates& out) {
   const D16 d;
   const I16 di;
+  const std::size_t at = out.count;
   const auto one = hn::Set(d, 1.0f), inverse_step = hn::Set(d, s.inverse_step);
   const auto inverse_radius = hn::Div(one, hn::IfThenElse(hit, p.radius, one));
   const auto u = hn::IfThenElse(hit, hn::Mul(p.u, inverse_radius), hn::Set(d, 1e9f));
@@ -195,8 +196,9 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
 
 /// What the phase function needs of the hit photons.
 HWY_INLINE void write_phase(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
-                            const LaneWriter& writer, std::size_t at, Candidates& out) {
+                            const LaneWriter& writer, Candidates& out) {
   const D16 d;
+  const std::size_t at = out.count;
   const int df = part.blocks.direction_field();
   const auto zero = hn::Zero(d);
   const auto dx = part.field(df), dy = part.field(df + 1), dz = part.field(df + 2);
@@ -230,9 +232,9 @@ HWY_INLINE void gather_candidates(const TileQuery& query, const float* reference
     // Where most lanes are hit it is cheaper to keep the others, moved out of reach, than to pack.
     const bool keep_all = 4 * hits >= 3 * hn::Lanes(d);
     const LaneWriter writer(hit, keep_all);
-    write_shape(query, s, part, placed, hit, writer, out.count, out);
+    write_shape(query, s, part, placed, hit, writer, out);
     if (s.phase != PhaseMode::isotropic)
-      write_phase(query, s, part, writer, out.count, out);
+      write_phase(query, s, part, writer, out);
     out.count += keep_all ? hn::Lanes(d) : hits;
   }
 }

@@ -50,6 +50,7 @@ struct KnotLookup {
 struct RayLanes {
   V16 a, b, dw, stretch, first, last, ou, ov, knot_shift;
   hn::Vec<I16> lane;
+  const float* weights = nullptr; ///< of these rays, in the table of the sub-tile
 };
 
 template <bool own_origins>
@@ -113,8 +114,8 @@ HWY_INLINE V16 approach(const Candidates& c, std::size_t i, const SubtileFrame& 
 /// Sum over the groups of phase times weight, per weight channel.
 template <class Config>
 HWY_INLINE void scattering(const TileQuery& query, const SubtileFrame& s, const Candidates& c,
-                           std::size_t i, const RayLanes& ray, const float* weights,
-                           const KnotLookup<Config>& knots, V16 (&out)[3]) {
+                           std::size_t i, const RayLanes& ray, const KnotLookup<Config>& knots,
+                           V16 (&out)[3]) {
   const D16 d;
   const std::size_t groups = Config::plain ? 1 : query.phases.size();
   const std::size_t row = static_cast<std::size_t>(s.knots) * 16;
@@ -131,7 +132,7 @@ HWY_INLINE void scattering(const TileQuery& query, const SubtileFrame& s, const 
     else if constexpr (Config::phase == PhaseMode::exact)
       phase = phase_value(d, query.phases[g], cosine);
     for (int ch = 0; ch < Config::weight; ++ch) {
-      const float* table = weights + (g * Config::weight + ch) * row;
+      const float* table = ray.weights + (g * Config::weight + ch) * row;
       auto value = knots.at(table);
       if constexpr (Config::phase != PhaseMode::isotropic)
         value = hn::Mul(value, phase);
@@ -158,8 +159,8 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
   const auto kernel_shift = hn::Set(d, query.kernel_shift);
   auto inside_count = hn::Zero(di);
   for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
-    const RayLanes ray = load_rays<Config::own_origins>(s, lane);
-    const float* weights = s.weights + (Config::per_ray ? 0 : lane);
+    RayLanes ray = load_rays<Config::own_origins>(s, lane);
+    ray.weights = s.weights + (Config::per_ray ? 0 : lane);
     float* out = &sums[0][first_ray + lane];
     V16 sum0 = hn::Load(d, out), sum1 = zero, sum2 = zero;
     if constexpr (Config::channels == 3) {
@@ -180,7 +181,7 @@ HWY_NOINLINE std::uint64_t shade(const TileQuery& query, const SubtileFrame& s, 
       else
         kernel = hn::Mul(strength, kernel_value(query.kernel, k));
       V16 value[3] = {zero, zero, zero};
-      scattering<Config>(query, s, c, i, ray, weights, knots, value);
+      scattering<Config>(query, s, c, i, ray, knots, value);
       if constexpr (Config::channels == 1) {
         sum0 = hn::MulAdd(kernel, value[0], sum0);
       } else {

@@ -116,6 +116,78 @@ void note_axes(const Scene& scene, std::size_t i, const DensityGrid& grid,
 }
 
 /// The same of a scene whose colours are in its working space.
+/// A frame whose world is that of the one before: only what is animated about its motion is read.
+void take_over(const Scene& scene, const PreparedScenePtr& previous, PreparedScene& prepared) {
+  prepared.world = previous->world;
+  prepared.facts = previous->facts;
+  prepared.facts.surfaces = {};
+  prepared.volumes = previous->volumes;
+  if (previous->photon_settings == prepared.photon_settings)
+    prepared.photons = previous->photons;
+  if (!prepared.photons && scene.render.seeds == SeedPolicy::correlated)
+    prepared.photons = std::make_shared<PhotonCache>(photon_cache_capacity());
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    ReadVolume& read = prepared.volumes[i];
+    read.sources.clear();
+    take_velocity(scene, i, previous, read);
+    keep_sources(scene.volumes[i], moments_of(scene, i), previous, read);
+    prepared.grids_read += std::exchange(read.grids_read, 0);
+  }
+}
+
+/// What is read of the volumes of a scene, one after the other.
+struct ReadGrids {
+  std::vector<DensityGrid> density;
+  std::vector<EmissionGrid> emission;
+  std::vector<std::string> axis_notes;
+  std::map<std::string, std::size_t> readers; ///< the volume that was read, by what decides it
+};
+
+/// The density of a volume: that of an earlier volume of the scene which is read from the same file
+/// in the same way, or a grid of its own.
+void read_density(const VolumeSettings& volume, const PreparedScenePtr& previous, std::size_t index,
+                  ReadGrids& grids, ReadVolume& read) {
+  const std::string identity = volume.needs_density() ? density_identity(volume) : "";
+  const auto same = grids.readers.find(identity);
+  if (!identity.empty() && stands_still(volume, read) && same != grids.readers.end()) {
+    DensityGrid shared = grids.density[same->second]; // copies share the values
+    shared.notes.clear(); // which are about the file, and are there once
+    grids.density.push_back(std::move(shared));
+    read.identity = identity;
+    return;
+  }
+  grids.density.push_back(take_grid(volume, previous, read));
+  take_colors(volume, previous, read, grids.density.back());
+  if (!identity.empty() && stands_still(volume, read))
+    grids.readers.try_emplace(identity, index);
+}
+
+ReadGrids read_grids(const Scene& scene, const PreparedScenePtr& previous,
+                     PreparedScene& prepared) {
+  ReadGrids grids;
+  int kept = 0;
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const VolumeSettings& volume = scene.volumes[i];
+    ReadVolume read;
+    take_velocity(scene, i, previous, read);
+    keep_sources(volume, moments_of(scene, i), previous, read);
+    read_density(volume, previous, i, grids, read);
+    const DensityGrid& grid = grids.density.back();
+    note_axes(scene, i, grid, grids.axis_notes);
+    keep_facts(grid, read);
+    grids.emission.push_back(take_emission(volume, previous, prepared.volumes, read));
+    read.emission = grids.emission.back();
+    prepared.grids_read += std::exchange(read.grids_read, 0);
+    // As build_world leaves volumes out.
+    const bool empty = grid.field.empty() || !volume.absorbs_or_scatters();
+    read.index = empty ? -1 : kept++;
+    if (empty && !grid.field.empty())
+      read.identity.clear(); // its field is not kept
+    prepared.volumes.push_back(std::move(read));
+  }
+  return grids;
+}
+
 PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
   Stopwatch watch;
   auto prepared = std::make_shared<PreparedScene>();
@@ -123,68 +195,21 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       previous ? moved_world_settings(scene, *previous) : world_settings(scene);
   prepared->photon_settings = photon_settings(scene);
   if (previous && previous->world_settings == prepared->world_settings) {
-    prepared->world = previous->world;
-    prepared->facts = previous->facts;
-    prepared->facts.surfaces = {};
-    prepared->volumes = previous->volumes;
-    if (previous->photon_settings == prepared->photon_settings)
-      prepared->photons = previous->photons;
-    if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
-      prepared->photons = std::make_shared<PhotonCache>(photon_cache_capacity());
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-      ReadVolume& read = prepared->volumes[i];
-      read.sources.clear();
-      take_velocity(scene, i, previous, read);
-      keep_sources(scene.volumes[i], moments_of(scene, i), previous, read);
-      prepared->grids_read += std::exchange(read.grids_read, 0);
-    }
+    take_over(scene, previous, *prepared);
     note_velocities(scene, *prepared);
     prepared->seconds_read = prepared->grids_read > 0 ? watch.seconds() : 0;
     return prepared;
   }
-  std::vector<DensityGrid> grids;
-  std::vector<EmissionGrid> emissions;
-  std::map<std::string, std::size_t> readers; ///< the volume that was read, by what decides it
-  std::vector<std::string> axis_notes;
-  int kept = 0;
-  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    const VolumeSettings& volume = scene.volumes[i];
-    ReadVolume read;
-    take_velocity(scene, i, previous, read);
-    keep_sources(volume, moments_of(scene, i), previous, read);
-    const std::string identity = volume.needs_density() ? density_identity(volume) : "";
-    const auto same = readers.find(identity);
-    if (!identity.empty() && stands_still(volume, read) && same != readers.end()) {
-      DensityGrid shared = grids[same->second]; // copies share the values
-      shared.notes.clear();                     // which are about the file, and are there once
-      grids.push_back(std::move(shared));
-      read.identity = identity;
-    } else {
-      grids.push_back(take_grid(volume, previous, read));
-      take_colors(volume, previous, read, grids.back());
-      if (!identity.empty() && stands_still(volume, read))
-        readers.try_emplace(identity, i);
-    }
-    note_axes(scene, i, grids.back(), axis_notes);
-    keep_facts(grids.back(), read);
-    emissions.push_back(take_emission(volume, previous, prepared->volumes, read));
-    read.emission = emissions.back();
-    prepared->grids_read += std::exchange(read.grids_read, 0);
-    // As build_world leaves volumes out.
-    const bool empty = grids.back().field.empty() || !volume.absorbs_or_scatters();
-    read.index = empty ? -1 : kept++;
-    if (empty && !grids.back().field.empty())
-      read.identity.clear(); // its field is not kept
-    prepared->volumes.push_back(std::move(read));
-  }
+  ReadGrids grids = read_grids(scene, previous, *prepared);
   return_freed_memory();
   prepared->seconds_read = watch.restart();
   prepared->world = std::make_shared<const World>(
-      build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
+      build_world(scene, std::move(grids.density), std::move(grids.emission), &prepared->facts,
                   previous ? previous->world.get() : nullptr));
   return_freed_memory();
   prepared->seconds_build = watch.seconds();
-  prepared->facts.notes.insert(prepared->facts.notes.end(), axis_notes.begin(), axis_notes.end());
+  prepared->facts.notes.insert(prepared->facts.notes.end(), grids.axis_notes.begin(),
+                               grids.axis_notes.end());
   note_velocities(scene, *prepared);
   for (ReadVolume& read : prepared->volumes)
     if (read.index >= 0 &&

@@ -120,7 +120,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
-    input.layers->record(world, camera, profile, mean_component(tr), surface.shadow, seen.depth,
+    input.layers->record(world, camera, profile, {mean_component(tr), surface.shadow, seen.depth},
                          pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep) {
     deep.add_opacity(world.medium, profile);

@@ -219,16 +219,14 @@ void bound_region(World& world, const Boxd& bounds) {
 
 } // namespace
 
-World build_world(const Scene& scene, std::vector<DensityGrid> grids,
-                  std::vector<EmissionGrid> emissions, WorldFacts* facts, const World* previous) {
-  World world;
-  WorldFacts found;
+namespace {
+
+/// Of each volume its place, and the bounds of all that they hold [world].
+std::vector<Affine> place_volumes(const Scene& scene, const std::vector<DensityGrid>& grids,
+                                  const std::vector<EmissionGrid>& emissions, Boxd& bounds) {
   std::vector<Affine> maps;
-  Boxd bounds;
-  emissions.resize(grids.size());
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VolumeSettings& settings = scene.volumes[i];
-    add_facts(found, grids[i], emissions[i]);
     maps.push_back(local_to_world(grids[i].field.origin(), grids[i].index_to_world, settings));
     if (!grids[i].field.empty())
       bounds.extend(mapped_bounds(maps[i], grids[i].field.occupied()));
@@ -237,11 +235,13 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
           mapped_bounds(local_to_world(glow.field->origin(), glow.index_to_world, settings),
                         glow.field->occupied()));
   }
-  const Surfaces* known = previous ? previous->surfaces.get() : nullptr;
-  const auto store =
-      std::make_shared<SurfaceStore>(scene.surfaces, known ? known->store.get() : nullptr);
-  const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, *store, found.notes);
-  world.space = choose_space(bounds.empty() ? world_bounds(shapes) : bounds);
+  return maps;
+}
+
+/// Puts the volumes into the world, whose space is known; takes the grids' fields.
+void add_medium(const Scene& scene, std::vector<DensityGrid>& grids,
+                const std::vector<EmissionGrid>& emissions, const std::vector<Affine>& maps,
+                World& world, std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < grids.size(); ++i)
     if (!emissions[i].empty()) {
       world.medium.emitters.push_back(make_emitter(emissions[i], scene.volumes[i], world.space));
@@ -254,12 +254,31 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
       continue;
     const Affine map = world.space.map().after(maps[i]);
     add_region(world.region, grids[i].field, map);
-    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, found.notes);
+    Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, notes);
     volume.setting = i;
     volume.phase_index = phase_index_of(world.medium.phases, known_phases, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }
+}
+
+} // namespace
+
+World build_world(const Scene& scene, std::vector<DensityGrid> grids,
+                  std::vector<EmissionGrid> emissions, WorldFacts* facts, const World* previous) {
+  World world;
+  WorldFacts found;
+  Boxd bounds;
+  emissions.resize(grids.size());
+  for (std::size_t i = 0; i < grids.size(); ++i)
+    add_facts(found, grids[i], emissions[i]);
+  const std::vector<Affine> maps = place_volumes(scene, grids, emissions, bounds);
+  const Surfaces* known = previous ? previous->surfaces.get() : nullptr;
+  const auto store =
+      std::make_shared<SurfaceStore>(scene.surfaces, known ? known->store.get() : nullptr);
+  const std::vector<WorldShape> shapes = read_shapes(scene.surfaces, *store, found.notes);
+  world.space = choose_space(bounds.empty() ? world_bounds(shapes) : bounds);
+  add_medium(scene, grids, emissions, maps, world, found.notes);
   if (world.medium.visible())
     bound_region(world, bounds);
   world.surfaces = build_surfaces(scene.surfaces, shapes, world.space, world.region, store,

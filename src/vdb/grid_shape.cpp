@@ -53,43 +53,54 @@ GridShape read_grid_shape(const std::string& path, const std::string& grid_name,
   return shape;
 }
 
+namespace {
+
+/// The voxels of a box that are wanted.
+ActiveBox clipped(ActiveBox box, const std::optional<WantedBox::Voxels>& wanted) {
+  for (std::size_t a = 0; wanted && a < 3; ++a) {
+    const auto limit = [&](std::int64_t v) {
+      return std::clamp<std::int64_t>(v, std::int64_t{box.lower[a]} - 1,
+                                      std::int64_t{box.upper[a]} + 1);
+    };
+    const std::int64_t lower = limit(wanted->lower[static_cast<int>(a)]),
+                       upper = limit(wanted->upper[static_cast<int>(a)]);
+    box.lower[a] = std::max(box.lower[a], static_cast<std::int32_t>(lower));
+    box.upper[a] = std::min(box.upper[a], static_cast<std::int32_t>(upper));
+  }
+  return box;
+}
+
+bool is_empty(const ActiveBox& box) {
+  return box.lower[0] > box.upper[0] || box.lower[1] > box.upper[1] || box.lower[2] > box.upper[2];
+}
+
+/// The cells of a box, by marks of `width` voxels.
+struct BoxCells {
+  BoxCells(const ActiveBox& box, int scale, int reach, int width)
+      // A lattice point at the lower face of a cell is also one of the brick before it.
+      : first(cell_of(box.lower, scale, -reach - 1, width)),
+        last(cell_of(box.upper, scale, reach, width)) {}
+
+  Vec3<std::int64_t> first, last;
+};
+
+} // namespace
+
 CellSet::CellSet(const GridShape& shape, int scale, int reach,
                  const std::optional<WantedBox::Voxels>& wanted) {
-  const auto clipped = [&](ActiveBox box) {
-    for (std::size_t a = 0; wanted && a < 3; ++a) {
-      const auto limit = [&](std::int64_t v) {
-        return std::clamp<std::int64_t>(v, std::int64_t{box.lower[a]} - 1,
-                                        std::int64_t{box.upper[a]} + 1);
-      };
-      const std::int64_t lower = limit(wanted->lower[static_cast<int>(a)]),
-                         upper = limit(wanted->upper[static_cast<int>(a)]);
-      box.lower[a] = std::max(box.lower[a], static_cast<std::int32_t>(lower));
-      box.upper[a] = std::min(box.upper[a], static_cast<std::int32_t>(upper));
-    }
-    return box;
-  };
-  const auto is_empty = [](const ActiveBox& box) {
-    return box.lower[0] > box.upper[0] || box.lower[1] > box.upper[1] ||
-           box.lower[2] > box.upper[2];
-  };
   int width = DensityField::cell_width; // of a mark, in voxels
-  // A lattice point at the lower face of a cell is also one of the brick before it.
-  const auto first = [&](const ActiveBox& box) {
-    return cell_of(box.lower, scale, -reach - 1, width);
-  };
-  const auto last = [&](const ActiveBox& box) { return cell_of(box.upper, scale, reach, width); };
   const auto for_each = [&](const auto& visit) {
     for (const auto* boxes : {&shape.leaves, &shape.tiles})
       for (const ActiveBox& whole : *boxes)
-        if (const ActiveBox box = clipped(whole); !is_empty(box))
-          visit(box, boxes == &shape.tiles);
+        if (const ActiveBox box = clipped(whole, wanted); !is_empty(box))
+          visit(box, BoxCells(box, scale, reach, width), boxes == &shape.tiles);
   };
   Vec3<std::int64_t> lower, upper;
   for (;; width *= 2, width_ *= 2) {
     bool any = false;
-    for_each([&](const ActiveBox& box, bool) {
-      lower = any ? min(lower, first(box)) : first(box);
-      upper = any ? max(upper, last(box)) : last(box);
+    for_each([&](const ActiveBox&, const BoxCells& cells, bool) {
+      lower = any ? min(lower, cells.first) : cells.first;
+      upper = any ? max(upper, cells.last) : cells.last;
       any = true;
     });
     if (!any)
@@ -105,24 +116,26 @@ CellSet::CellSet(const GridShape& shape, int scale, int reach,
                 0);
   if (scale == 1 && width_ == 1)
     blocks_.assign(marks_.size(), 0);
-  for_each([&](const ActiveBox& box, bool tile) {
+  for_each([&](const ActiveBox& box, const BoxCells& cells, bool tile) {
     if (!blocks_.empty() && !tile) {
       const Vec3<int> at(cell_of(box.lower, 1, 0, width) - lower);
       blocks_[offset(at.x, at.y, at.z)] = box.blocks;
     }
-    const Vec3<int> a(first(box) - lower), b(last(box) - lower);
-    for (int i = a.x; i <= b.x; ++i)
-      for (int j = a.y; j <= b.y; ++j)
-        for (int k = a.z; k <= b.z; ++k) {
-          // What lies inside a tile is uniform, and no brick.
-          const bool inside =
-              tile && i > a.x && j > a.y && k > a.z && i < b.x && j < b.y && k < b.z;
-          if (!inside)
-            marks_[offset(i, j, k)] = 1;
-          if (tile && !blocks_.empty())
-            blocks_[offset(i, j, k)] = box.blocks;
-        }
+    mark(Vec3<int>(cells.first - lower), Vec3<int>(cells.last - lower), tile ? &box : nullptr);
   });
+}
+
+/// Marks the cells from a to b. What lies inside a tile is uniform, and no brick.
+void CellSet::mark(const Vec3<int>& a, const Vec3<int>& b, const ActiveBox* tile) {
+  for (int i = a.x; i <= b.x; ++i)
+    for (int j = a.y; j <= b.y; ++j)
+      for (int k = a.z; k <= b.z; ++k) {
+        const bool inside = tile && i > a.x && j > a.y && k > a.z && i < b.x && j < b.y && k < b.z;
+        if (!inside)
+          marks_[offset(i, j, k)] = 1;
+        if (tile && !blocks_.empty())
+          blocks_[offset(i, j, k)] = tile->blocks;
+      }
 }
 
 bool CellSet::holds(const Vec3d& cell) const {

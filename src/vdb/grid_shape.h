@@ -69,6 +69,7 @@ private:
                static_cast<std::size_t>(counts_.z) +
            static_cast<std::size_t>(k);
   }
+  void mark(const Vec3<int>& a, const Vec3<int>& b, const ActiveBox* tile);
   void spread_along(int axis, int lower, int upper);
 
   Vec3<std::int64_t> lower_; ///< of the first mark, in marks
