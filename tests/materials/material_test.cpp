@@ -1,4 +1,4 @@
-#include "materials/material.h"
+#include "materials/material_table.h"
 
 #include "materials/fresnel.h"
 #include "math/sampling.h"

@@ -58,8 +58,8 @@ const LightKind lantern_light{
     .complaint =
         [](const LightSettings& light) {
           return max_component(light.intensity) > 0
-                     ? std::optional<LightComplaint>()
-                     : LightComplaint{"intensity", "must not be 0 in a lantern"};
+                     ? std::optional<KeyComplaint>()
+                     : KeyComplaint{"intensity", "must not be 0 in a lantern"};
         },
     .make =
         [](const LightSettings& light, const LightContext& context) {

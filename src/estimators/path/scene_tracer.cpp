@@ -1,6 +1,5 @@
 #include "estimators/path/scene_tracer.h"
 
-#include "materials/throws_light.h"
 #include "medium/bounded_tracking.h"
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
@@ -147,7 +146,7 @@ bool SceneTracer::bounce(Path& path, const SurfaceVertex& vertex) const {
   if (material.is_black())
     return false;
   const bool counts_straight =
-      !material.is_specular() && (path.all_light || path.begins || !throws_light(material));
+      !material.is_specular() && (path.all_light || path.begins || !material.throws_light());
   path.begins = false;
   if (counts_straight)
     path.add(lights_at_surface(vertex, path.rng) * path.throughput);
