@@ -64,7 +64,7 @@ const MaterialKind conductor_material{
     .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {
       const double roughness = settings.roughness.value_or(default_roughness);
       // A perfectly smooth one is a mirror.
-      if (roughness <= 0)
+      if (!(roughness > 0))
         return mirror_material.make(settings, scale);
       return std::make_unique<Conductor>(settings, roughness);
     }};

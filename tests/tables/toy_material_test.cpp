@@ -71,6 +71,15 @@ TEST(ToyMaterial, IsInKeysAndHelp) {
   EXPECT_NE(key_table_markdown(SceneSection::material).find("`slate`"), std::string::npos);
 }
 
+TEST(ToyMaterial, IsReadAndWritten) {
+  Scene scene;
+  scene.surfaces.emplace_back();
+  const SceneKey& type = key(SceneSection::material, "type");
+  type.set(scene, 0, std::string("slate")); // the name of the table is kept, not this one
+  EXPECT_EQ(scene.surfaces[0].material.type, (MaterialType{"slate"}));
+  EXPECT_EQ(type.format(type.get(scene, 0)), "\"slate\"");
+}
+
 TEST(ToyMaterial, OtherNamesAreErrors) {
   Scene scene;
   scene.surfaces.emplace_back().shape = SurfaceShape::quad;

@@ -79,6 +79,15 @@ TEST(ToyPhase, IsValidated) {
   EXPECT_THROW(PhaseFunction{scene.volumes[0].phase}, InputError);
 }
 
+TEST(ToyPhase, IsReadAndWritten) {
+  Scene scene;
+  scene.volumes.emplace_back();
+  const SceneKey& type = key(SceneSection::phase, "type");
+  type.set(scene, 0, std::string("mirrored")); // the name of the table is kept, not this one
+  EXPECT_EQ(scene.volumes[0].phase.type, (PhaseType{"mirrored"}));
+  EXPECT_EQ(type.format(type.get(scene, 0)), "\"mirrored\"");
+}
+
 TEST(ToyPhase, OtherNamesAreErrors) {
   PhaseSettings misspelt;
   misspelt.type = {"mirored"};
