@@ -121,10 +121,8 @@ struct RenderPlan {
   std::vector<bool> shadow_ray_lights;
   /// The mean of the passes is the true picture; else its bias vanishes only in the limit.
   bool unbiased = false;
-  std::uint64_t volume_bytes = 0, photon_bytes = 0, film_bytes = 0; ///< estimates
-  /// Of the moving volumes at two moments; those at more are kept while they take less than a
-  /// quarter of the memory.
-  std::uint64_t moment_bytes = 0;
+  /// Estimates of these parts alone; all that a frame takes is in its MemoryPlan.
+  std::uint64_t photon_bytes = 0, film_bytes = 0;
   /// Of meshes while they are read, the most that they take, and of textures.
   std::uint64_t surface_bytes = 0;
   std::vector<SurfaceFile> surface_files; ///< each once; only make_plan looks for them

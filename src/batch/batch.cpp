@@ -105,8 +105,11 @@ Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone) con
 /// Reads on another thread: one thread beside a frame that is being rendered, all of them `alone`.
 std::future<Batch::Loaded> Batch::load_aside(int frame, const SharedLoaded& before,
                                              bool alone) const {
-  const auto task = std::make_shared<std::packaged_task<Loaded()>>(
-      [this, frame, before, alone] { return load(frame, before, alone); });
+  const auto task =
+      std::make_shared<std::packaged_task<Loaded()>>([this, frame, held = before, alone]() mutable {
+        const SharedLoaded previous = std::move(held); // TBB may keep the task for some time
+        return load(frame, previous, alone);
+      });
   std::future<Loaded> future = task->get_future();
   // Of all threads one waits here, and has no part in reading.
   tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, alone ? 1 : 0);
@@ -134,6 +137,7 @@ int Batch::run() {
     if (read_ahead.deferred) {
       if (!read_ahead.fits_after)
         loaded.reset();
+      return_freed_memory(); // else it would count beside what is read now
       next = load_aside(frames_[i], loaded, true);
       read_ahead = wait_for(next);
     }
@@ -174,6 +178,7 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
     outcome.status = "skipped";
     outcome.reason = "its finished image is there";
     renderer_.remove_side_files(outcome.frame);
+    renderer_.remove_dead_files(outcome.frame);
     return tell(outcome.reason);
   }
   if (loaded.frame.scene.black) {

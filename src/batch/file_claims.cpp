@@ -33,22 +33,35 @@ fs::path behind_links(fs::path path) {
 
 } // namespace
 
-/// The folder without links; files of a sequence share it.
-std::string FileClaims::real_folder(const std::string& folder) {
-  const auto [found, is_new] = folders_.try_emplace(folder);
-  if (is_new) {
-    std::error_code error;
-    found->second = fs::weakly_canonical(folder.empty() ? "." : folder, error).string();
-  }
-  return found->second;
+/// Files of a sequence share their folder. To list it once costs less than to ask for each of many.
+FileClaims::Folder& FileClaims::folder_of(const std::string& path) {
+  constexpr std::size_t often = 256;
+  const auto [found, is_new] = folders_.try_emplace(path);
+  Folder& folder = found->second;
+  std::error_code error;
+  if (is_new)
+    folder.real = fs::weakly_canonical(path.empty() ? "." : path, error).string();
+  if (++folder.asked == often)
+    for (fs::directory_iterator it(folder.real, error), end; !error && it != end;
+         it.increment(error))
+      folder.names.insert(lower_case(it->path().filename().string()));
+  if (error) // its files are asked for one by one
+    folder.asked = 1;
+  folder.listed = folder.asked >= often;
+  return folder;
 }
 
 std::string FileClaims::identity(const std::string& path) {
+  const fs::path given = path;
+  const Folder& folder = folder_of(given.parent_path().string());
+  const std::string name = lower_case(given.filename().string());
+  if (folder.listed && !folder.names.contains(name))
+    return folder.real + "/" + name;
   struct stat status {};
   if (stat(path.c_str(), &status) == 0)
     return fmt::format("{}:{}", status.st_dev, status.st_ino);
   const fs::path file = behind_links(path);
-  return real_folder(file.parent_path().string()) + "/" + lower_case(file.filename().string());
+  return folder_of(file.parent_path().string()).real + "/" + lower_case(file.filename().string());
 }
 
 void FileClaims::claim(const Claim& claim) {

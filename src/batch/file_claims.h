@@ -4,6 +4,7 @@
 #include "scene/scene_document.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,10 +51,17 @@ private:
   void claim(const Claim& claim);
   void scene_file(const SceneFile& file, const std::vector<int>& frames);
   std::string identity(const std::string& path);
-  std::string real_folder(const std::string& folder);
+
+  struct Folder {
+    std::string real;            ///< without links
+    std::size_t asked = 0;       ///< how often
+    bool listed = false;         ///< from then on, once that is often
+    std::set<std::string> names; ///< of its files, in small letters
+  };
+  Folder& folder_of(const std::string& path);
 
   std::map<std::string, Claim> claims_; ///< by the file's identity
-  std::map<std::string, std::string> folders_;
+  std::map<std::string, Folder> folders_;
 };
 
 } // namespace vdbeam::cli

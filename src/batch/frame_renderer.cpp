@@ -8,6 +8,7 @@
 #include "image/deep_check.h"
 #include "image/output_formats.h"
 #include "machine/stopwatch.h"
+#include "machine/temporary_files.h"
 #include "report/image_metadata.h"
 #include "report/report.h"
 #include "report/side_files.h"
@@ -127,6 +128,12 @@ void FrameRenderer::remove_side_files(int frame) const {
       std::filesystem::remove(part, ignored);
 }
 
+void FrameRenderer::remove_dead_files(int frame) const {
+  for (const OutputKind& kind : output_kinds())
+    if (const std::string file = path(kind.output, frame); !file.empty() && !is_stdout(file))
+      remove_dead_temporaries(std::filesystem::path(file).parent_path().string());
+}
+
 std::string FrameRenderer::region_text() const {
   const auto& r = options_.region;
   return r ? fmt::format("{},{},{},{}", r->x0, r->y0, r->x1, r->y1) : "";
@@ -194,7 +201,14 @@ std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
   if (!options_.merged.empty() &&
       why(substitute_frame(options_.merged, loaded.frame()), image).empty())
     return "";
-  return why(output(loaded.frame()), part);
+  const std::string reason = why(output(loaded.frame()), part);
+  const std::string report = path(Output::report, loaded.frame());
+  std::error_code error;
+  // A part is written before its report, which a kill may have kept from being written.
+  if (reason.empty() && !report.empty() && !is_stdout(report) &&
+      !std::filesystem::exists(report, error))
+    return "has no report";
+  return reason;
 }
 
 void FrameRenderer::join_parts(const LoadedFrame& loaded) const {

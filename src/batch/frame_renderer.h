@@ -69,6 +69,10 @@ public:
   /// only has the name of one stays.
   void remove_side_files(int frame) const;
 
+  /// Removes what killed processes have left beside the outputs of a frame that is finished, beside
+  /// which nothing is written that would.
+  void remove_dead_files(int frame) const;
+
 private:
   std::string path(Output output, int frame) const;
   std::string output(int frame) const { return path(Output::image, frame); }

@@ -84,7 +84,7 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
                               static_cast<int>(pixels[i].pixel / width));
       ray.profile.build(in.world.medium, ray.camera.segment,
                         static_cast<float>(input.settings.cutoff));
-      shade_ray(in, photons, ray, {}, key, i, image, counts_by_pixel[i]);
+      shade_ray(in, photons, ray, key, {i, image, counts_by_pixel[i]});
     });
   }
   for (const RenderStatistics& pixel : counts_by_pixel)

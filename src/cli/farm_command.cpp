@@ -110,6 +110,8 @@ Scene first_scene(const SceneDocument& document, const std::vector<int>& frames)
 /// error; a job that is to do something else about them (--also=--missing=hold) is not told.
 void tell_missing(const FarmOptions& options, const SceneDocument& document,
                   const std::vector<int>& frames) {
+  if (!document.depends_on_frame()) // what one frame has, all have
+    return;
   for (const std::string& option : options.also)
     if (option.starts_with("--missing"))
       return;
@@ -188,6 +190,7 @@ void check_tasks(const FarmJob& job, const SceneDocument& document,
 
 FarmJob make_job(const FarmOptions& options) {
   FarmJob job = options.job;
+  job.checkpoint = read_duration("--checkpoint", options.checkpoint);
   const SceneDocument document = options.scene.open();
   job.frames = read_frames(options.frames);
   check_output_paths({.output = job.output}, job.frames);
@@ -211,7 +214,6 @@ FarmJob make_job(const FarmOptions& options) {
   tell_missing(options, document, job.frames);
   if (render.threads > 0)
     job.threads = render.threads;
-  job.checkpoint = read_duration("--checkpoint", options.checkpoint);
   if (!options.time_limit.empty())
     job.time_limit = read_duration("--time-limit", options.time_limit);
   job.memory_mib = job.merge_memory_mib = options.memory_mib;

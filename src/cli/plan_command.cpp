@@ -39,11 +39,15 @@ std::string surfaces_text(const RenderPlan& plan) {
 }
 
 nlohmann::ordered_json memory_json(const MemoryPlan& memory) {
-  nlohmann::ordered_json parts;
+  nlohmann::ordered_json parts = nlohmann::ordered_json::object();
   for (const PlannedMemory& part : memory.parts)
     parts[part.name] = {
         {"reading", part.reading}, {"rendering", part.rendering}, {"writing", part.writing}};
-  return parts;
+  return {{"parts", parts},
+          {"reading", memory.reading},
+          {"rendering", memory.rendering},
+          {"writing", memory.writing},
+          {"peak", memory.peak()}};
 }
 
 /// What each part takes in each phase, and in all.
@@ -134,8 +138,7 @@ int run_plan(const PlanOptions& options) {
     return 0;
   }
   nlohmann::ordered_json json = plan_json(plan);
-  json["memory"]["parts"] = memory_json(memory);
-  json["memory"]["peak"] = memory.peak();
+  json["memory"] = memory_json(memory);
   json["scene"] = scene.path;
   json["frame"] = frame;
   json["scene_hash"] = scene_hash(scene);

@@ -310,8 +310,9 @@ Rgb SurfaceShading::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
 Rgb SurfaceShading::in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
                                  RenderStatistics& counts) const {
   ++counts.depth_profiles;
-  Rgb sum = direct_light(world_, ray.ray(), profile, photons_.plan().sampled_lights, 1, rng,
-                         counts.shadow_rays, photons_.shadows());
+  Rgb sum = direct_light(world_, ray.ray(), profile,
+                         {photons_.plan().sampled_lights, 1, &photons_.shadows()}, rng,
+                         counts.shadow_rays);
   if (photons_.map().size() > 0) {
     ++counts.lookups;
     sum += gather_(ray, profile, rng);

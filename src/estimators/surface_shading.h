@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/path/scene_tracer.h"
+#include "estimators/path/path_walk.h"
 #include "photons/photon_pass.h"
 #include "rays/profile_shading.h"
 #include "transport/camera_ray.h"
@@ -18,7 +18,7 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 /// are gathered along each of its segments: light that glass throws into the medium is seen there
 /// too. At the first two interfaces of glass it goes both ways, reflected and refracted, from then
 /// on one of them at random: the faint reflection of a bright lamp is no matter of chance. At any
-/// other surface path tracing goes on (SceneTracer), which finds all of its light but what mirrors,
+/// other surface path tracing goes on (WalkTracer), which finds all of its light but what mirrors,
 /// glass or the medium, met first of all, send on from lights: caustics, the glow of fog about a
 /// lamp, and whatever becomes of them. Photons that lie on the surface bring these.
 class SurfaceShading {
@@ -57,7 +57,7 @@ private:
   const LightSet& lights_of_matte_;
   const PhotonPass& photons_;
   GatherAlong gather_;
-  SceneTracer tracer_;
+  WalkTracer tracer_;
   bool photons_on_surfaces_;
   float cutoff_;
 };

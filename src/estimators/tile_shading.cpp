@@ -1,6 +1,5 @@
 #include "estimators/tile_shading.h"
 
-#include "layers/deep_ray.h"
 #include "machine/stopwatch.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
@@ -56,8 +55,7 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
 /// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
 /// with shadow rays have theirs from these.
 Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
-                      const std::vector<bool>& sampled_lights, const DeepRay& deep,
-                      const VolumeLights& volumes) {
+                      const std::vector<bool>& sampled_lights, const RaySink& sink) {
   Rgb radiance;
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
@@ -74,10 +72,10 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
     through[c] = radiance[c] * std::exp(-tau[c]);
     radiance[c] *= std::exp(-tau[c]) * opacity_of(excess[c]);
   }
-  if (deep)
-    add_light_of_the_peak(world, ray.profile, through, deep);
-  if (volumes)
-    add_light_of_the_peak(world, ray.profile, through, volumes);
+  if (sink.deep)
+    add_light_of_the_peak(world, ray.profile, through, sink.deep);
+  if (sink.volumes)
+    add_light_of_the_peak(world, ray.profile, through, sink.volumes);
   return radiance;
 }
 
@@ -100,7 +98,7 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
     const std::size_t pixel = scratch.rays[i].pixel;
     scratch.rays.refine(input.in(world), key, i);
     for (const TileRays::PixelRay& ray : scratch.rays.more(i))
-      shade_ray(input, photons, ray, {}, key, pixel, image, scratch.statistics,
+      shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, {},
                 TileRays::rays_if_refined);
     image.scale_pixel(pixel, 1.0f / TileRays::rays_if_refined);
     scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
@@ -110,31 +108,32 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
 } // namespace
 
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
-               const TileRays::PixelRay& ray, const SeenSurface& surface, const RngKey& key,
-               std::size_t target, PassImage& image, RenderStatistics& counts, int rays) {
+               const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
+               const SeenSurface& surface, int rays) {
   const World& world = photons.world();
+  RenderStatistics& counts = target.counts;
+  PassImage& image = target.image;
   counts.depth_profiles += ray.profile.empty() ? 0 : 1;
   if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
-    shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), target, image,
-                  counts.emission_rays);
+    shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), target.pixel,
+                  image, counts.emission_rays);
   else
-    shade_profile(input, ray.camera, ray.profile, target, image, counts.emission_rays, surface);
+    shade_profile(input, ray.camera, ray.profile, target.pixel, image, counts.emission_rays,
+                  surface);
   Rng rng(key, RngStage::direct, ray.stream);
-  const int of_pixel = photons.plan().direct_samples_of(
-      ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
-  const int samples = std::max(1, of_pixel / rays);
-  const DeepRay deep(world, ray.camera, target, image);
-  const VolumeLights volumes(input.layers, target, image);
-  image.direct[target] +=
-      light_of_the_peak(world, ray, photons.plan().sampled_lights, deep, volumes) +
-      direct_light(world, ray.camera.ray(), ray.profile, photons.plan().sampled_lights, samples,
-                   rng, counts.shadow_rays, photons.shadows(), deep, volumes, input.stop);
+  const PhotonPlan& plan = photons.plan();
+  const int of_pixel =
+      plan.direct_samples_of(ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
+  const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
+  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
+                               &photons.shadows(), input.stop};
+  image.direct[target.pixel] +=
+      light_of_the_peak(world, ray, plan.sampled_lights, sink) +
+      direct_light(world, ray.camera.ray(), ray.profile, sampling, rng, counts.shadow_rays, sink);
 }
 
-void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass, bool refine,
-                 PassImage& image, RenderStatistics& statistics,
-                 const std::function<void(TileScratch& scratch, const RngKey& key)>& gather,
-                 const GatherAlong& gather_along) {
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass,
+                 const TileGather& tiles, PassImage& image, RenderStatistics& statistics) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep,
@@ -142,7 +141,7 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
   if (world.surfaces)
-    surfaces.emplace(input, photons, gather_along);
+    surfaces.emplace(input, photons, tiles.gather_along);
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, image, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
@@ -154,23 +153,23 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
         const SeenSurface surface =
             surfaces ? surfaces->seen(ray.camera, key, ray.pixel, scratch.statistics)
                      : SeenSurface();
-        shade_ray(input, photons, ray, surface, key, ray.pixel, image, scratch.statistics);
+        shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
       }
-    if (refine)
+    if (tiles.refine)
       refine_edges(input, photons, key, scratch, image);
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
-      gather(scratch, key);
+      tiles.gather(scratch, key);
     scratch.statistics.query += watch.seconds();
   });
-  RenderStatistics tiles;
+  RenderStatistics sums;
   for (const TileScratch& scratch : scratches)
-    tiles += scratch.statistics;
+    sums += scratch.statistics;
   // Stage seconds are processor seconds of the tiles, shared out over the threads that worked.
   const double threads = static_cast<double>(std::max<std::size_t>(1, scratches.size()));
-  for (double* seconds : {&tiles.profile, &tiles.direct, &tiles.query})
+  for (double* seconds : {&sums.profile, &sums.direct, &sums.query})
     *seconds /= threads;
-  statistics += tiles;
+  statistics += sums;
   statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
 }
 

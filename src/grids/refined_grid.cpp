@@ -1,5 +1,6 @@
 #include "grids/refined_grid.h"
 
+#include "machine/memory.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -164,6 +165,7 @@ DensityGrid refined_grid(const DensityGrid& grid, const std::string& label,
   result.index_to_world = grid.index_to_world.after(half);
   result.active_voxels = 8 * grid.active_voxels;
   result.field = Refiner(grid.field).refine(label, maximum_bytes);
+  return_freed_memory();
   return result;
 }
 

@@ -277,9 +277,8 @@ void add_render(KeyTable& table) {
       "auto: multiple scattering without the forward peak of the phase function, less of which is "
       "taken out as passes are added; kept: with all of it");
   table.add("final_gather", &R::final_gather,
-            "photons are gathered where walks from the camera ray arrive, not along it, and "
-            "neighbouring pixels share what walks find; auto: from the first pass on or a later "
-            "one, where a pilot tells that it pays");
+            "alias of older scenes: never keeps auto to gathering along camera rays, always means "
+            "estimator = \"gather\"");
   table.add("max_bounces", &R::max_bounces, "scattering events per path")
       .at_least(1)
       .absent("none");

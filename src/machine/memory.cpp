@@ -3,6 +3,7 @@
 #include "machine/cgroups.h"
 #include "machine/farm_grants.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -72,6 +73,10 @@ std::uint64_t free_memory() {
   const MemoryInUse used = memory_in_use();
   return std::min({available_on_the_machine(), left(resident_limit(), used.resident),
                    left(address_space_limit(), used.address_space)});
+}
+
+void return_freed_memory() {
+  malloc_trim(0);
 }
 
 } // namespace vdbeam

@@ -13,4 +13,8 @@ std::uint64_t granted_memory();
 /// a file is bounded by this.
 std::uint64_t free_memory();
 
+/// Gives back to the system what was freed and the C library still holds: after steps that take
+/// much and leave little, which would count as taken until the process ends.
+void return_freed_memory();
+
 } // namespace vdbeam

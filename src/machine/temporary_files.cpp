@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <regex>
@@ -16,6 +17,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 namespace vdbeam {
 namespace {
@@ -54,19 +56,29 @@ void remove_if_stale(const fs::path& path, bool of_this_machine, std::time_t now
   const bool lock_taken = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   const bool in_use = !lock_taken && errno == EWOULDBLOCK; // else there are no locks here
   if (!in_use && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)) {
-    const bool old = now - status.st_mtime > day;
+    const bool old = now > status.st_mtime + day;
     if (old || (of_this_machine && lock_taken))
       unlink(path.c_str());
   }
   close(descriptor);
 }
 
-/// True the first time.
-bool is_first_visit(const std::string& folder) {
+/// True the first time. `creates`: as a writer does who creates a file there, of which another
+/// visit is no part.
+bool is_first_visit(const std::string& folder, bool creates) {
   static std::mutex mutex;
-  static std::set<std::string> visited;
+  static std::set<std::pair<std::string, bool>> visited;
   const std::lock_guard lock(mutex);
-  return visited.insert(folder).second;
+  return visited.emplace(folder, creates).second;
+}
+
+/// `now`: the time of the file system's clock.
+void remove_stale(const std::string& folder, std::time_t now) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
+       it.increment(error))
+    if (const auto writer = machine_of(it->path().filename().string()))
+      remove_if_stale(it->path(), *writer == machine(), now);
 }
 
 } // namespace
@@ -86,13 +98,13 @@ bool lock_temporary(int descriptor) {
 
 void remove_stale_temporaries(const std::string& folder, int like) {
   struct stat status {};
-  if (fstat(like, &status) != 0 || !is_first_visit(folder))
-    return;
-  std::error_code error;
-  for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
-       it.increment(error))
-    if (const auto writer = machine_of(it->path().filename().string()))
-      remove_if_stale(it->path(), *writer == machine(), status.st_mtime);
+  if (fstat(like, &status) == 0 && is_first_visit(folder, true))
+    remove_stale(folder, status.st_mtime);
+}
+
+void remove_dead_temporaries(const std::string& folder) {
+  if (is_first_visit(folder, false))
+    remove_stale(folder, std::numeric_limits<std::time_t>::min());
 }
 
 } // namespace vdbeam

@@ -23,4 +23,8 @@ bool lock_temporary(int descriptor);
 /// removed stays.
 void remove_stale_temporaries(const std::string& folder, int like);
 
+/// The same of a folder in which nothing is created, because what is to be there is there already:
+/// removes only the files of this machine that nobody locks.
+void remove_dead_temporaries(const std::string& folder);
+
 } // namespace vdbeam

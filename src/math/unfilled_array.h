@@ -1,11 +1,11 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
-#include <tbb/cache_aligned_allocator.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -14,15 +14,22 @@ namespace vdbeam {
 /// Leaves elements that are given no value as their memory is. To write a large array twice, once
 /// by a single thread, is what limits how much faster many threads are.
 template <class T>
-class UnfilledAllocator : public tbb::cache_aligned_allocator<T> {
+class UnfilledAllocator {
 public:
-  template <class U>
-  struct rebind {
-    using other = UnfilledAllocator<U>;
-  };
+  using value_type = T;
   UnfilledAllocator() = default;
   template <class U>
   explicit UnfilledAllocator(const UnfilledAllocator<U>&) {}
+
+  /// By the C library, which gives large arrays back to the system; TBB's allocator would keep
+  /// them.
+  T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{cache_line}));
+  }
+  void deallocate(T* place, std::size_t) {
+    ::operator delete (place, std::align_val_t{cache_line});
+  }
+  bool operator==(const UnfilledAllocator&) const { return true; }
 
   template <class U>
   void construct(U*) {}
@@ -30,6 +37,9 @@ public:
   void construct(U* place, Values&&... values) {
     ::new (static_cast<void*>(place)) U(std::forward<Values>(values)...);
   }
+
+private:
+  static constexpr std::size_t cache_line = 64;
 };
 
 /// A vector whose new elements have no value until they are written.

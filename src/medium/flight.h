@@ -1,5 +1,6 @@
 #pragma once
 
+#include "medium/bounded_tracking.h"
 #include "medium/scattering.h"
 
 #include <optional>
@@ -15,12 +16,14 @@ struct Flight {
   Rgb throughput;  ///< or a photon's flux
   Segment segment; ///< of the present flight, from the last scattering on
   int bounces = 0;
+  int null_collisions = 0; ///< of the present flight
   LengthRoulette length;
   std::optional<MediumTracker> tracker; ///< none where there is no medium
 
   /// Begins a flight along `along`, before its first collision.
   void start(const Medium& medium, const Segment& along) {
     segment = along;
+    null_collisions = 0;
     if (!medium.empty())
       tracker.emplace(medium, along);
   }
@@ -41,9 +44,28 @@ bool advance_flight(Walk& walk, Walker& walker) {
   return true;
 }
 
+/// Ends a flight that met too many null collisions, from its present one on: by collisions that are
+/// found in the exact optical depth, of which the first is real but where channels differ. Further
+/// collisions do not depend on what lies behind them, so nothing is changed in the mean.
+template <class Walk, class Walker>
+bool end_flight(const Medium& medium, Walk& walk, Walker& walker) {
+  Collision hit = walk.tracker->collision();
+  for (;;) {
+    walker.meet(walk, hit);
+    if (sample_real_collision(hit, medium.chromatic, walk.throughput, walk.rng))
+      return walker.collide(walk, hit);
+    if (medium.chromatic && !walk.length.survive(walk.throughput, walk.rng))
+      return false;
+    hit = exact_collision(medium, {walk.segment.ray, hit.t, walk.segment.t_end}, walk.rng);
+    if (!hit.volume)
+      return walker.leave(walk) && advance_flight(walk, walker);
+  }
+}
+
 /// The loop over a flight's collisions, one of them per call, by delta tracking (spectral tracking
-/// where the extinction is chromatic). False where the walk has ended. A call ends with a prefetch
-/// of the density: callers interleave several walks to hide the memory latency.
+/// where the extinction is chromatic, Kutz et al. 2017): the only one of the renderer, for light
+/// paths, for paths from the camera and for gathering. False where the walk has ended. A call ends
+/// with a prefetch of the density: callers interleave several walks to hide the memory latency.
 ///
 /// The walker, which decides what the walk does, is called at
 /// - `meet(walk, collision)`: a tentative collision, not yet known to be null or real;
@@ -52,12 +74,18 @@ bool advance_flight(Walk& walk, Walker& walker) {
 ///   the first tentative collision of its next flight);
 /// - `leave(walk)`: the flight has reached the end of its segment; returns whether the walk has
 ///   started another one there.
+/// `Walker::bounds_null_collisions`: flights end by end_flight after most_tentative_collisions. Not
+/// for photons, which are stored at tentative collisions with a weight of 1 / majorant.
 template <class Walk, class Walker>
 bool step_flight(const Medium& medium, Walk& walk, Walker& walker) {
+  if constexpr (Walker::bounds_null_collisions)
+    if (walk.null_collisions >= most_tentative_collisions)
+      return end_flight(medium, walk, walker);
   const Collision hit = walk.tracker->collision();
   walker.meet(walk, hit);
   if (sample_real_collision(hit, medium.chromatic, walk.throughput, walk.rng))
     return walker.collide(walk, hit);
+  ++walk.null_collisions;
   return walker.pass(walk) && advance_flight(walk, walker);
 }
 

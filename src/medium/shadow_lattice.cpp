@@ -27,9 +27,22 @@ Boxf box_along(const std::array<Vec3f, 3>& axes, const Boxf& box) {
 } // namespace
 
 ShadowLattice::ShadowLattice(const Medium& medium, const Vec3f& towards, double rays) {
+  place(medium.bounds, towards, rays);
+  depths_.resize(static_cast<std::size_t>(counts_.x) * counts_.y * counts_.z);
+  tbb::parallel_for(0, counts_.x * counts_.y, [&](int column) { trace_column(medium, column); });
+}
+
+std::uint64_t ShadowLattice::bytes(const Boxf& bounds, const Vec3f& towards, double rays) {
+  ShadowLattice lattice;
+  lattice.place(bounds, towards, rays);
+  const Vec3<std::uint64_t> n(lattice.counts_);
+  return n.x * n.y * n.z * sizeof(float);
+}
+
+void ShadowLattice::place(const Boxf& bounds, const Vec3f& towards, double rays) {
   axes_[2] = -towards;
   orthonormal_frame(axes_[2], axes_[0], axes_[1]);
-  const Boxf box = box_along(axes_, medium.bounds);
+  const Boxf box = box_along(axes_, bounds);
   const Vec3f extent = max(box.size(), Vec3f(1e-6f));
   const auto longest = static_cast<double>(max_component(extent)),
              area = static_cast<double>(extent.x) * static_cast<double>(extent.y);
@@ -42,8 +55,6 @@ ShadowLattice::ShadowLattice(const Medium& medium, const Vec3f& towards, double 
     spacing_[a] = extent[a] / static_cast<float>(steps);
   }
   step_ = std::min(spacing_.x, std::min(spacing_.y, spacing_.z));
-  depths_.resize(static_cast<std::size_t>(counts_.x) * counts_.y * counts_.z);
-  tbb::parallel_for(0, counts_.x * counts_.y, [&](int column) { trace_column(medium, column); });
 }
 
 /// Follows the light through the medium.

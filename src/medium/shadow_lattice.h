@@ -14,6 +14,8 @@ class ShadowLattice {
 public:
   /// For a light in the direction `towards` (unit); sends up to about `rays` rays.
   ShadowLattice(const Medium& medium, const Vec3f& towards, double rays);
+  /// What such a lattice takes over a medium with these bounds.
+  static std::uint64_t bytes(const Boxf& bounds, const Vec3f& towards, double rays);
 
   /// Transmittance from the point to the light, of the clearest channel.
   float transmittance(const Vec3f& point) const;
@@ -24,10 +26,12 @@ public:
   Vec3f point(const Vec3<int>& index) const;
 
 private:
+  ShadowLattice() = default;
+  void place(const Boxf& bounds, const Vec3f& towards, double rays);
   void trace_column(const Medium& medium, int column);
 
   Vec3<int> counts_;          ///< lattice points along each axis, at least 2
-  float step_;                ///< the least of `spacing_`
+  float step_ = 0;            ///< the least of `spacing_`
   std::array<Vec3f, 3> axes_; ///< unit; the last is the way the light travels
   Vec3f origin_;              ///< the first point, along the axes
   Vec3f spacing_;

@@ -233,7 +233,8 @@ std::size_t PhotonMap::bytes() const {
 std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions) {
   // A group of boxes of the tree's lowest level has 8 blocks; higher levels add a seventh.
   constexpr std::size_t tree = sizeof(BoxGroup) / (8 * PhotonBlocks::width) + 1;
-  return PhotonList::bytes_per_photon(directions) + 2 * sizeof(OrderedPhoton) +
+  // The second order is gone before the map comes, which takes as much or more.
+  return PhotonList::bytes_per_photon(directions) + sizeof(OrderedPhoton) +
          PhotonBlocks::bytes_per_photon(channels, directions) + tree;
 }
 int PhotonMap::channels() const {

@@ -1,5 +1,6 @@
 #include "photons/photon_pass.h"
 
+#include "machine/memory.h"
 #include "machine/stopwatch.h"
 #include "photons/blur_probe.h"
 #include "photons/photon_cache.h"
@@ -14,12 +15,15 @@ PhotonPass::PhotonPass(const EstimatorInput& input, PassWorlds& worlds, const Wo
       disc_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::disc) : nullptr),
       ball_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::ball) : nullptr) {
   const World& world = first;
-  // One for many passes costs little; a moment of the shutter may serve a single pass.
-  const double rays_per_pixel = input.of_scene ? 1.0 / 16 : 2;
+  const double rays_per_pixel = shadow_rays_per_pixel(input.of_scene != nullptr);
   if (plan.shadow_lattices && !input.stopped())
     shadows_ = make_shadow_lattices(world, plan_.sampled_lights,
                                     rays_per_pixel * static_cast<double>(input.camera.width()) *
                                         input.camera.height());
+}
+
+double PhotonPass::shadow_rays_per_pixel(bool of_moment) {
+  return of_moment ? 1.0 / 16 : 2;
 }
 
 void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
@@ -73,6 +77,7 @@ void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
   }
   const Stopwatch watch;
   TracedPhotons traced = trace_photons(*world_, settings);
+  return_freed_memory(); // the threads' own lists, as large as the one that was made of them
   statistics.trace += watch.seconds();
   const bool stopped = input_.stopped();
   if (stopped)

@@ -27,6 +27,10 @@ public:
     compared_map_ = {};
   }
 
+  /// Rays of the lattices of shadows for each pixel. One lattice for many passes costs little; that
+  /// of a moment of the shutter may serve a single pass.
+  static double shadow_rays_per_pixel(bool of_moment);
+
   const PhotonPlan& plan() const { return plan_; }
   /// Tell where direct light is to be looked for; empty where they cannot.
   const ShadowLattices& shadows() const { return shadows_; }

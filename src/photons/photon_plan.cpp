@@ -117,13 +117,19 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
 }
 
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) {
-  const RenderSettings& settings = input.settings;
-  double paths = static_cast<double>(settings.photons.value_or(0)) *
-                 std::min(1 / stored_per_path, most_paths_per_photon);
-  if (!settings.photons)
-    paths = std::min(std::max(fewest_paths, in_steps(paths_per_hit * count_hits(input))),
-                     most_photons / stored_per_path);
-  return static_cast<std::uint64_t>(std::ceil(paths));
+  const std::optional<std::uint64_t>& photons = input.settings.photons;
+  return static_cast<std::uint64_t>(
+      std::ceil(photons ? paths_for_photons(static_cast<double>(*photons), stored_per_path)
+                        : automatic_paths(count_hits(input), stored_per_path)));
+}
+
+double automatic_paths(double hits, double stored_per_path) {
+  return std::min(std::max(fewest_paths, in_steps(paths_per_hit * hits)),
+                  most_photons / stored_per_path);
+}
+
+double paths_for_photons(double photons, double stored_per_path) {
+  return photons * std::min(1 / stored_per_path, most_paths_per_photon);
 }
 
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {

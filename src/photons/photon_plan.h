@@ -59,6 +59,10 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
+/// The same, from the camera rays that meet the medium, where the scene asks for no number.
+double automatic_paths(double hits, double stored_per_path);
+/// The same, where the scene asks for a number of photons.
+double paths_for_photons(double photons, double stored_per_path);
 
 /// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
 /// all that the medium shows of them comes from photons, few of which leave a lamp's housing.

@@ -1,12 +1,19 @@
 #include "plan/memory_model.h"
 
 #include "camera/camera.h"
+#include "estimators/estimator_table.h"
 #include "estimators/gather/gather_pass.h"
 #include "film/deep_film.h"
+#include "film/film.h"
 #include "image/deep_layout.h"
+#include "layers/plane_layers.h"
 #include "machine/threads.h"
+#include "medium/shadow_lattice.h"
+#include "photonmap/photon_blocks.h"
 #include "photonmap/photon_map.h"
+#include "photons/photon_pass.h"
 #include "plan/plan.h"
+#include "prepare/prepared_scene.h"
 #include "vdbeam/render.h"
 
 #include <fmt/format.h>
@@ -26,9 +33,9 @@ constexpr std::uint64_t thread_bytes = 2 * mib;
 constexpr std::uint64_t cell_bytes = 3 * sizeof(float);
 /// A mesh with its tree, of what it takes while it is read.
 constexpr double kept_of_surfaces = 0.3;
-/// As choose_paths has them: light paths per camera ray that meets the medium, the fewest, and
-/// photons of a pass; photons that a path leaves in a medium that is not thin.
-constexpr double paths_per_hit = 4, fewest_paths = 10000, most_photons = 4e6, stored_per_path = 4;
+/// Photons that a light path leaves in a thin medium per optical depth of the medium, fitted to the
+/// sample scenes, which have 0.5 to 1.6; and the fewest, so that paths remain to be counted.
+constexpr double stored_per_depth = 0.8, fewest_stored = 0.01;
 /// Of a picture's pixels that are written: half floats beside its own channels, and the preview.
 constexpr std::uint64_t written_bytes_per_pixel = 24;
 
@@ -50,28 +57,30 @@ bool meets(const CellSet& set, const Affine& from_world, const EyeRay& ray) {
     end = std::fmin(end, far);
   }
   constexpr int most_steps = 4096;
-  const double step = std::max(0.5 / length(along), (end - begin) / most_steps);
+  constexpr double voxel = 1.0 / DensityField::cell_width;
+  const double step = std::max(voxel / length(along), (end - begin) / most_steps);
   for (double t = begin; t <= end; t += step)
-    if (set.holds(origin + along * t))
+    if (set.may_hold(origin + along * t))
       return true;
   return false;
 }
 
-/// Share of the picture's rays that meet a volume.
-double share_of_hits(const Scene& scene, const VolumesMemory& volumes) {
+/// Share of the picture's rays that meet a volume. `glow`: also where it does nothing but glow.
+double share_of_hits(const Scene& scene, const VolumesMemory& volumes, bool glow) {
   constexpr int samples = 48;
   const Camera camera(scene.camera, scene.image, {});
   std::vector<Affine> from_world;
-  for (const Affine& map : volumes.to_world)
-    from_world.push_back(map.inverse());
+  for (const SeenCells& seen : volumes.seen)
+    from_world.push_back(seen.to_world.inverse());
   int hits = 0;
   for (int y = 0; y < samples; ++y)
     for (int x = 0; x < samples; ++x) {
       const EyeRay ray =
           camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples);
       bool met = false;
-      for (std::size_t i = 0; i < volumes.sets.size() && !met; ++i)
-        met = !volumes.sets[i].empty() && meets(volumes.sets[i], from_world[i], ray);
+      for (std::size_t i = 0; i < volumes.seen.size() && !met; ++i)
+        met = (glow || volumes.seen[i].dims) && !volumes.seen[i].cells.empty() &&
+              meets(volumes.seen[i].cells, from_world[i], ray);
       hits += met ? 1 : 0;
     }
   return hits / static_cast<double>(samples * samples);
@@ -83,7 +92,7 @@ public:
       : scene_(scene), volumes_(volumes), plan_(plan),
         pixels_(static_cast<std::uint64_t>(scene.image.raster_width()) *
                 static_cast<std::uint64_t>(scene.image.raster_height())),
-        hits_(share_of_hits(scene, volumes)) {}
+        hits_(share_of_hits(scene, volumes, true)) {}
 
   MemoryPlan estimate() {
     result_.kept = volumes_.kept;
@@ -99,6 +108,7 @@ public:
     add("surfaces", "mesh", "use meshes of fewer triangles and smaller textures",
         plan_.surface_bytes, surfaces, surfaces);
     add_photons();
+    add_shadows();
     add_film();
     add_deep();
     result_.program = program;
@@ -128,30 +138,67 @@ private:
                : fmt::format("leave out {}, or use a coarser volume", volumes_.why);
   }
 
-  void add_photons() {
+  /// Photons of a pass.
+  double photons() const {
     if (!plan_.needs(Stage::photons) && !plan_.needs(Stage::surface_photons))
-      return;
-    double photons = 0;
-    if (scene_.render.photons) {
-      photons = static_cast<double>(*scene_.render.photons);
-    } else {
-      const double hits = hits_ * static_cast<double>(pixels_);
-      const double paths =
-          std::min(std::max(fewest_paths, paths_per_hit * hits), most_photons / stored_per_path);
-      photons = paths * stored_per_path;
+      return 0;
+    const double stored = volumes_.depth < 0 ? stored_per_path_aim
+                                             : std::clamp(stored_per_depth * volumes_.depth,
+                                                          fewest_stored, stored_per_path_aim);
+    const auto& asked = scene_.render.photons;
+    const double hits = share_of_hits(scene_, volumes_, false) * static_cast<double>(pixels_);
+    return stored * (asked ? paths_for_photons(static_cast<double>(*asked), stored)
+                           : automatic_paths(hits, stored));
+  }
+
+  /// Groups of lights have their photons one after the other.
+  void add_photons() {
+    const double count = photons();
+    const bool directions = plan_.needs(Stage::photon_directions);
+    const int channels = plan_.needs(Stage::photon_color) ? 3 : 1;
+    const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions);
+    add("photons", "render.photons", "ask for fewer photons and more passes", 0, times(count, each),
+        0);
+    // Frames of which nothing but the camera moves, for which photons are stored evenly, share
+    // them.
+    if (scene_.render.seeds == SeedPolicy::correlated &&
+        scene_.render.thinning == PhotonThinning::even && count > 0) {
+      const std::uint64_t maps = times(count * scene_.render.passes.value_or(1 << 20),
+                                       PhotonBlocks::bytes_per_photon(channels, directions));
+      const std::uint64_t kept = std::min(maps, photon_cache_capacity());
+      add("photon cache", "render.seeds", "give each frame seeds of its own", 0, kept, kept);
     }
-    const std::uint64_t bytes =
-        times(photons, PhotonMap::build_bytes_per_photon(plan_.needs(Stage::photon_color) ? 3 : 1,
-                                                         plan_.needs(Stage::photon_directions)));
-    add("photons", "render.photons", "ask for fewer photons and more passes", 0, bytes, 0);
+  }
+
+  /// Each group has shadows of its own lights, each moment of the shutter coarse ones.
+  void add_shadows() {
+    if (!plan_.needs(Stage::shadow_rays) ||
+        !estimator_kind(scene_.render.estimator).shoots_photons())
+      return;
+    Boxd bounds;
+    for (const SeenCells& seen : volumes_.seen)
+      if (seen.dims && !seen.cells.empty())
+        bounds.extend(seen.to_world.bounds(seen.cells.bounds()));
+    const bool moves = volumes_.moments > 0 && plan_.needs(Stage::photon_importance);
+    const double rays = PhotonPass::shadow_rays_per_pixel(moves) * static_cast<double>(pixels_);
+    std::uint64_t bytes = 0;
+    for (std::size_t i = 0; i < scene_.lights.size() && !(bounds.lower.x > bounds.upper.x); ++i)
+      if (scene_.lights[i].type == LightType::distant && plan_.shadow_ray_lights[i])
+        bytes += ShadowLattice::bytes(Boxf{Vec3f(bounds.lower), Vec3f(bounds.upper)},
+                                      Vec3f(normalize(scene_.lights[i].direction)) * -1.0f, rays);
+    bytes *= std::max<std::uint64_t>(1, volumes_.moments);
+    add("shadows", "", "", 0, bytes, bytes);
   }
 
   void add_film() {
     const bool walks = plan_.needs(Stage::photons) && plan_.needs(Stage::beam_query) &&
                        scene_.render.final_gather != FinalGathering::never &&
                        scene_.surfaces.empty();
-    const std::uint64_t film = plan_.film_bytes;
-    add("film", "image", "ask for a smaller picture", 0, film, film / 3);
+    // The picture that is written is developed once photons are gone.
+    const std::uint64_t film = plan_.film_bytes,
+                        developed = pixels_ * (Film::developed_bytes_per_pixel(scene_.glows()) +
+                                               sizeof(float) * plane_names(scene_).size());
+    add("film", "image", "ask for a smaller picture", 0, film - developed, film);
     if (walks)
       add("walks", "image", "ask for a smaller picture", 0,
           pixels_ * PassImage::bytes_per_pixel(scene_.glows()), 0);

@@ -5,15 +5,25 @@
 
 namespace vdbeam {
 
+/// Where a volume is that the camera may see.
+struct SeenCells {
+  CellSet cells;
+  Affine to_world;   ///< of the cells
+  bool dims = false; ///< light: it absorbs or scatters
+};
+
 /// What the volumes of a scene take.
 struct VolumesMemory {
   std::uint64_t kept = 0;    ///< while the frame is rendered, all moments of its shutter included
   std::uint64_t still = 0;   ///< without the moments
   std::uint64_t reading = 0; ///< the most beside it while they are read and prepared
+  std::uint64_t moments = 0; ///< of its shutter that are kept; 0: nothing moves
   std::uint64_t cells = 0;   ///< entries of the index tables
   std::string largest, why;  ///< the file that needs most, and what in the scene asks for it
-  std::vector<CellSet> sets; ///< of what the camera sees, with
-  std::vector<Affine> to_world; ///< the place of their cells
+  std::vector<SeenCells> seen;
+  /// Optical depth of the medium along a ray that meets it, the mean over such rays; below 0: not
+  /// known.
+  double depth = 0;
 };
 
 /// Estimates it from the topology of the files' trees. Throws as read_density_grid.

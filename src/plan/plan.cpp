@@ -187,29 +187,6 @@ private:
   std::vector<PlanStage> stages_;
 };
 
-std::uint64_t volume_memory(const Scene& scene, const std::vector<VolumeFacts>& volumes) {
-  std::uint64_t bytes = 0;
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
-    bytes += DensityField::bytes_of_voxels(volumes[i].active_voxels) +
-             EmissionField::bytes_of_voxels(volumes[i].glowing_voxels);
-    if (!scene.volumes[i].color_grid.empty())
-      bytes += ColorField::bytes_of_voxels(volumes[i].active_voxels);
-  }
-  return bytes;
-}
-
-/// How many copies of volumes a shutter needs at least that sees them at several moments: two
-/// moments, and what they are made from where it is not the world itself.
-int copies_of_moments(const Scene& scene) {
-  int copies = 0;
-  for (const VolumeSettings& volume : scene.volumes)
-    if (!scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
-        volume.velocity.scale != 0)
-      copies =
-          std::max(copies, volume.glows() || volume.remap.changes() || volume.box_lower ? 3 : 2);
-  return copies;
-}
-
 /// A ray that ends in opaque matter after the whole medium has the most pieces.
 std::uint64_t deep_memory(const ImageSettings& image) {
   constexpr double by_depth = 16, share = 1.0 / 3;
@@ -236,11 +213,9 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   plan.shadow_ray_lights = needs.shadow_ray_lights;
   plan.unbiased =
       !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
-  plan.volume_bytes = volume_memory(scene, volumes);
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
                                       needs.colored ? 3 : 1, needs.anisotropic);
-  plan.moment_bytes = static_cast<std::uint64_t>(copies_of_moments(scene)) * plan.volume_bytes;
   if (scene.image.deep)
     plan.deep_bytes = deep_memory(scene.image);
   plan.film_bytes = film_memory(

@@ -2,11 +2,14 @@
 #include "machine/memory.h"
 #include "plan/memory_model.h"
 #include "prepare/read_volumes.h"
+#include "vdb/vector_reader.h"
+#include "vdbeam/error.h"
 #include "volume/emission_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace vdbeam {
 namespace {
@@ -21,8 +24,8 @@ constexpr std::uint64_t leaf_overhead = 112;
 constexpr std::uint64_t reader_bytes = std::uint64_t{8} << 20;
 /// Ranges of a leaf's values, and its origin, while bricks are made.
 constexpr std::uint64_t leaf_range_bytes = 64 + 12;
-/// Columns of a refined field grow as vectors do, by doubling.
-constexpr double growing = 1.5;
+/// A refined field is put together from columns, which hold its values once more.
+constexpr double while_refined = 2;
 /// Bricks that a velocity brings something to, beside those of the grid at rest.
 constexpr double moved_share = 1.15;
 
@@ -31,7 +34,15 @@ struct FieldMemory {
   CellSet set;
   std::uint64_t bytes = 0, peak = 0;
   Affine to_world; ///< of its cells
+  /// Of the grid itself, before it is refined and displaced: by its voxels it is known best what
+  /// the camera sees.
+  CellSet grid;
+  Affine grid_to_world;
 };
+
+std::uint64_t times(double factor, std::uint64_t bytes) {
+  return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
+}
 
 std::uint64_t field_bytes(const CellSet& set) {
   return set.count() * brick_bytes + set.cells() * table_bytes;
@@ -61,7 +72,8 @@ public:
     field.set = CellSet(shape, 1, 0, wanted);
     field.bytes = field_bytes(field.set);
     field.peak = reading_bytes(shape, field.set);
-    field.to_world = cells_to_world(header.index_to_world, 1);
+    field.to_world = field.grid_to_world = cells_to_world(header.index_to_world, 1);
+    field.grid = field.set;
     if (volume_.interpolation == Interpolation::cubic)
       refine(shape, wanted, header.index_to_world, field);
     if (volume_.noise.amplitude > 0)
@@ -79,7 +91,7 @@ public:
 private:
   /// OpenVDB's tree and the memory file beside it, or the bricks that replace the file.
   static std::uint64_t reading_bytes(const GridShape& shape, const CellSet& set) {
-    const std::uint64_t leaves = shape.leaves.size();
+    const std::uint64_t leaves = shape.leaf_count;
     const std::uint64_t file = leaves * leaf_values * sizeof(float);
     const std::uint64_t child = reader_bytes + file + shape.node_bytes +
                                 leaves * (leaf_values * shape.value_bytes + leaf_overhead);
@@ -93,16 +105,14 @@ private:
   /// A step of the preparation that makes a field from another.
   static void replace(FieldMemory& field, CellSet set, double while_made) {
     const std::uint64_t bytes = field_bytes(set);
-    field.peak =
-        std::max(field.peak,
-                 field.bytes + static_cast<std::uint64_t>(while_made * static_cast<double>(bytes)));
+    field.peak = std::max(field.peak, field.bytes + times(while_made, bytes));
     field.bytes = bytes;
     field.set = std::move(set);
   }
 
   void refine(const GridShape& shape, const std::optional<WantedBox::Voxels>& wanted,
               const Affine& index_to_world, FieldMemory& field) {
-    replace(field, CellSet(shape, 2, 3, wanted), growing);
+    replace(field, CellSet(shape, 2, 3, wanted), while_refined);
     field.to_world = cells_to_world(index_to_world, 0.5);
   }
 
@@ -113,6 +123,9 @@ private:
       const Vec3d& row = from_world.rows[static_cast<std::size_t>(a)];
       const double most =
           volume_.noise.amplitude * (std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+      constexpr double far = 1 << 24; // cells, more than any table has
+      if (!(most < far))
+        throw FrameError(volume_.file + ": is displaced too far for any table of its blocks");
       lower[a] = static_cast<int>(std::floor(-0.25 - most));
       upper[a] = static_cast<int>(std::floor(1.125 + most));
     }
@@ -124,19 +137,51 @@ private:
   std::map<std::string, GridShape> shapes_;
 };
 
-/// How a frame's shutter multiplies a volume.
+/// Whether the frame's shutter sees the volume at several moments.
 bool moves(const Scene& scene, const VolumeSettings& volume) {
   return !scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
-         volume.velocity.scale != 0;
+         volume.velocity.scale != 0 && has_velocity(volume.file, volume.velocity.grid);
 }
+
+/// The mean optical depth of volumes, from the sum of their voxels and the shadows of their cells.
+class MeanDepth {
+public:
+  void add(const VolumeSettings& volume, const GridShape& shape, const CellSet& cells,
+           const Affine& to_world) {
+    const bool edited = volume.remap.changes() || !volume.mask.empty() || !volume.add.empty() ||
+                        volume.box_lower.has_value();
+    known_ = known_ && shape.value_sum >= 0 && !edited;
+    const auto edge = [&](int a) {
+      const std::array<Vec3d, 3>& rows = to_world.rows;
+      return Vec3d{rows[0][a], rows[1][a], rows[2][a]};
+    };
+    const Vec3d columns = cells.columns();
+    for (int a = 0; a < 3; ++a)
+      area_ += columns[a] / 3 * length(cross(edge((a + 1) % 3), edge((a + 2) % 3)));
+    const Rgb& by_channel = volume.extinction_scale;
+    const double scale = static_cast<double>(by_channel.x + by_channel.y + by_channel.z) / 3;
+    constexpr double width = DensityField::cell_width;
+    const double voxel = std::abs(dot(edge(0), cross(edge(1), edge(2)))) / (width * width * width);
+    opacity_ += volume.extinction * scale * shape.value_sum * voxel;
+  }
+
+  /// Below 0 where it is not known.
+  double value() const { return !known_ ? -1 : area_ > 0 ? opacity_ / area_ : 0; }
+
+private:
+  bool known_ = true;
+  double opacity_ = 0, area_ = 0; ///< integral of the extinction [area], and what it shades [area]
+};
 
 struct VolumeMemory {
   std::uint64_t kept = 0, peak = 0; ///< `peak`: while it is prepared, in all
   std::uint64_t sources = 0;        ///< kept for the moments beside it
+  std::uint64_t in_file = 0;        ///< of a field of its density as the file has it
+  bool moves = false;
 };
 
-void take_density(const Scene& scene, const VolumeSettings& volume, VolumeEstimate& estimate,
-                  VolumesMemory& all, VolumeMemory& memory) {
+void take_density(const VolumeSettings& volume, VolumeEstimate& estimate, VolumesMemory& all,
+                  VolumeMemory& memory, MeanDepth& depth) {
   FieldMemory field = estimate.source(volume.density);
   std::uint64_t others = 0;
   for (std::string names = volume.add + "," + volume.mask; !names.empty();) {
@@ -157,7 +202,8 @@ void take_density(const Scene& scene, const VolumeSettings& volume, VolumeEstima
     field.peak = std::max(field.peak, 2 * field.bytes);
   memory.peak = std::max(memory.peak, field.peak);
   memory.kept += field.bytes;
-  if (moves(scene, volume) && edited)
+  memory.in_file = field_bytes(CellSet(estimate.shape_of(volume.density), 1, 0));
+  if (memory.moves && edited)
     memory.sources += field.bytes;
   if (!volume.color_grid.empty()) {
     const std::uint64_t colors = 3 * field.set.count() * brick_bytes;
@@ -165,33 +211,34 @@ void take_density(const Scene& scene, const VolumeSettings& volume, VolumeEstima
     memory.peak = std::max(memory.peak, memory.kept + colors);
   }
   all.cells += field.set.cells();
-  all.to_world.push_back(Affine::from_matrix(volume.transform).after(field.to_world));
-  all.sets.push_back(std::move(field.set));
+  const Affine to_world = Affine::from_matrix(volume.transform).after(field.grid_to_world);
+  depth.add(volume, estimate.shape_of(volume.density), field.grid, to_world);
+  all.seen.push_back({std::move(field.grid), to_world, volume.absorbs_or_scatters()});
 }
 
-void take_emission(const Scene& scene, const VolumeSettings& volume, VolumeEstimate& estimate,
-                   VolumesMemory& all, VolumeMemory& memory) {
+void take_emission(const VolumeSettings& volume, VolumeEstimate& estimate, VolumesMemory& all,
+                   VolumeMemory& memory) {
   std::uint64_t made_from = 0;
-  CellSet largest;
+  CellSet glows, seen;
   Affine place;
+  // What glows has the shape of the intensity where there is one.
   for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
     if (name.empty())
       continue;
     FieldMemory field = estimate.source(name);
     memory.peak = std::max(memory.peak, memory.kept + made_from + field.peak);
     made_from += field.bytes;
-    if (field.set.count() > largest.count()) {
-      largest = std::move(field.set);
-      place = field.to_world;
-    }
+    glows = std::move(field.set);
+    seen = std::move(field.grid);
+    place = field.grid_to_world;
   }
-  const std::uint64_t glow = largest.count() * brick_bytes * 3 + largest.cells() * 4;
+  const std::uint64_t glow = glows.count() * brick_bytes * 3 + glows.cells() * 4;
   memory.peak = std::max(memory.peak, memory.kept + made_from + glow);
   memory.kept += glow;
-  if (moves(scene, volume))
+  memory.in_file = std::max(memory.in_file, made_from);
+  if (memory.moves)
     memory.sources += made_from;
-  all.to_world.push_back(Affine::from_matrix(volume.transform).after(place));
-  all.sets.push_back(std::move(largest));
+  all.seen.push_back({std::move(seen), Affine::from_matrix(volume.transform).after(place), false});
 }
 
 std::string reason(const VolumeSettings& volume) {
@@ -204,21 +251,30 @@ std::string reason(const VolumeSettings& volume) {
 
 VolumesMemory estimate_volumes(const Scene& scene) {
   VolumesMemory all;
+  MeanDepth depth;
   std::uint64_t most = 0, sources = 0, moving = 0;
+  std::set<std::string> known; // volumes of the same values share them
   for (const VolumeSettings& volume : scene.volumes) {
     if (!volume.present)
       continue;
     VolumeEstimate estimate(scene, volume);
     VolumeMemory memory;
-    if (volume.needs_density())
-      take_density(scene, volume, estimate, all, memory);
-    if (volume.glows())
-      take_emission(scene, volume, estimate, all, memory);
-    if (moves(scene, volume)) {
-      moving += static_cast<std::uint64_t>(moved_share * static_cast<double>(memory.kept));
+    memory.moves = moves(scene, volume);
+    const bool density = volume.needs_density(), glows = volume.glows();
+    if (density)
+      take_density(volume, estimate, all, memory, depth);
+    if (density && !memory.moves && !known.insert(density_identity(volume)).second)
+      memory = {};
+    const VolumeMemory before_glow = memory;
+    if (glows)
+      take_emission(volume, estimate, all, memory);
+    if (glows && !memory.moves && !known.insert("glow" + emission_identity(volume)).second)
+      memory = before_glow;
+    if (memory.moves) {
+      moving += times(moved_share, memory.kept);
       // A velocity has three numbers where the density has one.
-      sources += memory.sources + 3 * memory.kept;
-      memory.peak += 3 * memory.kept;
+      sources += memory.sources + 3 * memory.in_file;
+      memory.peak += 3 * memory.in_file;
     }
     const std::uint64_t before = all.still + sources;
     all.reading = std::max(all.reading, before + memory.peak);
@@ -229,12 +285,14 @@ VolumesMemory estimate_volumes(const Scene& scene) {
       all.why = reason(volume);
     }
   }
+  all.depth = depth.value();
   all.kept = all.still + sources;
   if (moving > 0) {
-    const std::uint64_t moments = std::min<std::uint64_t>(
-        scene.moments.size(), static_cast<std::uint64_t>(scene.render.passes.value_or(1 << 20)));
-    const std::uint64_t room = std::max(2 * moving, granted_memory() / 4);
-    all.kept += std::min(moments * moving, room);
+    const std::uint64_t room = std::max<std::uint64_t>(2, granted_memory() / 4 / moving);
+    all.moments = std::min<std::uint64_t>(
+        {scene.moments.size(), static_cast<std::uint64_t>(scene.render.passes.value_or(1 << 20)),
+         room});
+    all.kept += all.moments * moving;
     all.reading += moving;
   }
   return all;

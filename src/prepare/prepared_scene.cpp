@@ -47,12 +47,6 @@ std::string photon_settings(const Scene& scene) {
                        [](const SceneKey& key) { return key.section == SceneSection::render; });
 }
 
-/// Bytes for photons that later frames may use: at most an eighth of the memory, which is less than
-/// what `vdbeam farm` asks for beyond its estimate.
-std::uint64_t cache_capacity() {
-  return std::min<std::uint64_t>(granted_memory() / 8, std::uint64_t{1} << 30);
-}
-
 void keep_facts(const DensityGrid& grid, ReadVolume& read) {
   read.facts.index_to_world = grid.index_to_world;
   read.facts.repairs = grid.repairs;
@@ -71,6 +65,10 @@ std::vector<VolumeSettings> moments_of(const Scene& scene, std::size_t volume) {
 }
 
 } // namespace
+
+std::uint64_t photon_cache_capacity() {
+  return std::min<std::uint64_t>(granted_memory() / 8, std::uint64_t{1} << 30);
+}
 
 void add_work(RenderStatistics& statistics, const PreparedScene& prepared) {
   statistics.read += prepared.seconds_read;
@@ -132,7 +130,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
     if (previous->photon_settings == prepared->photon_settings)
       prepared->photons = previous->photons;
     if (!prepared->photons && scene.render.seeds == SeedPolicy::correlated)
-      prepared->photons = std::make_shared<PhotonCache>(cache_capacity());
+      prepared->photons = std::make_shared<PhotonCache>(photon_cache_capacity());
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
       ReadVolume& read = prepared->volumes[i];
       read.sources.clear();
@@ -179,10 +177,12 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
       read.identity.clear(); // its field is not kept
     prepared->volumes.push_back(std::move(read));
   }
+  return_freed_memory();
   prepared->seconds_read = watch.restart();
   prepared->world = std::make_shared<const World>(
       build_world(scene, std::move(grids), std::move(emissions), &prepared->facts,
                   previous ? previous->world.get() : nullptr));
+  return_freed_memory();
   prepared->seconds_build = watch.seconds();
   prepared->facts.notes.insert(prepared->facts.notes.end(), axis_notes.begin(), axis_notes.end());
   note_velocities(scene, *prepared);

@@ -46,6 +46,9 @@ public:
   std::uint64_t source_bytes() const;
 };
 
+/// Bytes for photons that later frames may use: at most an eighth of the memory.
+std::uint64_t photon_cache_capacity();
+
 /// Adds what preparing the scene took.
 void add_work(RenderStatistics& statistics, const PreparedScene& prepared);
 

@@ -73,19 +73,6 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   return edits;
 }
 
-/// Everything that decides an emission field but the contents of the file; its strength does not.
-std::string emission_identity(const VolumeSettings& volume) {
-  std::string text = file_identity(volume.file) + box_text(volume) + noise_text(volume) +
-                     fmt::format("|{}|{}", static_cast<int>(volume.emission.color_space),
-                                 static_cast<int>(volume.interpolation));
-  Scene scene;
-  scene.volumes.push_back(volume);
-  for (const SceneKey& key : scene_keys())
-    if (key.section == SceneSection::emission && !key.scales_emission)
-      text += fmt::format("|{}", key.format(key.get(scene, 0)));
-  return text;
-}
-
 /// The colours of a volume, read, or taken from `previous`.
 Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
                    const std::string& identity, ReadVolume& read) {
@@ -130,6 +117,18 @@ DensityGrid take_emission_source(const VolumeSettings& volume, const std::string
 }
 
 } // namespace
+
+std::string emission_identity(const VolumeSettings& volume) {
+  std::string text = file_identity(volume.file) + box_text(volume) + noise_text(volume) +
+                     fmt::format("|{}|{}", static_cast<int>(volume.emission.color_space),
+                                 static_cast<int>(volume.interpolation));
+  Scene scene;
+  scene.volumes.push_back(volume);
+  for (const SceneKey& key : scene_keys())
+    if (key.section == SceneSection::emission && !key.scales_emission)
+      text += fmt::format("|{}", key.format(key.get(scene, 0)));
+  return text;
+}
 
 std::string density_identity(const VolumeSettings& volume) {
   return file_identity(volume.file) + density_text(volume);

@@ -18,6 +18,8 @@ void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings
 
 /// Everything that decides a volume's density and colours: volumes with the same share them.
 std::string density_identity(const VolumeSettings& volume);
+/// The same of its emission field, whose strength does not count.
+std::string emission_identity(const VolumeSettings& volume);
 
 /// A volume's density as the scene wants it: read, or taken from `previous`, moved and edited.
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,

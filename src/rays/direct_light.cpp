@@ -2,6 +2,7 @@
 
 #include "medium/distance_sampling.h"
 #include "medium/equi_angular.h"
+#include "transport/next_event.h"
 
 #include <optional>
 
@@ -58,17 +59,16 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
   const bool surrounds = world.lights.traits(index).surrounds;
   const PhaseFunction& phase = single.phase;
   Rgb sum;
-  const float u = rng.uniform(), v = rng.uniform();
-  const IncidentSample sample = light.sample_incident(point, u, v);
-  if (max_component(sample.value) > 0) {
-    const float cosine = dot(direction, sample.wi), p = phase.evaluate(cosine);
-    const float mis = sample.pdf > 0 ? sample.pdf / (sample.pdf + p) : 1;
-    if (p * mis > 0 && unoccluded(world, Vec3d(point), sample.wi, sample.distance)) {
+  if (const auto shadow_ray = sample_shadow_ray(
+          light, point, rng, [&](const Vec3f& wi) { return phase.evaluate(dot(direction, wi)); })) {
+    const Vec3f& wi = shadow_ray->direction;
+    const float cosine = dot(direction, wi), p = phase.evaluate(cosine), mis = shadow_ray->weight;
+    if (p * mis > 0 && unoccluded(world, Vec3d(point), wi, shadow_ray->distance)) {
       ++shadow_rays;
       Rgb taken_out;
       const Rgb through = estimate_transmittance(
-          world.medium, {{point, sample.wi}, 0, sample.distance}, rng.uniform(), &taken_out);
-      sum += sample.value * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
+          world.medium, {{point, wi}, 0, shadow_ray->distance}, rng.uniform(), &taken_out);
+      sum += shadow_ray->light * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
     }
   }
   if (light.is_delta())
@@ -92,17 +92,17 @@ Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& si
 class RayLighting {
 public:
   RayLighting(const World& world, const Ray& ray, const DepthProfile& profile,
-              const std::vector<bool>& sampled, const ShadowLattices& shadows, Rng& rng,
-              std::uint64_t& shadow_rays, const DeepRay& deep, const VolumeLights& volumes,
-              float share)
+              const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
+              const RaySink& sink)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
-        rng_(rng), shadow_rays_(shadow_rays), deep_(deep), volumes_(volumes), share_(share) {
+        rng_(rng), shadow_rays_(shadow_rays), sink_(sink),
+        share_(1 / static_cast<float>(sampling.samples)) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
-      if (!sampled[l])
+      if (!sampling.sampled[l])
         continue;
       lights_.push_back({l, near_light(world.lights[l]), {}});
-      if (l < shadows.size() && shadows[l])
-        weigh_pieces(*shadows[l], lights_.back());
+      if (sampling.shadows && l < sampling.shadows->size() && (*sampling.shadows)[l])
+        weigh_pieces(*(*sampling.shadows)[l], lights_.back());
     }
   }
 
@@ -122,7 +122,7 @@ public:
       const float other = light.near ? light.near->pdf(point.t) : 0;
       sum += scattered(point, light.index, point.pdf / (point.pdf + other));
     }
-    deep_.add_light_at(point.t, sum * share_);
+    sink_.deep.add_light_at(point.t, sum * share_);
     return sum;
   }
 
@@ -219,7 +219,7 @@ private:
 
   /// Light of one of the samples, which adds so much to the deep picture.
   const Rgb& take_down(const ScatterPoint& point, const Rgb& light) {
-    deep_.add_light_at(point.t, light * share_);
+    sink_.deep.add_light_at(point.t, light * share_);
     return light;
   }
 
@@ -236,7 +236,7 @@ private:
           weight * scattered_light(world_, light,
                                    single_phase(medium.volumes[v].phase_index, point.t),
                                    point.position, ray_.direction, rng_, shadow_rays_);
-      volumes_.add(medium.volumes[v].setting, radiance * (factor * share_));
+      sink_.volumes.add(medium.volumes[v].setting, radiance * (factor * share_));
       sum += radiance;
     }
     return sum * factor;
@@ -264,8 +264,7 @@ private:
   DistanceSampler distances_;
   Rng& rng_;
   std::uint64_t& shadow_rays_;
-  const DeepRay& deep_;
-  const VolumeLights& volumes_;
+  const RaySink& sink_;
   float share_; ///< of one sample
   std::vector<SampledLight> lights_;
 };
@@ -273,21 +272,21 @@ private:
 } // namespace
 
 Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
-                 const std::vector<bool>& sampled, int samples, Rng& rng,
-                 std::uint64_t& shadow_rays, const ShadowLattices& shadows, const DeepRay& deep,
-                 const VolumeLights& volumes, const StopToken* stop) {
+                 const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
+                 const RaySink& sink) {
   constexpr int samples_per_check = 16;
+  const std::vector<bool>& sampled = sampling.sampled;
   Rgb sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
-  const float share = 1 / static_cast<float>(samples);
-  RayLighting lighting(world, ray, profile, sampled, shadows, rng, shadow_rays, deep, volumes,
-                       share);
-  for (int i = 0; i < samples; ++i) {
-    if (i % samples_per_check == samples_per_check - 1 && stop && stop->stopped())
+  const float share = 1 / static_cast<float>(sampling.samples);
+  const bool by_shadow = sampling.shadows && !sampling.shadows->empty();
+  RayLighting lighting(world, ray, profile, sampling, rng, shadow_rays, sink);
+  for (int i = 0; i < sampling.samples; ++i) {
+    if (i % samples_per_check == samples_per_check - 1 && sampling.stop && sampling.stop->stopped())
       break;
     sum += lighting.by_medium((static_cast<float>(i) + rng.uniform()) * share);
-    if (!shadows.empty())
+    if (by_shadow)
       sum += lighting.by_shadow((static_cast<float>(i) + rng.uniform()) * share);
     sum += lighting.by_nearness((static_cast<float>(i) + rng.uniform()) * share);
   }

@@ -73,6 +73,7 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
     if (renderer.input.plan.needs(Stage::bias))
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
+    return_freed_memory();
     statistics.pilot += watch.seconds();
     if (renderer.prepared->world != prepared_->world)
       add_work(statistics, *renderer.prepared);

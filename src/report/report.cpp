@@ -142,10 +142,8 @@ Json plan_json(const RenderPlan& plan) {
           {"features", features_json(plan)},
           {"schedule", schedule_json(plan)},
           {"memory",
-           {{"volumes", plan.volume_bytes},
-            {"photons", plan.photon_bytes},
+           {{"photons", plan.photon_bytes},
             {"film", plan.film_bytes},
-            {"moments", plan.moment_bytes},
             {"surfaces", plan.surface_bytes},
             {"deep", plan.deep_bytes}}}};
 }

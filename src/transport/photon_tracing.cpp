@@ -78,6 +78,7 @@ public:
 
   // What happens at the collisions of a flight (step_flight).
 
+  static constexpr bool bounds_null_collisions = false;
   void meet(LightPath& path, const Collision& hit) {
     if (may_store(path) && settings_.store == PhotonStore::fluence)
       store(path, hit, path.throughput / total_majorant(path.segment.ray, hit));
@@ -145,13 +146,7 @@ private:
 
   /// Begins a flight, which ends at the first surface.
   void begin_flight(LightPath& path, const Vec3d& origin, const Vec3f& direction) const {
-    Segment segment{{Vec3f(origin), direction}};
-    if (const Surfaces* surfaces = world_.surfaces.get()) {
-      path.end =
-          surfaces->set->intersect(origin, Vec3d(direction), 0, static_cast<double>(infinity));
-      segment.t_end = surfaces->medium_end(path.end, direction);
-    }
-    path.start(world_.medium, segment);
+    path.start(world_.medium, flight_segment(world_, origin, direction, path.end));
   }
 
   /// False where the path ends at the surface.

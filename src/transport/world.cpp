@@ -281,4 +281,14 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   return world;
 }
 
+Segment flight_segment(const World& world, const Vec3d& origin, const Vec3f& direction,
+                       std::optional<SurfaceHit>& end) {
+  Segment segment{{Vec3f(origin), direction}};
+  if (const Surfaces* surfaces = world.surfaces.get()) {
+    end = surfaces->set->intersect(origin, Vec3d(direction), 0, static_cast<double>(infinity));
+    segment.t_end = surfaces->medium_end(end, direction);
+  }
+  return segment;
+}
+
 } // namespace vdbeam

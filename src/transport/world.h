@@ -29,6 +29,11 @@ inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& dir
                                         static_cast<double>(distance) * (1 - 1e-4));
 }
 
+/// The part of a flight from `origin` on that lies in the medium, and in `end` the surface at which
+/// the flight ends, if it does.
+Segment flight_segment(const World& world, const Vec3d& origin, const Vec3f& direction,
+                       std::optional<SurfaceHit>& end);
+
 /// What the plan and the user are told about the volumes that a world was built from.
 struct WorldFacts {
   struct Voxels {

@@ -41,6 +41,8 @@ GridShape read_grid_shape(const std::string& path, const std::string& grid_name,
   shape.active_voxels = header.active_voxels;
   shape.node_bytes = header.node_bytes;
   shape.value_bytes = header.value_bytes;
+  shape.value_sum = header.value_sum;
+  shape.leaf_count = header.tree_leaves;
   shape.leaves.resize(header.leaf_count);
   shape.tiles.resize(header.tile_count);
   const std::byte* first = file.data() + sizeof header;
@@ -101,7 +103,13 @@ CellSet::CellSet(const GridShape& shape, int scale, int reach,
   marks_.assign(static_cast<std::size_t>(counts_.x) * static_cast<std::size_t>(counts_.y) *
                     static_cast<std::size_t>(counts_.z),
                 0);
+  if (scale == 1 && width_ == 1)
+    blocks_.assign(marks_.size(), 0);
   for_each([&](const ActiveBox& box, bool tile) {
+    if (!blocks_.empty() && !tile) {
+      const Vec3<int> at(cell_of(box.lower, 1, 0, width) - lower);
+      blocks_[offset(at.x, at.y, at.z)] = box.blocks;
+    }
     const Vec3<int> a(first(box) - lower), b(last(box) - lower);
     for (int i = a.x; i <= b.x; ++i)
       for (int j = a.y; j <= b.y; ++j)
@@ -111,6 +119,8 @@ CellSet::CellSet(const GridShape& shape, int scale, int reach,
               tile && i > a.x && j > a.y && k > a.z && i < b.x && j < b.y && k < b.z;
           if (!inside)
             marks_[offset(i, j, k)] = 1;
+          if (tile && !blocks_.empty())
+            blocks_[offset(i, j, k)] = box.blocks;
         }
   });
 }
@@ -126,6 +136,26 @@ bool CellSet::holds(const Vec3d& cell) const {
   return marks_[offset(at.x, at.y, at.z)] != 0;
 }
 
+bool CellSet::may_hold(const Vec3d& cell) const {
+  if (blocks_.empty())
+    return holds(cell);
+  for (int corner = 0; corner < 8; ++corner) { // voxels that a sample there is made from
+    std::size_t block = 0;
+    Vec3<int> at;
+    for (int a = 0; a < 3; ++a) {
+      const auto voxel = static_cast<std::int64_t>(std::floor(cell[a] * DensityField::cell_width)) +
+                         (corner >> a & 1) - lower_[a] * DensityField::cell_width;
+      if (voxel < 0 || voxel >= std::int64_t{counts_[a]} * DensityField::cell_width)
+        return holds(cell); // beside the table
+      at[a] = static_cast<int>(voxel / DensityField::cell_width);
+      block = 4 * block + static_cast<std::size_t>(voxel % DensityField::cell_width / 2);
+    }
+    if ((blocks_[offset(at.x, at.y, at.z)] >> block & 1) != 0)
+      return true;
+  }
+  return false;
+}
+
 Boxd CellSet::bounds() const {
   const double width = width_;
   return {Vec3d(lower_) * width, Vec3d(lower_ + Vec3<std::int64_t>(counts_)) * width};
@@ -135,6 +165,24 @@ std::uint64_t CellSet::count() const {
   const auto marks = std::count(marks_.begin(), marks_.end(), std::uint8_t{1});
   return static_cast<std::uint64_t>(marks) * static_cast<std::uint64_t>(width_) *
          static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(width_);
+}
+
+Vec3d CellSet::columns() const {
+  Vec3d sum;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    for (int i = 0; i < counts_[b]; ++i)
+      for (int j = 0; j < counts_[c]; ++j) {
+        bool any = false;
+        Vec3<int> at;
+        at[b] = i;
+        at[c] = j;
+        for (at[axis] = 0; at[axis] < counts_[axis] && !any; ++at[axis])
+          any = marks_[offset(at.x, at.y, at.z)] != 0;
+        sum[axis] += any ? double{1} * width_ * width_ : 0;
+      }
+  }
+  return sum;
 }
 
 std::uint64_t CellSet::cells() const {

@@ -9,6 +9,8 @@ namespace vdbeam {
 /// and each tile.
 struct ShapeHeader {
   std::uint64_t leaf_count = 0, tile_count = 0, active_voxels = 0, node_bytes = 0, value_bytes = 4;
+  std::uint64_t tree_leaves = 0;
+  double value_sum = -1; ///< as GridShape has it
 };
 
 /// Reads the topology of one grid and writes its shape to `descriptor`, in a child process as

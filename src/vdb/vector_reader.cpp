@@ -187,6 +187,12 @@ read_velocity(const std::string& path, const VelocitySettings& settings, const R
   return std::make_shared<const VectorField>(std::move(values), longest);
 }
 
+bool has_velocity(const std::string& path, const std::string& grid, const ReadLimits& limits) {
+  return read_guarded(path, limits, [&](int output) {
+           write_vector_names(path, grid, VectorMeaning::velocity, output);
+         }).size() > 0;
+}
+
 Colors read_colors(const std::string& path, const std::string& grid, const ReadLimits& limits) {
   VectorField::Values values = read_vectors(path, grid, VectorMeaning::color, limits);
   Colors colors;

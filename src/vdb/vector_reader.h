@@ -18,6 +18,9 @@ std::shared_ptr<const VectorField> read_velocity(const std::string& path,
                                                  const VelocitySettings& settings,
                                                  const ReadLimits& limits = {});
 
+/// Whether that finds a velocity, as the names and types of the file's grids say.
+bool has_velocity(const std::string& path, const std::string& grid, const ReadLimits& limits = {});
+
 /// Colours of a VDB.
 struct Colors {
   std::shared_ptr<const VectorField> field; ///< null: the file has none

@@ -19,10 +19,6 @@ public:
   std::size_t bytes() const;
   /// Bytes that the field of a density takes.
   static std::uint64_t bytes_of(const DensityField& shape);
-  /// About what the bricks of so many active voxels take.
-  static constexpr std::uint64_t bytes_of_voxels(std::uint64_t voxels) {
-    return DensityField::bytes_of_voxels(voxels) * (sizeof(Rgb) / sizeof(float));
-  }
 
 private:
   Vec3<int> cell_counts_;

@@ -65,10 +65,6 @@ public:
 
   std::size_t brick_count() const { return bricks_.size() / brick_size; }
   std::size_t bytes() const;
-  /// About what the bricks of so many active voxels take.
-  static constexpr std::uint64_t bytes_of_voxels(std::uint64_t voxels) {
-    return voxels * (brick_size * sizeof(float)) / (cell_width * cell_width * cell_width);
-  }
 
 private:
   Vec3<std::int64_t> origin_;

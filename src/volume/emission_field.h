@@ -39,10 +39,6 @@ public:
   const Boxf& occupied() const { return occupied_; }
   std::size_t brick_count() const { return bricks_.size() / DensityField::brick_size; }
   std::size_t bytes() const;
-  /// About what the bricks of so many active voxels take.
-  static constexpr std::uint64_t bytes_of_voxels(std::uint64_t voxels) {
-    return DensityField::bytes_of_voxels(voxels) * (sizeof(Rgb) / sizeof(float));
-  }
   /// Bytes that the field of a shape takes at most.
   static std::uint64_t bytes_of(const DensityField& shape, bool uniform);
 

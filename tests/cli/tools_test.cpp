@@ -135,7 +135,7 @@ TEST_F(PlanCommand, Json) {
   ASSERT_EQ(result.code, 0) << result.error;
   const Json plan = Json::parse(result.out);
   EXPECT_EQ(plan["frame"], 24);
-  EXPECT_GT(plan["memory"]["film"], 0);
+  EXPECT_GT(plan["memory"]["parts"]["film"]["rendering"], 0);
   EXPECT_FALSE(plan["stages"].empty());
   EXPECT_TRUE(plan["stages"][0]["reason"].is_string());
 }

@@ -85,6 +85,19 @@ TEST(TemporaryFiles, OfKilledProcessesAreRemovedAndOfLiveOnesNot) {
   EXPECT_EQ(file_count(folder), 1u);
 }
 
+/// Beside files that are finished nothing is created.
+TEST(TemporaryFiles, OfKilledProcessesAreRemovedWhereNothingIsWritten) {
+  const test::TempFolder folder;
+  Writer dead(folder.file("a.exr")), alive(folder.file("a.exr"));
+  const std::string other = folder.file(".a.exr.00000000-1-0.tmp");
+  test::write_bytes(other, "half");
+  make_old(other, 1000); // of another machine, whose clock is not known
+  dead.end();
+  remove_dead_temporaries(fs::path(other).parent_path().string());
+  EXPECT_EQ(file_count(folder), 2u);
+  EXPECT_TRUE(fs::exists(other));
+}
+
 /// A live file's age does not matter, as long as its lock is seen.
 TEST(TemporaryFiles, LocksCountMoreThanAge) {
   const test::TempFolder folder;

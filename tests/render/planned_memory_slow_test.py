@@ -52,7 +52,8 @@ class Drawing:
         if chance() < 0.25:
             self.set("light.0.group", "key")
         if chance() < 0.3:
-            self.set("image.layers", "background,transmittance,variance")
+            for i, layer in enumerate(("alpha", "position", "depth_near")):
+                self.set(f"layer.{i}.name", layer)
         self.preview = chance() < 0.3
 
 

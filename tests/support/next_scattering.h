@@ -8,6 +8,7 @@ namespace vdbeam::test {
 /// volume is null where the ray leaves the medium first.
 inline Collision next_scattering(const Medium& medium, const Ray& ray, Rgb& weight, Rng& rng) {
   struct Walker {
+    static constexpr bool bounds_null_collisions = false;
     Collision found;
 
     void meet(Flight&, const Collision&) const {}

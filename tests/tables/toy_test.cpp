@@ -1,6 +1,7 @@
-// A new estimator and a new light are one file and one line each, as are a phase function, a
-// material and a feature in the files beside: this program links tables that are one line longer
-// than the renderer's, and everything that reads them follows.
+// A new estimator, light and feature are one file and one line each, as are a phase function and a
+// material in the files beside: this program links tables that are one line longer than the
+// renderer's, and everything that reads them follows.
+#include "choose/feature.h"
 #include "estimators/estimator_table.h"
 #include "lights/light_table.h"
 #include "math/color.h"
@@ -44,6 +45,16 @@ const EstimatorKind toy_estimator{
       return std::make_unique<FlatEstimator>(input);
     }};
 
+/// A feature that a limit of bounces excludes.
+constexpr FeatureCondition toy_conditions[] = {
+    {[](const FeatureFacts& facts) { return facts.input.settings.max_bounces.has_value(); },
+     "bounces are counted"}};
+const Feature toy_feature{.name = "toy",
+                          .key = "",
+                          .help = "it does nothing",
+                          .stage = std::nullopt,
+                          .conditions = toy_conditions};
+
 constexpr std::string_view lantern_keys[] = {"position", "intensity"};
 
 /// A point light of twice the intensity.
@@ -70,6 +81,11 @@ const LightKind lantern_light{
 std::span<const EstimatorKind* const> estimator_table() {
   static constexpr std::array table{&auto_estimator,  &beam_estimator, &gather_estimator,
                                     &march_estimator, &path_estimator, &toy_estimator};
+  return table;
+}
+
+std::span<const Feature* const> feature_table() {
+  static constexpr std::array table{&forward_peak_feature, &final_gather_feature, &toy_feature};
   return table;
 }
 
@@ -105,6 +121,21 @@ TEST(ToyEstimator, IsPlannedAndRenders) {
   RenderStatistics statistics;
   frame.estimator()->render_pass(0, image, statistics);
   EXPECT_EQ(image.total(0), Rgb(0.25f));
+}
+
+TEST(ToyFeature, IsDescribedAndExcluded) {
+  test::MemoryScene scene = lit_by(LightType::point, 1);
+  const auto described = [&] {
+    const test::TestFrame frame(scene);
+    const EstimatorKind& kind = estimator_kind(scene.scene.render.estimator);
+    return describe_features(frame.input(), kind, choose_for_scene(frame.input(), kind).choices);
+  };
+  EXPECT_EQ(described().size(), 3u);
+  EXPECT_TRUE(described().back().on);
+  EXPECT_EQ(described().back().reason, "it does nothing");
+  scene.scene.render.max_bounces = 3;
+  EXPECT_FALSE(described().back().on);
+  EXPECT_EQ(described().back().reason, "bounces are counted");
 }
 
 /// From the scene to the picture and the report, through the public face.

@@ -92,6 +92,8 @@ def content(path):
     if path.suffix != ".json":
         return judge.pixels(path)
     report = json.loads(path.read_bytes())
+    if "frames_asked" in report:  # a summary; a frame that was finished before the kill is skipped after it
+        return report["frames_asked"], sorted(report["done"] + report["skipped"]), report["failed"]
     return report["scene_hash"], report["frame"]["number"] if isinstance(report.get("frame"), dict) else report.get("frame"), \
         report["passes"][-1]["pass"]
 
@@ -105,7 +107,7 @@ def jobs(folder):
     samples.make_films(sound)
     for name in ("finished.exr", "flat.exr", "flat.deep.exr", "first_deep.exr"):
         (sound / name).unlink()
-    every = ["--preview", "p.####.png", "--report", "r.####.json", "--set", "image.deep=true", "--checkpoint", "1",
+    every = ["--summary", "s.json", "--preview", "p.####.png", "--report", "r.####.json", "--set", "image.deep=true", "--checkpoint", "1",
              "--skip-existing", *samples.SMALL]
     render = ["render", "fog.toml", "--passes", "4", "-f", "1-2", "-o", "o.####.exr", *every]
     part = ["render", "fog.toml", "--pass-range", "0-3", "-o", "part.exr", "--checkpoint", "1", "--skip-existing",

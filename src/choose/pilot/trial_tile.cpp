@@ -86,7 +86,7 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
     // One sample is enough, since it only enters the pixel's weight.
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
-                                                     plan.sampled_lights, 1, rng, shadow_rays);
+                                                     {plan.sampled_lights}, rng, shadow_rays);
     view.pixels.push_back(ray.pixel);
     view.rays.push_back(i);
     for (std::size_t c = 0; c < channels; ++c) {

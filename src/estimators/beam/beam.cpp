@@ -58,7 +58,7 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
                              sum);
     return sum;
   };
-  shade_tiles(input_, photons_, spec.pass, false, image, statistics, gather_tile, gather_along);
+  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along}, image, statistics);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);
   photons_.release();

@@ -3,8 +3,9 @@
 #include "math/sampling.h"
 #include "medium/distance_sampling.h"
 #include "medium/emission.h"
+#include "medium/flight.h"
 #include "medium/optical_depth.h"
-#include "medium/scattering.h"
+#include "transport/next_event.h"
 
 #include <cmath>
 
@@ -40,16 +41,16 @@ Vec3f draw_first_direction(const Medium& medium, int phase_index, const Vec3f& a
 
 } // namespace
 
-/// A walk at the beginning of a flight. Light that travels against the flight counts `throughput`
-/// times.
-struct FinalGather::Walk {
-  Rng& rng;
+/// A walk on its way. Light that travels against its flight counts `throughput` times.
+struct FinalGather::Walk : Flight {
+  Walk(const Rng& numbers, const Rgb& weight, RenderStatistics& counts_)
+      : Flight(numbers, weight), counts(counts_) {}
+
   RenderStatistics& counts;
   Vec3f beginning;
-  Ray flight;
-  Rgb throughput;
   int scatterings = 1;
-  GatheredLight found = {};
+  float gathered = 0; ///< distance of the flight up to which light that it meets was added
+  GatheredLight found;
 };
 
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
@@ -59,7 +60,7 @@ FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Photo
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
                                   float ray_weight, Rng& rng, RenderStatistics& counts,
-                                  const DeepRay& deep, const VolumeLights& of_volumes) const {
+                                  const RaySink& sink) const {
   const Medium& medium = world_.medium;
   DistanceSampler distances(medium, ray, profile);
   const float stratum = 1 / static_cast<float>(walks);
@@ -77,17 +78,15 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
     float weight = 1;
     const Vec3f direction =
         draw_first_direction(medium, volume.phase_index, ray.direction, rng, weight);
-    Walk walk{rng,
-              counts,
-              point.position,
-              {point.position, direction},
-              chosen->weight * std::abs(weight)};
+    Walk walk(rng, chosen->weight * std::abs(weight), counts);
+    walk.beginning = point.position;
+    walk.start(medium, {{point.position, direction}});
     follow(walk);
+    rng = walk.rng;
     ++counts.gather_walks;
     const float counted = std::copysign(stratum * ray_weight, weight);
     const Rgb light = (walk.found.direct + walk.found.indirect) * counted;
-    deep.add_light_at(point.t, light);
-    of_volumes.add(volume.setting, light);
+    sink.add(point.t, volume.setting, light);
     sum.direct += walk.found.direct * counted;
     sum.indirect += walk.found.indirect * counted;
     sum.blur += walk.found.blur * counted;
@@ -97,45 +96,45 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
 
 /// Follows the walk to its end.
 void FinalGather::follow(Walk& walk) const {
+  for (bool goes_on = advance_flight(walk, *this); goes_on;)
+    goes_on = step_flight(world_.medium, walk, *this);
+}
+
+void FinalGather::meet(Walk& walk, const Collision& hit) const {
+  if (meets_light_)
+    meet_light(walk, hit.t);
+}
+
+/// The flight leaves the medium, and with it the walk ends.
+bool FinalGather::leave(Walk& walk) const {
+  meet_light(walk, walk.segment.t_end);
+  return false;
+}
+
+bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   const Medium& medium = world_.medium;
-  while (const std::optional<Collision> hit = fly(walk)) {
-    const Volume& volume = *hit->volume;
-    const auto phase = static_cast<std::size_t>(volume.phase_index);
-    const Vec3f point = walk.flight.at(hit->t), ahead = walk.flight.direction;
-    walk.flight.origin = point;
-    ++walk.scatterings;
-    const bool last =
-        walk.scatterings > most_scatterings || length(point - walk.beginning) >= far_enough_;
-    if (last)
-      gather_photons(walk, volume);
-    walk.throughput *= volume.albedo_at(point);
-    send_shadow_rays(walk, medium.gathered_phases()[phase]);
-    if (last || !survive_roulette(roulette_below, walk.throughput, walk.rng))
-      return;
-    const float u_lobe = walk.rng.uniform(), u = walk.rng.uniform(), v = walk.rng.uniform();
-    walk.flight.direction = medium.phases[phase].sample(ahead, u_lobe, u, v);
-  }
+  const Volume& volume = *hit.volume;
+  const auto phase = static_cast<std::size_t>(volume.phase_index);
+  const Vec3f point = walk.segment.ray.at(hit.t);
+  walk.segment.ray.origin = point;
+  ++walk.scatterings;
+  const bool last =
+      walk.scatterings > most_scatterings || length(point - walk.beginning) >= far_enough_;
+  if (last)
+    gather_photons(walk, volume);
+  walk.throughput *= volume.albedo_at(point);
+  send_shadow_rays(walk, medium.gathered_phases()[phase]);
+  if (last || !survive_roulette(roulette_below, walk.throughput, walk.rng))
+    return false;
+  walk.gathered = 0;
+  walk.start(medium, {{point, walk.sample_direction(medium.phases[phase])}});
+  return advance_flight(walk, *this);
 }
 
-/// The walk's next real collision; none where its flight leaves the medium.
-std::optional<Collision> FinalGather::fly(Walk& walk) const {
-  BoundedTracker tracker(world_.medium, {walk.flight});
-  for (float begin = 0;;) {
-    const Collision hit = tracker.next(walk.rng);
-    if (meets_light_ || !hit.volume)
-      meet_light(walk, begin, hit.t);
-    if (!hit.volume)
-      return std::nullopt;
-    if (sample_real_collision(hit, world_.medium.chromatic, walk.throughput, walk.rng))
-      return hit;
-    begin = hit.t;
-  }
-}
-
-/// Light that a piece of the flight meets: the medium's own, and that of lights for which there are
-/// no shadow rays.
-void FinalGather::meet_light(Walk& walk, float begin, float end) const {
-  const Segment piece{walk.flight, begin, end};
+/// Light that the flight meets from where it was gathered last: the medium's own, and that of
+/// lights for which there are no shadow rays.
+void FinalGather::meet_light(Walk& walk, float end) const {
+  const Segment piece{walk.segment.ray, walk.gathered, end};
   Rgb light;
   if (!world_.medium.emitters.empty())
     light += sample_emission(world_.medium, piece, walk.rng);
@@ -143,24 +142,27 @@ void FinalGather::meet_light(Walk& walk, float begin, float end) const {
     if (!plan_.sampled_lights[l] && !world_.lights[l].is_delta())
       light += world_.lights[l].emitted_radiance(piece).radiance;
   (walk.scatterings == 1 ? walk.found.direct : walk.found.indirect) += light * walk.throughput;
+  walk.gathered = end;
 }
 
 /// What the collision at the walk's place scatters of lights with shadow rays.
 void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const {
-  const Ray& flight = walk.flight;
+  const Ray& flight = walk.segment.ray;
   for (std::size_t l = 0; l < world_.lights.size(); ++l) {
     if (!plan_.sampled_lights[l])
       continue;
-    const float u = walk.rng.uniform(), v = walk.rng.uniform();
-    const IncidentSample sample = world_.lights[l].sample_incident(flight.origin, u, v);
-    if (!(max_component(sample.value) > 0))
+    const auto shadow_ray = // these lights are found in no other way
+        sample_shadow_ray(world_.lights[l], flight.origin, walk.rng,
+                          [](const Vec3f&) { return 0.0f; });
+    if (!shadow_ray)
       continue;
     ++walk.counts.shadow_rays;
-    RatioTracking shadow(world_.medium, {{flight.origin, sample.wi}, 0, sample.distance});
+    const Vec3f& wi = shadow_ray->direction;
+    RatioTracking shadow(world_.medium, {{flight.origin, wi}, 0, shadow_ray->distance});
     while (shadow.advance(walk.rng) && shadow.attenuate(walk.rng))
       continue;
-    walk.found.indirect += sample.value * shadow.transmittance() * walk.throughput *
-                           phase.evaluate(dot(flight.direction, sample.wi));
+    walk.found.indirect += shadow_ray->light * shadow.transmittance() * walk.throughput *
+                           phase.evaluate(dot(flight.direction, wi));
   }
 }
 
@@ -171,7 +173,7 @@ void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
   const auto phase = static_cast<std::size_t>(volume.phase_index);
   std::vector<Rgb> gathered(phases.size());
   const auto radiance = [&](const PhotonMap& map) {
-    const Ray& at = walk.flight;
+    const Ray& at = walk.segment.ray;
     walk.counts.contributions +=
         map.query_point(at.origin, at.direction, phases, gathered.data()).contributions;
     const Rgb albedo = plan_.albedo_in_power ? Rgb(1) : volume.albedo_at(at.origin);

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "layers/deep_ray.h"
-#include "layers/ray_layers.h"
+#include "layers/ray_sink.h"
 #include "photons/photon_plan.h"
 
 namespace vdbeam {
@@ -29,15 +28,20 @@ public:
   /// So many walks from the ray, whose profile is not empty, their distances stratified.
   /// `ray_weight`: of the ray among those of its pixel.
   GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float ray_weight,
-                       Rng& rng, RenderStatistics& counts, const DeepRay& deep = {},
-                       const VolumeLights& of_volumes = {}) const;
+                       Rng& rng, RenderStatistics& counts, const RaySink& sink = {}) const;
 
-private:
   struct Walk;
 
+  // What happens at the collisions of a flight (step_flight).
+  static constexpr bool bounds_null_collisions = true;
+  void meet(Walk& walk, const Collision& hit) const;
+  bool pass(Walk&) const { return true; }
+  bool collide(Walk& walk, const Collision& hit) const;
+  bool leave(Walk& walk) const;
+
+private:
   void follow(Walk& walk) const;
-  std::optional<Collision> fly(Walk& walk) const;
-  void meet_light(Walk& walk, float begin, float end) const;
+  void meet_light(Walk& walk, float end) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume) const;
 

@@ -10,10 +10,11 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
   photons_.trace_and_build(spec, KernelDomain::ball, statistics);
   BlurProbe blur(input_, photons_);
   GatherPass walks(input_, photons_, spec);
-  shade_tiles(
-      walks.input(), photons_, spec.pass, true, image, statistics,
-      [&](TileScratch& scratch, const RngKey& key) { walks.gather(scratch, key, blur, image); },
-      nullptr); // no ray goes on behind a surface: there are none
+  const auto gather = [&](TileScratch& scratch, const RngKey& key) {
+    walks.gather(scratch, key, blur, image);
+  };
+  // No ray goes on behind a surface: there are none.
+  shade_tiles(walks.input(), photons_, spec.pass, {true, gather, nullptr}, image, statistics);
   walks.fit(blur, image);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);

@@ -88,11 +88,11 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
       if (from.profile.empty())
         return;
       Rng rng(key, RngStage::final_gather, from.stream);
-      const GatheredLight light =
-          (probe ? twice : gather)
-              .gather(from.camera.ray(), from.profile, walks, 1 / static_cast<float>(rays), rng,
-                      scratch.statistics, DeepRay(world, from.camera, from.pixel, image),
-                      VolumeLights(wide_.layers, from.pixel, walked_));
+      const GatheredLight light = (probe ? twice : gather)
+                                      .gather(from.camera.ray(), from.profile, walks,
+                                              1 / static_cast<float>(rays), rng, scratch.statistics,
+                                              {DeepRay(world, from.camera, from.pixel, image),
+                                               VolumeLights(wide_.layers, from.pixel, walked_)});
       sum.direct += light.direct;
       sum.indirect += light.indirect;
       sum.blur += light.blur;

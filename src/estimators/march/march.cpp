@@ -2,7 +2,7 @@
 
 #include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
-#include "layers/deep_ray.h"
+#include "layers/ray_sink.h"
 
 namespace vdbeam {
 
@@ -25,8 +25,7 @@ public:
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
   /// lights.
   Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
-            RenderStatistics& counts, Rgb& straight, const DeepRay& deep = {},
-            const VolumeLights& of_volumes = {}) {
+            RenderStatistics& counts, Rgb& straight, const RaySink& sink = {}) {
     const Medium& medium = world_.medium;
     const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
     const float end = std::min(profile.back() + reach_, camera.whole().t_end);
@@ -51,9 +50,9 @@ public:
         ++counts.lookups;
         counts.contributions += c.contributions;
         find_albedos(camera.ray().at(t));
-        const Rgb light = weigh(before, after, step, gathered_, of_volumes);
+        const Rgb light = weigh(before, after, step, gathered_, sink.volumes);
         sum += light;
-        deep.add_light_at(t, light);
+        sink.deep.add_light_at(t, light);
         if (photons_.map().has_first_flights())
           straight += weigh(before, after, step, straight_);
       }
@@ -122,8 +121,7 @@ void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatis
       Rgb straight;
       image.indirect[ray.pixel] =
           marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
-                        DeepRay(photons_.world(), ray.camera, ray.pixel, image),
-                        VolumeLights(input_.layers, ray.pixel, image));
+                        RaySink(photons_.world(), ray.camera, input_.layers, ray.pixel, image));
       image.move_to_direct(ray.pixel, straight);
     }
   };
@@ -132,7 +130,7 @@ void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatis
     Rgb straight;
     return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
   };
-  shade_tiles(input_, photons_, spec.pass, false, image, statistics, gather, gather_along);
+  shade_tiles(input_, photons_, spec.pass, {false, gather, gather_along}, image, statistics);
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
 }

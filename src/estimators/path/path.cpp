@@ -1,7 +1,6 @@
 #include "estimators/path/path.h"
 
 #include "estimators/estimator_table.h"
-#include "layers/deep_ray.h"
 #include "machine/stopwatch.h"
 #include "medium/distance_sampling.h"
 #include "rays/caught_shadow.h"
@@ -44,8 +43,6 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
     : input_(input), shadow_rays_(input.shadow_ray_lights()),
       tracer_(input.world, shadow_rays_, input.settings.max_bounces),
       scatters_(input.plan.needs(Stage::paths)) {
-  if (input.world.surfaces)
-    scene_tracer_.emplace(input.world, shadow_rays_, input.settings.max_bounces);
   if (!scatters_)
     return;
   walks_per_ray_ = choose_walks_per_ray(input);
@@ -74,19 +71,9 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   const Ray ray{point.position, camera.ray().direction};
   const PhaseFunction& phase = medium.phases[medium.volumes[volume].phase_index];
   const DeepRay deep(input_.world, camera, target, image);
-  if (!scene_tracer_) {
-    scratch.walks.push_back(tracer_.start(target, walk_rng, ray, throughput, phase));
-    scratch.walks.back().piece = deep ? deep.piece(point.t) : 0;
-    scratch.walks.back().volume = medium.volumes[volume].setting;
-    return;
-  }
-  Rng numbers = walk_rng;
-  const ScatteredLight light = scene_tracer_->from_medium(ray, throughput, phase, numbers);
-  image.direct[target] += light.direct / static_cast<float>(walks_per_ray_);
-  image.indirect[target] += light.indirect / static_cast<float>(walks_per_ray_);
-  const Rgb all = (light.direct + light.indirect) / static_cast<float>(walks_per_ray_);
-  deep.add_light_at(point.t, all);
-  VolumeLights(input_.layers, target, image).add(medium.volumes[volume].setting, all);
+  scratch.walks.push_back(tracer_.start(target, walk_rng, ray, throughput, phase));
+  scratch.walks.back().piece = deep ? deep.piece(point.t) : 0;
+  scratch.walks.back().volume = medium.volumes[volume].setting;
 }
 
 /// What is seen of the surface at which a camera ray ends, the mean over a few paths.
@@ -102,7 +89,7 @@ SeenSurface PathEstimator::seen_surface(const CameraRay& camera, const RngKey& k
   Rgb sum;
   for (int i = 0; i < paths; ++i) {
     Rng rng(key, RngStage::surface, pixel * paths + static_cast<std::size_t>(i));
-    sum += scene_tracer_->from_surface(*camera.hit, camera.ray().direction, rng);
+    sum += tracer_.from_surface(*camera.hit, camera.ray().direction, rng);
   }
   return {sum / static_cast<float>(paths)};
 }
@@ -120,10 +107,9 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
-  image.direct[target] =
-      direct_light(world, camera.ray(), profile, shadow_rays_, direct_samples_, rng,
-                   scratch.counts.shadow_rays, {}, DeepRay(world, camera, target, image),
-                   VolumeLights(input_.layers, target, image), input_.stop);
+  image.direct[target] = direct_light(
+      world, camera.ray(), profile, {shadow_rays_, direct_samples_, nullptr, input_.stop}, rng,
+      scratch.counts.shadow_rays, RaySink(world, camera, input_.layers, target, image));
   DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < walks_per_ray_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);

@@ -2,7 +2,6 @@
 
 #include "estimators/estimator.h"
 #include "estimators/path/path_walk.h"
-#include "estimators/path/scene_tracer.h"
 #include "medium/distance_sampling.h"
 #include "rays/profile_shading.h"
 #include "transport/camera_ray.h"
@@ -43,7 +42,6 @@ private:
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   WalkTracer tracer_;
-  std::optional<SceneTracer> scene_tracer_; ///< in its place where there are surfaces
   bool scatters_ = false;                   ///< light is scattered towards the camera
   int direct_samples_ = 1;                  ///< shadow-ray samples per camera ray
   int walks_per_ray_ = 1;                   ///< walks per camera ray

@@ -1,25 +1,32 @@
 #include "estimators/path/path_walk.h"
 
 #include "medium/emission.h"
+#include "transport/next_event.h"
 
 namespace vdbeam {
 
 namespace {
 
-/// The same of walks that branch, in parts of the weight with which they began. They become many
-/// where they matter; with 0.1 they would be many elsewhere too.
+/// Weight under which Russian roulette begins where walks branch, in parts of the weight with which
+/// they began. They become many where they matter; with 0.1 they would be many elsewhere too.
 constexpr float roulette_of_branches_below = 0.6f;
 
 } // namespace
+
+float WalkTracer::roulette_from(const Rgb& throughput) const {
+  return light_branches_.any() ? roulette_of_branches_below * max_component(throughput)
+                               : roulette_below;
+}
 
 PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
                            const Rgb& throughput, const PhaseFunction& phase) const {
   PathWalk walk(rng, throughput);
   walk.segment.ray = ray;
-  walk.least_weight = light_branches_.any() ? roulette_of_branches_below * max_component(throughput)
-                                            : roulette_below;
+  walk.least_weight = roulette_from(throughput);
   walk.target = target;
   walk.phase = &phase;
+  walk.scatters = true;
+  walk.skips_sampled = true; // direct_light draws both strategies
   // Before its first flight there is no shadow ray left to trace.
   walk.light = world_.lights.size();
   return walk;
@@ -34,7 +41,7 @@ float WalkTracer::flight_density(const PathWalk& walk, const Vec3f& direction) c
 bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
   if (walk.scatters) {
     branch(walk, branches);
-    return begin_flight(walk, walk.sample_direction(*walk.phase));
+    return scatter(walk, walk.sample_direction(*walk.phase));
   }
   if (walk.shadow) {
     if (walk.shadow->attenuate(walk.rng) && walk.shadow->advance(walk.rng))
@@ -44,39 +51,19 @@ bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
     sample_lights(walk);
     return true;
   }
-  if (walk.null_collisions >= most_tentative_collisions)
-    return end_flight(walk);
   return step_flight(world_.medium, walk, *this);
-}
-
-/// Ends a flight that met too many null collisions, from its present one on: by collisions that are
-/// found in the exact optical depth, of which the first is real but where channels differ.
-bool WalkTracer::end_flight(PathWalk& walk) const {
-  const Medium& medium = world_.medium;
-  Collision hit = walk.tracker->collision();
-  for (;;) {
-    meet(walk, hit);
-    if (sample_real_collision(hit, medium.chromatic, walk.throughput, walk.rng))
-      return collide(walk, hit);
-    if (medium.chromatic && !walk.length.survive(walk.throughput, walk.rng))
-      return false;
-    const Segment rest{walk.segment.ray, hit.t, walk.segment.t_end};
-    hit = exact_collision(medium, rest, walk.rng);
-    if (!hit.volume)
-      return leave(walk);
-  }
 }
 
 /// Null collisions leave a grey throughput as it is, so the light of a flight is gathered in one
 /// piece up to its real collision; a coloured one changes at every collision.
 void WalkTracer::meet(PathWalk& walk, const Collision& hit) const {
   if (meets_light_ && world_.medium.chromatic)
-    gather_light(walk, hit.t);
+    gather_light(walk, hit.t, hit.t);
 }
 
 bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
   if (meets_light_ && !world_.medium.chromatic)
-    gather_light(walk, hit.t);
+    gather_light(walk, hit.t, hit.t);
   if (max_bounces_ && walk.bounces >= *max_bounces_)
     return false;
   const Vec3f point = walk.segment.ray.at(hit.t);
@@ -85,7 +72,8 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     return false;
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
   walk.segment.ray.origin = point;
-  walk.light = 0;
+  walk.skips_sampled = walk.from_surface = false;
+  walk.light = walk.all_light ? 0 : world_.lights.size();
   sample_lights(walk);
   return true;
 }
@@ -97,15 +85,16 @@ void WalkTracer::sample_lights(PathWalk& walk) const {
   for (; walk.light < world_.lights.size(); ++walk.light) {
     if (!shadow_rays_[walk.light])
       continue;
-    const float u = walk.rng.uniform(), v = walk.rng.uniform();
-    const IncidentSample sample = world_.lights[walk.light].sample_incident(ray.origin, u, v);
-    if (max_component(sample.value) <= 0)
+    const auto shadow_ray =
+        sample_shadow_ray(world_.lights[walk.light], ray.origin, walk.rng,
+                          [&](const Vec3f& wi) { return flight_density(walk, wi); });
+    if (!shadow_ray ||
+        !unoccluded(world_, Vec3d(ray.origin), shadow_ray->direction, shadow_ray->distance))
       continue;
-    const float p = walk.phase->evaluate(dot(ray.direction, sample.wi));
-    const float weight =
-        sample.pdf > 0 ? sample.pdf / (sample.pdf + flight_density(walk, sample.wi)) : 1;
-    walk.shadow_value = sample.value * (p * weight) * walk.throughput;
-    walk.shadow.emplace(world_.medium, Segment{{ray.origin, sample.wi}, 0, sample.distance});
+    const Vec3f& wi = shadow_ray->direction;
+    const float p = walk.phase->evaluate(dot(ray.direction, wi));
+    walk.shadow_value = shadow_ray->light * (p * shadow_ray->weight) * walk.throughput;
+    walk.shadow.emplace(world_.medium, Segment{{ray.origin, wi}, 0, shadow_ray->distance});
     if (walk.shadow->advance(walk.rng))
       return;
     walk.indirect += walk.shadow_value;
@@ -123,7 +112,7 @@ void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
   branch.direct = branch.indirect = Rgb();
   const std::uint64_t high = walk.rng.bits(), low = walk.rng.bits();
   branch.rng = Rng({}, RngStage::split, high << 32 | low);
-  if (begin_flight(branch, *direction)) {
+  if (scatter(branch, *direction)) {
     branches.push_back(branch);
     return;
   }
@@ -131,15 +120,19 @@ void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
   walk.indirect += branch.indirect;
 }
 
+/// Begins a flight, which ends at the first surface.
+void WalkTracer::set_out(PathWalk& walk, const Vec3d& origin, const Vec3f& direction) const {
+  walk.scatters = false;
+  walk.gathered = 0;
+  walk.start(world_.medium, flight_segment(world_, origin, direction, walk.end));
+}
+
 /// Begins a flight from the walk's collision, one of those of the walk and its branches.
-bool WalkTracer::begin_flight(PathWalk& walk, const Vec3f& direction) const {
+bool WalkTracer::scatter(PathWalk& walk, const Vec3f& direction) const {
   const Ray from = walk.segment.ray;
   walk.density = flight_density(walk, direction);
   ++walk.bounces;
-  walk.scatters = false;
-  walk.gathered = 0;
-  walk.null_collisions = 0;
-  walk.start(world_.medium, {{from.origin, direction}});
+  set_out(walk, Vec3d(from.origin), direction);
   if (light_branches_.any()) {
     walk.throughput *= walk.phase->evaluate(dot(from.direction, direction)) / walk.density;
     if (!outlives_roulette(walk))
@@ -151,45 +144,43 @@ bool WalkTracer::begin_flight(PathWalk& walk, const Vec3f& direction) const {
 /// Russian roulette on what the walk's flight is about to bring.
 bool WalkTracer::outlives_roulette(PathWalk& walk) const {
   const float importance = light_branches_.importance(walk.segment.ray.direction);
-  return survive_roulette(walk.least_weight / importance, walk.throughput, walk.rng);
+  return survive_roulette(walk.least_weight * walk.refraction / importance, walk.throughput,
+                          walk.rng);
 }
 
-/// The flight has left the medium.
+/// The flight has left the medium; it may end at a surface.
 bool WalkTracer::leave(PathWalk& walk) const {
-  const float t_end = walk.segment.t_end;
+  const float t_end = walk.end ? static_cast<float>(walk.end->t) : infinity;
   if (meets_light_)
-    gather_light(walk, t_end);
+    gather_light(walk, walk.segment.t_end, t_end);
   else
-    (walk.bounces == 1 ? walk.direct : walk.indirect) +=
-        lights_met(walk, {walk.segment.ray, 0, t_end});
-  return false;
+    walk.add(lights_met(walk, {walk.segment.ray, 0, t_end}));
+  return walk.end && meet_surface(walk);
 }
 
-/// Light that the flight meets, from where it was gathered last to t_end: the medium's own, and
-/// that of the lights.
-void WalkTracer::gather_light(PathWalk& walk, float t_end) const {
-  Rgb& sum = walk.bounces == 1 ? walk.direct : walk.indirect;
-  const Segment piece{walk.segment.ray, walk.gathered, t_end};
-  if (!world_.medium.emitters.empty())
-    sum += sample_emission(world_.medium, piece, walk.rng) * walk.throughput;
+/// Light that the flight meets, from where it was gathered last: the medium's own up to medium_end,
+/// and that of the lights up to t_end.
+void WalkTracer::gather_light(PathWalk& walk, float medium_end, float t_end) const {
+  const Ray& ray = walk.segment.ray;
+  if (!world_.medium.emitters.empty() && walk.gathered < medium_end)
+    walk.add(sample_emission(world_.medium, {ray, walk.gathered, medium_end}, walk.rng) *
+             walk.throughput);
   if (world_.lights.any_extent() || t_end == infinity)
-    sum += lights_met(walk, piece);
+    walk.add(lights_met(walk, {ray, walk.gathered, t_end}));
   walk.gathered = t_end;
 }
 
-/// The lights that the flight meets within the segment, weighted against next-event estimation.
+/// The lights that the flight meets within the segment, but for surfaces, weighted against
+/// next-event estimation.
 Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
   const Ray& ray = segment.ray;
   Rgb sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     const Light& light = world_.lights[i];
-    if (light.is_delta())
-      continue;
-    // Single scattering of these is complete already (direct_light draws both strategies).
-    if (walk.bounces == 1 && shadow_rays_[i])
+    if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out_sampled()))
       continue;
     float weight = 1;
-    if (shadow_rays_[i])
+    if (shadow_rays_[i] && walk.density > 0)
       weight = walk.density / (walk.density + light.incident_pdf(ray.origin, ray.direction));
     sum += light.emitted_radiance(segment).radiance * weight;
   }

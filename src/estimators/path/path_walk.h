@@ -9,36 +9,52 @@
 
 namespace vdbeam {
 
-/// The state of a camera path after its first scattering event: it is at a tentative collision of
-/// its flight or, while there is one, of its shadow ray.
+/// The state of a path from the camera on: it is at a tentative collision of its flight or, while
+/// there is one, of its shadow ray.
 struct PathWalk : Flight {
   using Flight::Flight;
 
-  std::size_t target = 0;               ///< pixel of the image to which its light is added
-  float least_weight = 0;               ///< under which Russian roulette begins
-  std::size_t piece = 0;                ///< of the pixel's deep layout in which it began
-  std::size_t volume = 0;               ///< of the scene, that scatters its light to the camera
+  std::size_t target = 0; ///< pixel of the image to which its light is added
+  std::size_t piece = 0;  ///< of the pixel's deep layout in which it began
+  std::size_t volume = 0; ///< of the scene, that scatters its light to the camera
+
+  float least_weight = roulette_below;  ///< under which Russian roulette begins
   const PhaseFunction* phase = nullptr; ///< at the last real collision
-  bool scatters = true;                 ///< there, in the next step
-  float density = 0;       ///< of flights in this one's direction, branches among them [1/sr]
-  float gathered = 0;      ///< distance of the flight up to which light that it meets was added
-  int null_collisions = 0; ///< of this flight
-  Rgb direct, indirect;    ///< light so far that was scattered once, and more often
+  bool scatters = false;                ///< there, in the next step
+  /// Density of flights in this one's direction, branches among them [1/sr]; 0: nothing else draws
+  /// it.
+  float density = 0;
+  float gathered = 0; ///< distance of the flight up to which light that it meets was added
+  std::optional<SurfaceHit> end; ///< of the present flight
+  Rgb direct, indirect; ///< light so far that the medium scattered once at most, and more often
   std::optional<RatioTracking> shadow;
   std::size_t light = 0; ///< that the shadow ray is sent to
   Rgb shadow_value;      ///< its contribution, without the transmittance
+
+  // What light straight from lights with shadow rays counts:
+  bool skips_sampled = false; ///< none on this flight, since it was found before
+  bool all_light = true;      ///< else only that which surfaces get straight from lights
+  bool from_surface = false;  ///< the present flight begins at such a surface
+
+  SurfaceRoulette surfaces;
+  float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
+
+  bool leaves_out_sampled() const { return skips_sampled || (!all_light && !from_surface); }
+  void add(const Rgb& radiance) { (bounces > 1 ? indirect : direct) += radiance; }
 };
 
-/// Walks of the path tracer, a collision at a time: flights by delta tracking (spectral tracking
-/// where the extinction is chromatic, Kutz et al. 2017), next-event estimation by ratio tracking at
-/// every collision, multiple importance sampling for lights that a scattered ray can meet (balance
-/// heuristic, Veach and Guibas 1995), Russian roulette. The medium's own emission is added along
-/// every flight up to its end (track-length estimator). Walks branch towards narrow lights where
-/// phase functions have a sharp peak (LightBranches).
+/// Unbiased path tracing in media and among surfaces, a collision at a time: flights by delta
+/// tracking end at surfaces, which scatter by their materials; next-event estimation at every
+/// vertex that is not specular (sample_shadow_ray), through the medium by ratio tracking, combined
+/// with the directions drawn by multiple importance sampling; Russian roulette. The medium's own
+/// emission is added along every flight up to its end (track-length estimator). Walks branch
+/// towards narrow lights where phase functions have a sharp peak (LightBranches). Light of point
+/// lights, or of a parallel sun, that only mirrors or glass bring to a point is not found: no path
+/// meets them.
 class WalkTracer {
 public:
   /// `shadow_rays`: per light, whether next-event estimation samples it. `max_bounces`: scattering
-  /// events of a light path; absent: no limit.
+  /// events of a light path in the medium; absent: no limit.
   WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()),
@@ -49,28 +65,41 @@ public:
   PathWalk start(std::size_t target, const Rng& rng, const Ray& ray, const Rgb& throughput,
                  const PhaseFunction& phase) const;
 
+  /// Radiance that leaves a surface against `direction`, along which a ray meets it.
+  /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
+  /// the medium, and they on to other surfaces, to which photons bring it.
+  /// `emitted`: factor of what the surface itself emits.
+  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng, bool all_light = true,
+                   float emitted = 1) const;
+
+  /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
+  /// shadow rays, weighted against the direction that `vertex` draws.
+  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;
+  bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
+
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
   /// step ends with a prefetch: callers interleave several walks to hide the memory latency.
   /// Branches of the walk are put to `branches`, to be stepped like any other.
   bool step(PathWalk& walk, std::vector<PathWalk>& branches) const;
 
   // What happens at the collisions of a flight (step_flight).
+  static constexpr bool bounds_null_collisions = true;
   void meet(PathWalk& walk, const Collision& hit) const;
-  bool pass(PathWalk& walk) const {
-    ++walk.null_collisions;
-    return true;
-  }
+  bool pass(PathWalk&) const { return true; }
   bool collide(PathWalk& walk, const Collision& hit) const;
   bool leave(PathWalk& walk) const;
 
 private:
+  float roulette_from(const Rgb& throughput) const;
   void sample_lights(PathWalk& walk) const;
-  bool end_flight(PathWalk& walk) const;
   void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;
-  bool begin_flight(PathWalk& walk, const Vec3f& direction) const;
+  void set_out(PathWalk& walk, const Vec3d& origin, const Vec3f& direction) const;
+  bool scatter(PathWalk& walk, const Vec3f& direction) const;
+  bool meet_surface(PathWalk& walk) const;
+  bool bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first) const;
   bool outlives_roulette(PathWalk& walk) const;
   float flight_density(const PathWalk& walk, const Vec3f& direction) const;
-  void gather_light(PathWalk& walk, float t_end) const;
+  void gather_light(PathWalk& walk, float medium_end, float t_end) const;
   Rgb lights_met(const PathWalk& walk, const Segment& segment) const;
 
   const World& world_;

@@ -1,0 +1,91 @@
+#include "estimators/path/path_walk.h"
+#include "transport/next_event.h"
+
+#include <utility>
+
+// What walks do at surfaces.
+
+namespace vdbeam {
+
+Rgb WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                             bool all_light, float emitted) const {
+  const SurfaceVertex vertex(*world_.surfaces, hit, direction);
+  PathWalk first(rng, vertex.absorbed());
+  first.all_light = all_light;
+  first.least_weight = roulette_from(Rgb(1));
+  Rgb sum = vertex.emitted() * emitted;
+  std::vector<PathWalk> branches;
+  const auto follow = [&](PathWalk& walk, bool goes_on) {
+    while (goes_on)
+      goes_on = step(walk, branches);
+    sum += walk.direct + walk.indirect;
+  };
+  follow(first, bounce(first, vertex, true) && advance_flight(first, *this));
+  while (!branches.empty()) {
+    PathWalk walk = std::move(branches.back());
+    branches.pop_back();
+    follow(walk, true);
+  }
+  rng = first.rng; // for what the caller draws next
+  return sum;
+}
+
+/// What the surface at which the flight ends adds; false where the walk ends there.
+bool WalkTracer::meet_surface(PathWalk& walk) const {
+  const Vec3f& direction = walk.segment.ray.direction;
+  const SurfaceVertex vertex(*world_.surfaces, *walk.end, direction);
+  walk.throughput *= vertex.absorbed();
+  if (vertex.light() >= 0 && max_component(vertex.emitted()) > 0) {
+    const auto light = static_cast<std::size_t>(vertex.light());
+    const bool sampled = shadow_rays_[light];
+    float weight = sampled && walk.leaves_out_sampled() ? 0 : 1;
+    if (sampled && walk.density > 0)
+      weight *=
+          walk.density / (walk.density + world_.lights[light].surface_pdf(*walk.end, direction));
+    walk.add(vertex.emitted() * walk.throughput * weight);
+  }
+  return bounce(walk, vertex, false);
+}
+
+/// Scatters the walk at a surface, at its first vertex or a later one. False where it ends.
+bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first) const {
+  const Material& material = vertex.material();
+  if (material.is_black())
+    return false;
+  const bool counts_straight =
+      !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
+  if (counts_straight)
+    walk.add(lights_at_surface(vertex, walk.rng) * walk.throughput);
+  const MaterialSample next = vertex.sample(Carried::radiance, walk.rng);
+  walk.throughput *= next.weight;
+  walk.refraction *= next.refraction;
+  if (!survive_roulette(walk.least_weight * walk.refraction, walk.throughput, walk.rng) ||
+      !walk.surfaces.survive(walk.throughput, walk.rng))
+    return false;
+  walk.density = next.pdf;
+  walk.skips_sampled = false;
+  walk.from_surface = counts_straight;
+  set_out(walk, vertex.hit().leave(next.wi), next.wi);
+  return true;
+}
+
+Rgb WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const {
+  Rgb sum;
+  for (std::size_t i = 0; i < world_.lights.size(); ++i) {
+    if (!shadow_rays_[i])
+      continue;
+    const auto shadow_ray = sample_shadow_ray(world_.lights[i], Vec3f(vertex.hit().position), rng,
+                                              [&](const Vec3f& wi) { return vertex.pdf(wi); });
+    if (!shadow_ray)
+      continue;
+    const Vec3f& wi = shadow_ray->direction;
+    const Rgb value = vertex.evaluate(wi);
+    const Vec3d origin = vertex.hit().leave(wi);
+    if (max_component(value) > 0 && unoccluded(world_, origin, wi, shadow_ray->distance))
+      sum += shadow_ray->light * value * shadow_ray->weight *
+             exact_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance});
+  }
+  return sum;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,213 @@
+// The table of features: each condition excludes its feature in some scene, with its own clause,
+// and what the plan describes is what passes do.
+#include "choose/feature.h"
+#include "support/surface_scene.h"
+#include "support/test_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+using surfaces::add_surface;
+
+/// A lumpy cloud of droplets in the sun, of which every feature can make use.
+MemoryScene cloud() {
+  MemoryScene scene;
+  const Vec3<int> cells{4, 4, 4};
+  VolumeSettings& volume = scene.add(
+      closed_field(cells,
+                   [](int i, int j, int k) {
+                     return std::sin(0.7 * i) * std::cos(0.5 * j + 1) * std::sin(0.6 * k + 2) > 0.1
+                                ? 1.0
+                                : 0.0;
+                   }),
+      box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
+  volume.extinction = 80;
+  volume.albedo = Rgb(0.99f);
+  volume.phase = henyey_greenstein(0.85);
+  scene.add_light(LightType::distant).direction = {1, -0.4, -0.5};
+  scene.look({0.5, 0.6, 2.5}, {0, 0, 0}, 24, 48, 48);
+  scene.scene.render.estimator = EstimatorType::automatic;
+  return scene;
+}
+
+std::vector<FeatureChoice> features_of(const MemoryScene& scene) {
+  const TestFrame frame(scene);
+  const EstimatorKind& kind = estimator_kind(scene.scene.render.estimator);
+  const SceneChoices chosen = choose_for_scene(frame.input(), kind);
+  return describe_features(frame.input(), kind, chosen.choices);
+}
+
+FeatureChoice feature_of(const MemoryScene& scene, std::string_view name) {
+  for (const FeatureChoice& feature : features_of(scene))
+    if (feature.name == name)
+      return feature;
+  ADD_FAILURE() << "there is no feature " << name;
+  return {};
+}
+
+/// A scene in which a feature is off, and why.
+struct Exclusion {
+  std::string_view feature, clause;
+  std::function<void(MemoryScene&)> change;
+};
+
+void store_scattered_flux(MemoryScene& scene) {
+  scene.scene.render.store = PhotonStore::scatter;
+}
+void limit_bounces(MemoryScene& scene) {
+  scene.scene.render.max_bounces = 100000;
+}
+void add_ball(MemoryScene& scene) {
+  add_surface(scene, SurfaceShape::sphere, surfaces::moved(surfaces::scaled(0.01), {0, -9, 0}),
+              surfaces::of_type(MaterialType::diffuse));
+}
+void add_lamp(MemoryScene& scene) {
+  scene.add_light(LightType::point).position = {0, 3, 0};
+}
+void name_path(MemoryScene& scene) {
+  scene.scene.render.estimator = EstimatorType::path;
+}
+void name_beam(MemoryScene& scene) {
+  scene.scene.render.estimator = EstimatorType::beam;
+}
+
+const std::vector<Exclusion>& exclusions() {
+  static const std::vector<Exclusion> list{
+      {"path guide", "photons store scattered flux (render.store)", store_scattered_flux},
+      {"forward peak", "render.forward_peak keeps it",
+       [](MemoryScene& s) { s.scene.render.forward_peak = ForwardPeak::kept; }},
+      {"forward peak", "photons store scattered flux (render.store)", store_scattered_flux},
+      {"forward peak", "render.max_bounces counts every scattering", limit_bounces},
+      {"forward peak", "phase functions are isotropic",
+       [](MemoryScene& s) { s.scene.volumes[0].phase = {}; }},
+      {"forward peak", "a volume glows",
+       [](MemoryScene& s) {
+         s.glow(uniform_field({1, 1, 1}, 1), box_map({1, 1, 1}, Vec3d(-0.5), Vec3d(0.5))).scale = 1;
+       }},
+      {"forward peak", "meshes stand in the scene", add_ball},
+      {"forward peak", "photons alone bring a light that does not shine from all around",
+       [](MemoryScene& s) { s.scene.render.direct = DirectLight::photons; }},
+      {"final gathering", "render.estimator names another method", name_beam},
+      {"final gathering", "render.final_gather is \"never\"",
+       [](MemoryScene& s) { s.scene.render.final_gather = FinalGathering::never; }},
+      {"final gathering", "photons store scattered flux (render.store)", store_scattered_flux},
+      {"final gathering", "render.max_bounces counts every scattering", limit_bounces},
+      {"final gathering", "meshes stand in the scene", add_ball},
+      {"final gathering", "photons alone bring a light of one point or direction",
+       [](MemoryScene& s) { s.scene.render.direct = DirectLight::photons; }},
+      {"final gathering", "a lamp or a small light makes walks too noisy to forecast", add_lamp},
+      {"shadow lattice", "the estimator shoots no photons", name_path},
+      {"shadow lattice", "extinction differs between channels",
+       [](MemoryScene& s) {
+         s.scene.volumes[0].extinction_scale = {1, 0.9f, 0.8f};
+       }},
+      {"boundary correction", "photons of scattered flux lie in the medium, wherever it is",
+       store_scattered_flux},
+      {"hidden lights", "render.photons is given",
+       [](MemoryScene& s) { s.scene.render.photons = 10000; }},
+      {"hidden lights", "shadow rays reach every light that they look for", [](MemoryScene&) {}},
+      {"refined edges", "meshes stand in the scene", add_ball},
+      {"refined edges", "render.estimator names another method", name_beam},
+      {"branches", "photons carry the light: only probes of the bias walk", [](MemoryScene&) {}},
+      {"branches", "meshes stand in the scene",
+       [](MemoryScene& s) {
+         name_path(s);
+         add_ball(s);
+       }},
+      {"branches", "no phase function has a peak that is sharp enough", name_path},
+      {"branches", "no light with shadow rays has a single direction", [](MemoryScene& s) {
+         name_path(s);
+         s.scene.volumes[0].phase = henyey_greenstein(0.97);
+         s.scene.lights.clear();
+         add_lamp(s);
+       }}};
+  return list;
+}
+
+TEST(Features, ACloudInTheSunUsesThem) {
+  for (const std::string_view name :
+       {"view importance", "path guide", "kernel pilot", "forward peak", "final gathering",
+        "shadow lattice", "boundary correction", "refined edges"}) {
+    const FeatureChoice feature = feature_of(cloud(), name);
+    EXPECT_TRUE(feature.on) << name << ": " << feature.reason;
+  }
+}
+
+TEST(Features, EachConditionExcludesItsFeatureAndSaysWhy) {
+  for (const Exclusion& exclusion : exclusions()) {
+    MemoryScene scene = cloud();
+    exclusion.change(scene);
+    const FeatureChoice feature = feature_of(scene, exclusion.feature);
+    EXPECT_FALSE(feature.on) << exclusion.feature << ", " << exclusion.clause;
+    EXPECT_EQ(feature.reason, exclusion.clause) << exclusion.feature;
+  }
+}
+
+/// So that a new condition is tried as well. Of colour grids and of no medium at all there are
+/// tests elsewhere (color_grid_test, edge_cases_test).
+TEST(Features, EveryConditionIsTried) {
+  std::set<std::pair<std::string_view, std::string_view>> tried{
+      {"forward peak", "a grid of colours changes the albedo from place to place"},
+      {"shadow lattice", "there is no medium"}};
+  for (const Exclusion& exclusion : exclusions())
+    tried.insert({exclusion.feature, exclusion.clause});
+  for (const Feature* feature : feature_table())
+    for (const FeatureCondition& condition : feature->conditions)
+      EXPECT_TRUE(tried.count({feature->name, condition.clause}))
+          << feature->name << ": " << condition.clause;
+}
+
+TEST(Features, OfTheTableHaveNamesAndHelp) {
+  std::set<std::string_view> names;
+  for (const Feature* feature : feature_table()) {
+    EXPECT_FALSE(feature->help.empty()) << feature->name;
+    EXPECT_TRUE(names.insert(feature->name).second) << feature->name;
+    EXPECT_EQ(feature->used == nullptr, feature->unused.empty()) << feature->name;
+  }
+}
+
+TEST(Schedule, BeamIsTheBeamEstimateInEveryPass) {
+  MemoryScene scene = cloud();
+  name_beam(scene);
+  const TestFrame frame(scene);
+  const FramePasses passes(EstimatorType::beam, frame.input());
+  for (const int pass : {0, 1, 100}) {
+    const PassSpec spec = schedule(passes.choices(), scene.scene.render, pass);
+    EXPECT_EQ(spec.estimator, "beam");
+    EXPECT_EQ(spec.gather_walks, 0);
+  }
+}
+
+TEST(Schedule, SaysWhatEachPassIs) {
+  MemoryScene scene = cloud();
+  scene.scene.render.passes = 100;
+  scene.scene.render.estimator = EstimatorType::gather;
+  const TestFrame frame(scene);
+  const FramePasses passes(EstimatorType::gather, frame.input());
+  const std::vector<PassSpec> list = list_passes(passes.choices(), scene.scene.render);
+  ASSERT_FALSE(list.empty());
+  EXPECT_EQ(list.front().pass, 0);
+  EXPECT_EQ(list.back().pass, 99);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const PassSpec& spec = list[i];
+    EXPECT_EQ(spec.estimator, "gather");
+    EXPECT_GT(spec.gather_walks, 0);
+    EXPECT_GT(spec.light_paths, 0u);
+    EXPECT_GE(spec.peak_order, 4);
+    if (i > 0) {
+      EXPECT_LT(spec.kernel_scale, list[i - 1].kernel_scale);
+      EXPECT_LE(spec.regression_radius, list[i - 1].regression_radius);
+    }
+  }
+  // Half the photons of a kernel along rays.
+  EXPECT_EQ(list[0].neighbours, 0.5 * passes.choices().photons.neighbours);
+}
+
+} // namespace
+} // namespace vdbeam
