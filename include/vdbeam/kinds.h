@@ -14,6 +14,31 @@ struct LightType {
 inline constexpr LightType LightType::distant{"distant"}, LightType::point{"point"},
     LightType::spot{"spot"}, LightType::environment{"environment"}, LightType::sky{"sky"};
 
+/// A phase function, by its name in the table of phase functions (src/phase/phase_table.cpp). The
+/// name is not copied: a literal, or the table's own.
+struct PhaseType {
+  std::string_view name;
+  static const PhaseType isotropic, henyey_greenstein, rayleigh, two_lobe, mie;
+  bool operator==(const PhaseType&) const = default;
+};
+inline constexpr PhaseType PhaseType::isotropic{"isotropic"},
+    PhaseType::henyey_greenstein{"henyey_greenstein"}, PhaseType::rayleigh{"rayleigh"},
+    PhaseType::two_lobe{"two_lobe"}, PhaseType::mie{"mie"};
+
+/// What a surface looks like, by its name in the table of materials
+/// (src/materials/material_table.cpp); docs/physics.md has the models. The name is not copied: a
+/// literal, or the table's own.
+struct MaterialType {
+  std::string_view name;
+  static const MaterialType diffuse, mirror, conductor, dielectric, emissive, holdout,
+      shadow_catcher;
+  bool operator==(const MaterialType&) const = default;
+};
+inline constexpr MaterialType MaterialType::diffuse{"diffuse"}, MaterialType::mirror{"mirror"},
+    MaterialType::conductor{"conductor"}, MaterialType::dielectric{"dielectric"},
+    MaterialType::emissive{"emissive"}, MaterialType::holdout{"holdout"},
+    MaterialType::shadow_catcher{"shadow_catcher"};
+
 /// An estimator, by its name in the table of estimators (src/estimators/estimator_table.cpp). The
 /// name is not copied: a literal, or the table's own.
 struct EstimatorType {

@@ -1,8 +1,8 @@
 #pragma once
 
-namespace vdbeam {
+#include "vdbeam/kinds.h"
 
-enum class PhaseType { isotropic, henyey_greenstein, rayleigh, two_lobe, mie };
+namespace vdbeam {
 
 struct PhaseSettings {
   PhaseType type = PhaseType::isotropic;
@@ -10,6 +10,8 @@ struct PhaseSettings {
   double g2 = 0;                ///< two_lobe: mean cosine of the second lobe
   double blend = 0.5;           ///< two_lobe: weight of the second lobe
   double droplet_diameter = 20; ///< mie: micrometres, 5 to 50
+
+  bool operator==(const PhaseSettings&) const = default;
 };
 
 } // namespace vdbeam

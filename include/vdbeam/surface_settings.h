@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/color_space.h"
+#include "vdbeam/kinds.h"
 #include "vdbeam/vec.h"
 
 #include <array>
@@ -9,29 +10,19 @@
 
 namespace vdbeam {
 
-/// What a surface looks like; docs/physics.md has the models.
-enum class MaterialType {
-  diffuse,
-  mirror,
-  conductor,
-  dielectric,
-  emissive,
-  holdout,
-  shadow_catcher
-};
-
 /// What a texture shows beyond its edges.
 enum class TextureWrap { repeat, mirror, clamp };
 
 struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
-  /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: `albedo_of`.
+  /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: 0.8,
+  /// or 1 where there is a texture.
   std::optional<Rgb> albedo;
   /// diffuse, shadow_catcher, emissive: a picture that albedo or radiance are multiplied by; ""
   std::string texture;
   TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
-  /// conductor, dielectric: alpha of GGX is its square, in [0, 1]; none: `roughness_of`.
+  /// conductor, dielectric: alpha of GGX is its square, in [0, 1]; none: 0.2, 0.
   std::optional<double> roughness;
   double ior = 1.5;        ///< dielectric: index of refraction inside over that outside
   Rgb absorption{0, 0, 0}; ///< dielectric: absorption coefficient inside [1/world]
@@ -42,52 +33,6 @@ struct MaterialSettings {
   /// Of the colours above, to which the texture's are converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;
 };
-
-/// The albedo where none is given: a texture is shown as it is.
-inline Rgb albedo_of(const MaterialSettings& material) {
-  return material.albedo.value_or(material.texture.empty() ? Rgb(0.8f) : Rgb(1));
-}
-
-inline bool shines(const MaterialSettings& material) {
-  return material.type == MaterialType::emissive && max_component(material.radiance) > 0;
-}
-
-/// Roughness where none is given: metal is a little rough, glass is smooth.
-inline double roughness_of(const MaterialSettings& material) {
-  return material.roughness.value_or(material.type == MaterialType::conductor ? 0.2 : 0);
-}
-
-/// Sends light on in single directions only.
-inline bool is_specular(const MaterialSettings& material) {
-  return material.type == MaterialType::mirror ||
-         (material.type == MaterialType::dielectric && roughness_of(material) == 0) ||
-         (material.type == MaterialType::conductor && roughness_of(material) == 0);
-}
-
-/// Shows a picture of its surroundings, if a blurred one: mirrors, and glass and metal whose lobes
-/// are so narrow that few photons arrive from where they show light from.
-inline bool shows_surroundings(const MaterialSettings& material) {
-  constexpr double narrow = 0.55; // GGX alpha 0.3
-  return is_specular(material) ||
-         ((material.type == MaterialType::dielectric ||
-           (material.type == MaterialType::conductor && max_component(material.reflectance) > 0)) &&
-          roughness_of(material) < narrow);
-}
-
-/// Photons on it tell what light it reflects: it spreads light.
-inline bool takes_photons(const MaterialSettings& material) {
-  switch (material.type) {
-  case MaterialType::diffuse:
-  case MaterialType::shadow_catcher:
-    return max_component(albedo_of(material)) > 0;
-  case MaterialType::dielectric:
-    return !shows_surroundings(material);
-  case MaterialType::conductor:
-    return !shows_surroundings(material) && max_component(material.reflectance) > 0;
-  default:
-    return false;
-  }
-}
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the
 /// origin, the square from -1 to 1 in x and y, and the disk of radius 1 in that plane; the front of

@@ -43,7 +43,7 @@ int reflected_paths(const SpecularBranches& ways) {
 /// Rough glass seen from outside.
 bool is_frosted(const SurfaceVertex& vertex) {
   const Material& material = vertex.material();
-  return material.type() == MaterialType::dielectric && !material.is_specular() && vertex.front();
+  return material.refracts() && !material.is_specular() && vertex.front();
 }
 
 /// Smooth glass sends a path both ways. Rough glass does so inside, where what it reflects, a few
@@ -51,7 +51,7 @@ bool is_frosted(const SurfaceVertex& vertex) {
 /// that it reflects.
 bool splits_light(const SurfaceVertex& vertex) {
   const Material& material = vertex.material();
-  return material.is_specular() || (material.type() == MaterialType::dielectric && !vertex.front());
+  return material.is_specular() || (material.refracts() && !vertex.front());
 }
 
 /// One of the ways, by its share of the light.

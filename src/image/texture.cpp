@@ -90,13 +90,13 @@ Rgb Texture::at(const Uv& uv) const {
   return top * (1 - fy) + bottom * fy;
 }
 
-Texture read_texture(const MaterialSettings& material, std::vector<std::string>& notes) {
+Texture read_texture(const MaterialSettings& material, bool shines,
+                     std::vector<std::string>& notes) {
   Image image = read_image(material.texture);
   tell(notes, material.texture, make_finite(image),
        "that are infinite, taken for 65504, or no numbers, taken for 0");
   convert_colors(image, chromaticities_of(material.color_space));
-  const bool reflects = material.type != MaterialType::emissive;
-  return {image, material.texture_wrap, reflects ? 1 : largest_radiance, material.texture, notes};
+  return {image, material.texture_wrap, shines ? largest_radiance : 1, material.texture, notes};
 }
 
 } // namespace vdbeam

@@ -35,8 +35,10 @@ private:
   std::vector<Rgb> texels_;
 };
 
-/// Reads the texture of a material, in the colour space of its settings. Albedos are at most 1.
-/// Throws InputError where there is no such picture.
-Texture read_texture(const MaterialSettings& material, std::vector<std::string>& notes);
+/// Reads the texture of a material, in the colour space of its settings: of one that shines a
+/// factor of its radiance, of others of the albedo, which is kept to 1. Throws InputError where
+/// there is no such picture.
+Texture read_texture(const MaterialSettings& material, bool shines,
+                     std::vector<std::string>& notes);
 
 } // namespace vdbeam

@@ -4,6 +4,8 @@
 #include "keys/scene_enums.h"
 #include "keys/scene_keys.h"
 #include "lights/light_table.h"
+#include "materials/material_table.h"
+#include "phase/phase_table.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -43,13 +45,18 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
 
 /// A choice among the rows of a table.
 template <class T>
-constexpr bool is_kind = std::is_same_v<T, LightType> || std::is_same_v<T, EstimatorType>;
+constexpr bool is_kind = std::is_same_v<T, PhaseType> || std::is_same_v<T, MaterialType> ||
+                         std::is_same_v<T, LightType> || std::is_same_v<T, EstimatorType>;
 template <class T>
 constexpr bool is_choice = std::is_enum_v<T> || is_kind<T>;
 
 template <class T>
 auto kind_table() {
-  if constexpr (std::is_same_v<T, LightType>)
+  if constexpr (std::is_same_v<T, PhaseType>)
+    return phase_table();
+  else if constexpr (std::is_same_v<T, MaterialType>)
+    return material_table();
+  else if constexpr (std::is_same_v<T, LightType>)
     return light_table();
   else
     return estimator_table();

@@ -91,15 +91,6 @@ struct EnumNames<ColorSpace> {
        {ColorSpace::aces2065_1, "aces2065_1"}}};
 };
 template <>
-struct EnumNames<PhaseType> {
-  static constexpr std::array<std::pair<PhaseType, std::string_view>, 5> table{
-      {{PhaseType::isotropic, "isotropic"},
-       {PhaseType::henyey_greenstein, "henyey_greenstein"},
-       {PhaseType::rayleigh, "rayleigh"},
-       {PhaseType::two_lobe, "two_lobe"},
-       {PhaseType::mie, "mie"}}};
-};
-template <>
 struct EnumNames<EmissionLaw> {
   static constexpr std::array<std::pair<EmissionLaw, std::string_view>, 3> table{
       {{EmissionLaw::planck, "planck"},
@@ -113,17 +104,6 @@ struct EnumNames<SurfaceShape> {
        {SurfaceShape::sphere, "sphere"},
        {SurfaceShape::quad, "quad"},
        {SurfaceShape::disk, "disk"}}};
-};
-template <>
-struct EnumNames<MaterialType> {
-  static constexpr std::array<std::pair<MaterialType, std::string_view>, 7> table{
-      {{MaterialType::diffuse, "diffuse"},
-       {MaterialType::mirror, "mirror"},
-       {MaterialType::conductor, "conductor"},
-       {MaterialType::dielectric, "dielectric"},
-       {MaterialType::emissive, "emissive"},
-       {MaterialType::holdout, "holdout"},
-       {MaterialType::shadow_catcher, "shadow_catcher"}}};
 };
 template <>
 struct EnumNames<ImageParts> {

@@ -79,15 +79,12 @@ void add_volume(KeyTable& table) {
   using P = PhaseSettings;
   table.section(SceneSection::phase);
   table.add("type", &P::type, R"(phase function; phase = "NAME" is short for it)");
-  table.add("g", &P::g, "mean cosine, of the first lobe where there are two")
-      .inside(-1, 1)
-      .types({"henyey_greenstein", "two_lobe"});
-  table.add("g2", &P::g2, "mean cosine of the second lobe").inside(-1, 1).types({"two_lobe"});
-  table.add("blend", &P::blend, "share of the second lobe").within(0, 1).types({"two_lobe"});
+  table.add("g", &P::g, "mean cosine, of the first lobe where there are two").inside(-1, 1);
+  table.add("g2", &P::g2, "mean cosine of the second lobe").inside(-1, 1);
+  table.add("blend", &P::blend, "share of the second lobe").within(0, 1);
   table.add("droplet_diameter", &P::droplet_diameter, "diameter of the water droplets")
       .unit("micrometres")
-      .within(5, 50)
-      .types({"mie"});
+      .within(5, 50);
 }
 
 void add_emission(KeyTable& table) {
@@ -146,38 +143,30 @@ void add_mesh(KeyTable& table) {
       .add("albedo", &M::albedo,
            "share of light reflected; auto: 0.8, or 1 where there is a texture")
       .within(0, 1)
-      .types({"diffuse", "shadow_catcher"})
       .absent("auto");
   table
       .add(
           "texture", &M::texture,
           "EXR, HDR or PNG picture, by the surface's UV, that albedo or radiance are multiplied by")
-      .file(InputKind::picture)
-      .types({"diffuse", "shadow_catcher", "emissive"});
-  table.add("texture_wrap", &M::texture_wrap, "what the texture shows beyond its edges")
-      .types({"diffuse", "shadow_catcher", "emissive"});
+      .file(InputKind::picture);
+  table.add("texture_wrap", &M::texture_wrap, "what the texture shows beyond its edges");
   table.add("reflectance", &M::reflectance, "share that is reflected at normal incidence")
-      .within(0, 1)
-      .types({"mirror", "conductor"});
+      .within(0, 1);
   table
       .add("roughness", &M::roughness,
            "0: smooth; the width of the GGX lobe is its square; auto: 0.2 of a conductor, 0 of a "
            "dielectric")
       .within(0, 1)
-      .types({"conductor", "dielectric"})
       .absent("auto");
-  table.add("ior", &M::ior, "index inside over that outside").within(0.1, 10).types({"dielectric"});
+  table.add("ior", &M::ior, "index inside over that outside").within(0.1, 10);
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")
-      .at_least(0)
-      .types({"dielectric"});
-  table.add("solid", &M::solid, "no volume is inside; so wherever it absorbs")
-      .types({"dielectric"});
+      .at_least(0);
+  table.add("solid", &M::solid, "no volume is inside; so wherever it absorbs");
   table.add("radiance", &M::radiance, "radiance that it sends out")
       .unit("W / m^2 / sr")
-      .at_least(0)
-      .types({"emissive"});
-  table.add("two_sided", &M::two_sided, "whether its back shines too").types({"emissive"});
+      .at_least(0);
+  table.add("two_sided", &M::two_sided, "whether its back shines too");
 }
 
 void add_light(KeyTable& table) {
@@ -341,6 +330,10 @@ std::vector<SceneKey> make_table() {
     // Skies turn about the camera's way up; nothing else of it is part of the world.
     if (key.section == SceneSection::camera && key.name != "up")
       key.changes_world = false;
+    if (key.section == SceneSection::phase)
+      key.types = kinds_with_key<PhaseType>(key.name);
+    if (key.section == SceneSection::material)
+      key.types = kinds_with_key<MaterialType>(key.name);
     if (key.section == SceneSection::light)
       key.types = kinds_with_key<LightType>(key.name);
     // No pass depends on which layers are wanted.

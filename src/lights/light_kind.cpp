@@ -12,9 +12,9 @@ const LightKind& light_kind(const LightType& type) {
   throw InputError(fmt::format("light.type: there is no light \"{}\"", type.name));
 }
 
-std::optional<LightComplaint> direction_complaint(const LightSettings& settings) {
+std::optional<KeyComplaint> direction_complaint(const LightSettings& settings) {
   if (length(settings.direction) == 0)
-    return LightComplaint{"direction", "must not be [0, 0, 0]"};
+    return KeyComplaint{"direction", "must not be [0, 0, 0]"};
   return std::nullopt;
 }
 

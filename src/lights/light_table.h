@@ -2,19 +2,14 @@
 
 #include "lights/light.h"
 #include "lights/light_context.h"
+#include "text/key_complaint.h"
 
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace vdbeam {
-
-/// What is wrong with one key of a light.
-struct LightComplaint {
-  std::string key, text; ///< "cone_falloff", "must be at most ..."
-};
 
 /// One kind of light: everything that validation, plan, help and docs ask about it. It stands in
 /// the light's own file; the table below lists it.
@@ -29,8 +24,8 @@ struct LightKind {
   /// sky), so that none need be spent. Never false for a delta light.
   bool (*wants_shadow_rays)(const LightSettings&) = [](const LightSettings&) { return true; };
   /// What the ranges of single keys cannot say.
-  std::optional<LightComplaint> (*complaint)(const LightSettings&) = [](const LightSettings&) {
-    return std::optional<LightComplaint>();
+  std::optional<KeyComplaint> (*complaint)(const LightSettings&) = [](const LightSettings&) {
+    return std::optional<KeyComplaint>();
   };
   /// Throws InputError for settings that no light can have.
   std::unique_ptr<Light> (*make)(const LightSettings& settings, const LightContext& context);
@@ -45,7 +40,7 @@ const LightKind& light_kind(const LightType& type);
 extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light;
 
 /// A complaint where the light's direction is 0.
-std::optional<LightComplaint> direction_complaint(const LightSettings& settings);
+std::optional<KeyComplaint> direction_complaint(const LightSettings& settings);
 
 /// Mean flux of photons from a fixed stream, for lights whose power has no short formula.
 Rgb estimate_power(const Light& light);

@@ -56,10 +56,10 @@ std::unique_ptr<Light> make_spot_light(const LightSettings& settings, const Ligh
   return std::make_unique<SpotLight>(settings, context);
 }
 
-std::optional<LightComplaint> spot_complaint(const LightSettings& settings) {
+std::optional<KeyComplaint> spot_complaint(const LightSettings& settings) {
   if (settings.cone_falloff > settings.cone_angle)
-    return LightComplaint{"cone_falloff", fmt::format("must be at most cone_angle ({}), got {}",
-                                                      settings.cone_angle, settings.cone_falloff)};
+    return KeyComplaint{"cone_falloff", fmt::format("must be at most cone_angle ({}), got {}",
+                                                    settings.cone_angle, settings.cone_falloff)};
   return direction_complaint(settings);
 }
 

@@ -12,9 +12,6 @@ public:
   MaterialSample sample(const Vec3f&, Carried, Rng&) const override { return {}; }
   bool is_specular() const override { return true; }
   bool is_black() const override { return true; }
-
-protected:
-  using Material::Material;
 };
 
 } // namespace vdbeam

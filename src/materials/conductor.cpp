@@ -1,6 +1,7 @@
 #include "materials/fresnel.h"
-#include "materials/material.h"
+#include "materials/material_table.h"
 #include "materials/microfacets.h"
+#include "math/color.h"
 
 namespace vdbeam {
 namespace {
@@ -8,9 +9,8 @@ namespace {
 /// Rough metal on both sides.
 class Conductor final : public Material {
 public:
-  explicit Conductor(const MaterialSettings& settings)
-      : Material(MaterialType::conductor), reflectance_(settings.reflectance),
-        facets_(roughness_of(settings)), narrow_(vdbeam::shows_surroundings(settings)) {}
+  Conductor(const MaterialSettings& settings, double roughness)
+      : reflectance_(settings.reflectance), facets_(roughness), narrow_(is_narrow(roughness)) {}
 
   Rgb evaluate(const Vec3f& wo_, const Vec3f& wi_) const override {
     if (!(wo_.z * wi_.z > 0))
@@ -39,7 +39,8 @@ public:
     return {wi, weight, density, 1};
   }
   bool is_black() const override { return max_component(reflectance_) <= 0; }
-  bool shows_surroundings() const override { return narrow_; }
+  bool shows_surroundings() const override { return narrow_ && !is_black(); }
+  bool throws_light() const override { return !is_black(); }
 
 private:
   static Vec3f upwards(const Vec3f& w) { return {w.x, w.y, std::abs(w.z)}; }
@@ -49,12 +50,23 @@ private:
   bool narrow_;
 };
 
+constexpr std::string_view keys[] = {"reflectance", "roughness"};
+/// Where the scene gives none: metal is a little rough.
+constexpr double default_roughness = 0.2;
+
 } // namespace
 
-std::unique_ptr<Material> make_conductor(const MaterialSettings& settings, double scale) {
-  // A perfectly smooth one is a mirror.
-  return roughness_of(settings) > 0 ? std::make_unique<Conductor>(settings)
-                                    : make_mirror(settings, scale);
-}
+const MaterialKind conductor_material{
+    .name = "conductor",
+    .help = "metal, smooth or rough (GGX)",
+    .keys = keys,
+    .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
+    .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {
+      const double roughness = settings.roughness.value_or(default_roughness);
+      // A perfectly smooth one is a mirror.
+      if (!(roughness > 0))
+        return mirror_material.make(settings, scale);
+      return std::make_unique<Conductor>(settings, roughness);
+    }};
 
 } // namespace vdbeam

@@ -1,5 +1,7 @@
 #include "materials/fresnel.h"
-#include "materials/material.h"
+#include "materials/material_table.h"
+#include "materials/rough_dielectric.h"
+#include "math/color.h"
 
 namespace vdbeam {
 namespace {
@@ -8,7 +10,7 @@ namespace {
 class Dielectric final : public Material {
 public:
   Dielectric(const MaterialSettings& settings, double scale)
-      : Material(MaterialType::dielectric), ior_(static_cast<float>(settings.ior)),
+      : ior_(static_cast<float>(settings.ior)),
         absorption_(settings.absorption / static_cast<float>(scale)),
         solid_(settings.solid || max_component(settings.absorption) > 0) {}
 
@@ -29,6 +31,7 @@ public:
     return ways;
   }
   bool is_specular() const override { return true; }
+  bool refracts() const override { return true; }
   Rgb absorption() const override { return absorption_; }
   bool is_solid() const override { return solid_; }
 
@@ -56,13 +59,21 @@ private:
   bool solid_;
 };
 
+constexpr std::string_view keys[] = {"roughness", "ior", "absorption", "solid"};
+
 } // namespace
 
-std::unique_ptr<Material> make_dielectric(const MaterialSettings& settings, double scale) {
-  // Facets of index 1 bend no light, whatever their slope.
-  if (roughness_of(settings) > 0 && std::abs(settings.ior - 1) > 1e-4)
-    return make_rough_dielectric(settings, scale);
-  return std::make_unique<Dielectric>(settings, scale);
-}
+const MaterialKind dielectric_material{
+    .name = "dielectric",
+    .help = "glass or water, smooth or rough (GGX), which reflects and refracts",
+    .keys = keys,
+    .colored = [](const MaterialSettings& settings) { return !is_grey(settings.absorption); },
+    .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {
+      const double roughness = settings.roughness.value_or(0); // glass is smooth
+      // Facets of index 1 bend no light, whatever their slope.
+      if (roughness > 0 && std::abs(settings.ior - 1) > 1e-4)
+        return make_rough_dielectric(settings, roughness, scale);
+      return std::make_unique<Dielectric>(settings, scale);
+    }};
 
 } // namespace vdbeam

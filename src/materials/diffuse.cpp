@@ -1,9 +1,26 @@
 #include "materials/diffuse.h"
 
-namespace vdbeam {
+#include "materials/material_table.h"
+#include "math/color.h"
 
-std::unique_ptr<Material> make_diffuse(const MaterialSettings& settings, double) {
-  return std::make_unique<Diffuse>(settings);
+namespace vdbeam {
+namespace {
+
+constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap"};
+
+} // namespace
+
+bool has_colored_albedo(const MaterialSettings& settings) {
+  return !is_grey(albedo_of(settings)) || !settings.texture.empty();
 }
+
+const MaterialKind diffuse_material{
+    .name = "diffuse",
+    .help = "reflects the same radiance in all directions",
+    .keys = keys,
+    .colored = has_colored_albedo,
+    .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
+      return std::make_unique<Diffuse>(settings);
+    }};
 
 } // namespace vdbeam

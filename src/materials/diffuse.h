@@ -6,11 +6,18 @@
 
 namespace vdbeam {
 
+/// The albedo of a diffuse surface; where none is given a texture is shown as it is.
+inline Rgb albedo_of(const MaterialSettings& settings) {
+  return settings.albedo.value_or(settings.texture.empty() ? Rgb(0.8f) : Rgb(1));
+}
+
+/// Its albedo is no grey, or may be none.
+bool has_colored_albedo(const MaterialSettings& settings);
+
 /// Lambert's law on both sides: f = albedo / pi.
 class Diffuse : public Material {
 public:
-  explicit Diffuse(const MaterialSettings& settings)
-      : Material(settings.type), albedo_(albedo_of(settings)) {}
+  explicit Diffuse(const MaterialSettings& settings) : albedo_(albedo_of(settings)) {}
 
   Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const override {
     return wo.z * wi.z > 0 ? albedo_ * (std::abs(wi.z) / pi) : Rgb();

@@ -1,4 +1,6 @@
 #include "materials/black.h"
+#include "materials/material_table.h"
+#include "math/color.h"
 
 namespace vdbeam {
 namespace {
@@ -7,8 +9,7 @@ namespace {
 class Emissive final : public BlackMaterial {
 public:
   explicit Emissive(const MaterialSettings& settings)
-      : BlackMaterial(MaterialType::emissive), radiance_(settings.radiance),
-        two_sided_(settings.two_sided) {}
+      : radiance_(settings.radiance), two_sided_(settings.two_sided) {}
 
   Rgb emitted(bool front) const override { return front || two_sided_ ? radiance_ : Rgb(); }
 
@@ -17,10 +18,20 @@ private:
   bool two_sided_;
 };
 
+constexpr std::string_view keys[] = {"radiance", "two_sided", "texture", "texture_wrap"};
+
 } // namespace
 
-std::unique_ptr<Material> make_emissive(const MaterialSettings& settings, double) {
-  return std::make_unique<Emissive>(settings);
-}
+const MaterialKind emissive_material{
+    .name = "emissive",
+    .help = "a lamp, which shines with the same radiance in all directions and reflects nothing",
+    .keys = keys,
+    .colored =
+        [](const MaterialSettings& settings) {
+          return !is_grey(settings.radiance) || !settings.texture.empty();
+        },
+    .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
+      return std::make_unique<Emissive>(settings);
+    }};
 
 } // namespace vdbeam

@@ -1,4 +1,5 @@
 #include "materials/black.h"
+#include "materials/material_table.h"
 
 namespace vdbeam {
 namespace {
@@ -7,14 +8,16 @@ namespace {
 /// what is behind it and casts its shadow.
 class Holdout final : public BlackMaterial {
 public:
-  Holdout() : BlackMaterial(MaterialType::holdout) {}
   bool is_holdout() const override { return true; }
 };
 
 } // namespace
 
-std::unique_ptr<Material> make_holdout(const MaterialSettings&, double) {
-  return std::make_unique<Holdout>();
-}
+const MaterialKind holdout_material{
+    .name = "holdout",
+    .help = "black and a hole in alpha, for what is composited later",
+    .make = [](const MaterialSettings&, double) -> std::unique_ptr<Material> {
+      return std::make_unique<Holdout>();
+    }};
 
 } // namespace vdbeam

@@ -4,9 +4,6 @@
 #include "math/rng.h"
 #include "vdbeam/surface_settings.h"
 
-#include <memory>
-#include <vector>
-
 namespace vdbeam {
 
 /// What the light that is followed carries: radiance on paths from the camera, power on paths from
@@ -55,15 +52,23 @@ public:
   /// It shows a picture of its surroundings, if a blurred one: what camera rays show of it is found
   /// by rays that go on, as photons that arrive rarely come from where it shows light from.
   virtual bool shows_surroundings() const { return is_specular() && !is_black(); }
+  /// Sends light on in a narrow lobe, or in single directions: mirrors, metal and glass, smooth or
+  /// rough. A path that scatters elsewhere rarely finds where such a surface shows it a lamp or the
+  /// sun, and is bright then: photons bring that light to other surfaces.
+  virtual bool throws_light() const { return is_specular() && !is_black(); }
+  /// Light goes on behind it, as in glass: its back encloses something.
+  virtual bool refracts() const { return false; }
   /// Photons that arrive tell what light it reflects.
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
   /// Nothing leaves it but what it emits.
   virtual bool is_black() const { return false; }
-  /// Radiance that it emits to its front (`front`) or back.
+  /// Radiance that it emits to its front (`front`) or back; to the back the same or nothing.
   virtual Rgb emitted(bool front) const {
     static_cast<void>(front);
     return {};
   }
+  /// The surface is a light.
+  bool shines() const { return max_component(emitted(true)) > 0; }
   /// Absorption coefficient of what its back encloses, per render unit.
   virtual Rgb absorption() const { return {}; }
   /// No medium is inside of what its back encloses.
@@ -72,34 +77,6 @@ public:
   virtual bool is_holdout() const { return false; }
   /// The camera sees nothing of it but shadows.
   virtual bool is_shadow_catcher() const { return false; }
-  MaterialType type() const { return type_; }
-
-protected:
-  explicit Material(MaterialType type) : type_(type) {}
-
-private:
-  MaterialType type_;
 };
-
-/// One kind of material: a line of the table and a file with its factory are all that a new one
-/// needs.
-struct MaterialKind {
-  MaterialType type;
-  const char* name; ///< as scene files call it
-  /// `scale`: render units per world unit.
-  std::unique_ptr<Material> (*make)(const MaterialSettings& settings, double scale);
-};
-
-const std::vector<MaterialKind>& material_table();
-std::unique_ptr<Material> make_material(const MaterialSettings& settings, double scale);
-
-std::unique_ptr<Material> make_diffuse(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_mirror(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_conductor(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_dielectric(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_rough_dielectric(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_emissive(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_shadow_catcher(const MaterialSettings&, double scale);
-std::unique_ptr<Material> make_holdout(const MaterialSettings&, double scale);
 
 } // namespace vdbeam

@@ -1,27 +1,15 @@
-#include "materials/material.h"
+#include "materials/material_table.h"
 
-#include "vdbeam/error.h"
+#include <array>
 
 namespace vdbeam {
 
-const std::vector<MaterialKind>& material_table() {
-  static const std::vector<MaterialKind> table{
-      {MaterialType::diffuse, "diffuse", make_diffuse},
-      {MaterialType::mirror, "mirror", make_mirror},
-      {MaterialType::conductor, "conductor", make_conductor},
-      {MaterialType::dielectric, "dielectric", make_dielectric},
-      {MaterialType::emissive, "emissive", make_emissive},
-      {MaterialType::holdout, "holdout", make_holdout},
-      {MaterialType::shadow_catcher, "shadow_catcher", make_shadow_catcher},
-  };
+// This list stands alone in its file, so that a program may link another in its place.
+std::span<const MaterialKind* const> material_table() {
+  static constexpr std::array table{
+      &diffuse_material,  &mirror_material,  &conductor_material,     &dielectric_material,
+      &emissive_material, &holdout_material, &shadow_catcher_material};
   return table;
-}
-
-std::unique_ptr<Material> make_material(const MaterialSettings& settings, double scale) {
-  for (const MaterialKind& kind : material_table())
-    if (kind.type == settings.type)
-      return kind.make(settings, scale);
-  throw InputError("unknown material");
 }
 
 } // namespace vdbeam

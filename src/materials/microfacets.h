@@ -6,6 +6,12 @@
 
 namespace vdbeam {
 
+/// Whether lobes of that roughness are so narrow that few photons arrive from where the surface
+/// shows light from: it shows a picture of its surroundings, if a blurred one.
+constexpr bool is_narrow(double roughness) {
+  return roughness < 0.55; // GGX alpha 0.3
+}
+
 /// Microfacets of the GGX distribution (Walter et al. 2007) with Smith's height-correlated masking,
 /// sampled by visible normals (Heitz 2018). Directions are in the surface's frame, z up.
 class Microfacets {

@@ -1,4 +1,5 @@
-#include "materials/material.h"
+#include "materials/material_table.h"
+#include "math/color.h"
 
 namespace vdbeam {
 namespace {
@@ -6,8 +7,7 @@ namespace {
 /// Reflects on both sides, the same share at every angle.
 class Mirror final : public Material {
 public:
-  explicit Mirror(const MaterialSettings& settings)
-      : Material(MaterialType::mirror), reflectance_(settings.reflectance) {}
+  explicit Mirror(const MaterialSettings& settings) : reflectance_(settings.reflectance) {}
 
   Rgb evaluate(const Vec3f&, const Vec3f&) const override { return {}; }
   float pdf(const Vec3f&, const Vec3f&) const override { return 0; }
@@ -24,10 +24,17 @@ private:
   Rgb reflectance_;
 };
 
+constexpr std::string_view keys[] = {"reflectance"};
+
 } // namespace
 
-std::unique_ptr<Material> make_mirror(const MaterialSettings& settings, double) {
-  return std::make_unique<Mirror>(settings);
-}
+const MaterialKind mirror_material{
+    .name = "mirror",
+    .help = "reflects as a plane mirror does, on both sides",
+    .keys = keys,
+    .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
+    .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
+      return std::make_unique<Mirror>(settings);
+    }};
 
 } // namespace vdbeam

@@ -1,5 +1,6 @@
+#include "materials/rough_dielectric.h"
+
 #include "materials/fresnel.h"
-#include "materials/material.h"
 #include "materials/microfacets.h"
 
 namespace vdbeam {
@@ -8,11 +9,11 @@ namespace {
 /// Rough glass: microfacets that reflect and refract (Walter et al. 2007).
 class RoughDielectric final : public Material {
 public:
-  RoughDielectric(const MaterialSettings& settings, double scale)
-      : Material(MaterialType::dielectric), ior_(static_cast<float>(settings.ior)),
+  RoughDielectric(const MaterialSettings& settings, double roughness, double scale)
+      : ior_(static_cast<float>(settings.ior)),
         absorption_(settings.absorption / static_cast<float>(scale)),
-        solid_(settings.solid || max_component(settings.absorption) > 0),
-        facets_(roughness_of(settings)), narrow_(vdbeam::shows_surroundings(settings)) {}
+        solid_(settings.solid || max_component(settings.absorption) > 0), facets_(roughness),
+        narrow_(is_narrow(roughness)) {}
 
   Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const override {
     const Facet f = facet(wo, wi);
@@ -46,6 +47,8 @@ public:
   Rgb absorption() const override { return absorption_; }
   bool is_solid() const override { return solid_; }
   bool shows_surroundings() const override { return narrow_; }
+  bool throws_light() const override { return true; }
+  bool refracts() const override { return true; }
 
 private:
   /// A facet that is seen from wo, drawn at random; wo is turned so that it is above.
@@ -121,8 +124,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Material> make_rough_dielectric(const MaterialSettings& settings, double scale) {
-  return std::make_unique<RoughDielectric>(settings, scale);
+std::unique_ptr<Material> make_rough_dielectric(const MaterialSettings& settings, double roughness,
+                                                double scale) {
+  return std::make_unique<RoughDielectric>(settings, roughness, scale);
 }
 
 } // namespace vdbeam

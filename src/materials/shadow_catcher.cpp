@@ -1,4 +1,5 @@
 #include "materials/diffuse.h"
+#include "materials/material_table.h"
 
 namespace vdbeam {
 namespace {
@@ -11,10 +12,17 @@ public:
   bool is_shadow_catcher() const override { return true; }
 };
 
+constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap"};
+
 } // namespace
 
-std::unique_ptr<Material> make_shadow_catcher(const MaterialSettings& settings, double) {
-  return std::make_unique<ShadowCatcher>(settings);
-}
+const MaterialKind shadow_catcher_material{
+    .name = "shadow_catcher",
+    .help = "diffuse to light; the camera sees only the shadows on it, as alpha",
+    .keys = keys,
+    .colored = has_colored_albedo,
+    .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
+      return std::make_unique<ShadowCatcher>(settings);
+    }};
 
 } // namespace vdbeam

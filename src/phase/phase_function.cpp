@@ -2,6 +2,7 @@
 
 #include "math/sampling.h"
 #include "phase/draine.h"
+#include "phase/phase_table.h"
 #include "vdbeam/error.h"
 
 #include <fmt/core.h>
@@ -9,68 +10,22 @@
 #include <algorithm>
 
 namespace vdbeam {
-namespace {
-
-void require(bool valid, const char* key, const char* range, double value) {
-  if (!valid)
-    throw InputError(fmt::format("phase.{} must lie in {}, got {}", key, range, value));
-}
-
-DraineLobe henyey_greenstein(const char* key, double g, double weight) {
-  // Single precision must not round g to 1, where the lobe is a delta function.
-  require(std::abs(g) < 1 && std::abs(static_cast<float>(g)) < 1, key, "(-1, 1)", g);
-  return {static_cast<float>(g), 0, static_cast<float>(weight)};
-}
-
-struct LobePair {
-  std::array<DraineLobe, 2> lobes;
-};
-
-// Jendersie and d'Eon, "An Approximate Mie Scattering Function for Fog and Cloud Rendering",
-// SIGGRAPH 2023 Talks, eqs. 4-7: fits for water droplets of 5 to 50 micrometres.
-LobePair mie(double diameter) {
-  require(diameter >= 5 && diameter <= 50, "droplet_diameter", "[5, 50]", diameter);
-  const double g_hg = std::exp(-0.0990567 / (diameter - 1.67154));
-  const double g_d = std::exp(-2.20679 / (diameter + 3.91029) - 0.428934);
-  const double alpha = std::exp(3.62489 - 8.29288 / (diameter + 5.52825));
-  const double w_d = std::exp(-0.599085 / (diameter - 0.641583) - 0.665888);
-  return {
-      {DraineLobe{static_cast<float>(g_hg), 0, static_cast<float>(1 - w_d)},
-       DraineLobe{static_cast<float>(g_d), static_cast<float>(alpha), static_cast<float>(w_d)}}};
-}
-
-LobePair lobes_of(const PhaseSettings& settings) {
-  constexpr DraineLobe none{0, 0, 0};
-  switch (settings.type) {
-  case PhaseType::isotropic:
-    return {{DraineLobe{0, 0, 1}, none}};
-  case PhaseType::henyey_greenstein:
-    return {{henyey_greenstein("g", settings.g, 1), none}};
-  case PhaseType::rayleigh:
-    return {{DraineLobe{0, 1, 1}, none}};
-  case PhaseType::two_lobe:
-    require(settings.blend >= 0 && settings.blend <= 1, "blend", "[0, 1]", settings.blend);
-    return {{henyey_greenstein("g", settings.g, 1 - settings.blend),
-             henyey_greenstein("g2", settings.g2, settings.blend)}};
-  case PhaseType::mie:
-    return mie(settings.droplet_diameter);
-  }
-  return {{DraineLobe{0, 0, 1}, none}};
-}
-
-} // namespace
 
 PhaseFunction::PhaseFunction(const PhaseSettings& settings) {
-  auto [lobes] = lobes_of(settings);
-  const bool same = lobes[0].g == lobes[1].g && lobes[0].alpha == lobes[1].alpha;
-  if (lobes[0].weight <= 0 || same)
-    lobes[0] = lobes[1], lobes[0].weight = 1, lobes[1].weight = 0;
-  if (lobes[1].weight <= 0)
-    lobes[0].weight = 1;
-  else
+  const PhaseKind& kind = phase_kind(settings.type);
+  if (const auto complaint = kind.complaint(settings))
+    throw InputError(fmt::format("phase.{} {}", complaint->key, complaint->text));
+  const auto [first, second] = kind.lobes(settings);
+  const bool same = first.g == second.g && first.alpha == second.alpha;
+  if (first.weight > 0 && second.weight > 0 && !same) {
     lobe_count_ = 2;
-  for (int i = 0; i < lobe_count_; ++i)
-    set_lobe(i, lobes[i]);
+    set_lobe(0, first);
+    set_lobe(1, second);
+  } else {
+    DraineLobe only = first.weight > 0 ? first : second;
+    only.weight = 1;
+    set_lobe(0, only);
+  }
 }
 
 PhaseFunction PhaseFunction::polynomial(const std::vector<double>& coefficients) {

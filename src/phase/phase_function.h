@@ -18,6 +18,11 @@ struct DraineLobe {
   float weight = 1; ///< weight of this lobe; the weights add up to 1
 };
 
+/// A blend of two lobes; the weight 0: there is only the other one.
+struct PhaseLobes {
+  DraineLobe first, second{.weight = 0};
+};
+
 /// A lobe with its constants precomputed, for scalar and SIMD evaluation. 1 + g^2 - 2 g cos is
 /// computed as (1 - |g|)^2 + 2 |g| (1 -+ cos), a sum of positive terms, since the plain form loses
 /// all digits where |g| is near 1.
@@ -37,15 +42,15 @@ struct PhaseTerm {
   }
 };
 
-/// A phase function as a blend of at most two Draine lobes: every model that the scene file offers
-/// has this form, so that the beam query needs one formula.
-/// cos_theta is between the directions of travel before and after; 1 is straight ahead.
-/// For media without their forward peak (truncate_peak) a phase function may also be a polynomial
-/// of the cosine, for evaluation in integrals only, or a table, to draw directions from.
+/// A phase function as a blend of at most two Draine lobes: every model of the table (PhaseKind)
+/// has this form, so that the beam query needs one formula. cos_theta is between the directions of
+/// travel before and after; 1 is straight ahead. For media without their forward peak
+/// (truncate_peak) a phase function may also be a polynomial of the cosine, for evaluation in
+/// integrals only, or a table, to draw directions from.
 class PhaseFunction {
 public:
   PhaseFunction() = default;
-  /// Throws InputError where a parameter lies outside its range (PhaseSettings).
+  /// Throws InputError for settings that the kind complains about, and for an unknown kind.
   explicit PhaseFunction(const PhaseSettings& settings);
 
   /// From the coefficients of the powers of the cosine, most_coefficients of them at most. Has no

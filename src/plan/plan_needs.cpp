@@ -1,7 +1,7 @@
 #include "plan/plan_needs.h"
 
 #include "lights/light_table.h"
-#include "materials/throws_light.h"
+#include "materials/material_table.h"
 #include "math/color.h"
 #include "phase/phase_function.h"
 
@@ -50,14 +50,13 @@ void add_light(const LightSettings& light, const EstimatorKind& estimator, Direc
 /// Surfaces that shine are lights too, which come after those of the scene.
 void add_surface(const SurfaceSettings& surface, const EstimatorKind& estimator, DirectLight direct,
                  PlanNeeds& needs) {
-  const MaterialSettings& material = surface.material;
-  needs.colored = needs.colored || !is_grey(albedo_of(material)) || !material.texture.empty() ||
-                  !is_grey(material.reflectance) || !is_grey(material.absorption) ||
-                  !is_grey(material.radiance);
-  needs.specular = needs.specular || is_specular(material);
-  needs.throws_light = needs.throws_light || throws_light(*make_material(material, 1));
-  needs.receiver = needs.receiver || takes_photons(material);
-  if (shines(material))
+  const MaterialKind& kind = material_kind(surface.material.type);
+  const std::unique_ptr<Material> material = kind.make(surface.material, 1);
+  needs.colored = needs.colored || kind.colored(surface.material);
+  needs.specular = needs.specular || (material->is_specular() && !material->is_black());
+  needs.throws_light = needs.throws_light || material->throws_light();
+  needs.receiver = needs.receiver || material->takes_photons();
+  if (material->shines())
     needs.shadow_ray_lights.push_back(!estimator.shoots_photons() ||
                                       direct != DirectLight::photons);
 }

@@ -2,6 +2,7 @@
 
 #include "lights/light_table.h"
 #include "machine/input_file.h"
+#include "materials/material_table.h"
 #include "scene/default_scene.h"
 #include "scene/scene_reader.h"
 #include "scene/shutter.h"

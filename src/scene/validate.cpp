@@ -7,6 +7,8 @@
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
 #include "lights/light_table.h"
+#include "materials/material_table.h"
+#include "phase/phase_table.h"
 #include "text/attributes.h"
 #include "text/curve.h"
 #include "vdbeam/error.h"
@@ -78,6 +80,8 @@ public:
       if (!((*volume.box_lower)[a] < (*volume.box_upper)[a]))
         fail(fmt::format("volume.{}.box_upper", index),
              "must be greater than box_lower along all three axes");
+    if (const auto complaint = phase_kind(volume.phase.type).complaint(volume.phase))
+      fail(fmt::format("volume.{}.phase.{}", index, complaint->key), complaint->text);
   }
 
   void check_transform(const std::string& path, const std::array<double, 12>& m) const {

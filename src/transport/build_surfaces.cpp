@@ -1,6 +1,7 @@
 #include "transport/build_surfaces.h"
 
 #include "geometry/placed.h"
+#include "materials/material_table.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -90,11 +91,12 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
   std::vector<PlacedShape> placed;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const MaterialSettings& material = settings[i].material;
-    surfaces->textures.push_back(material.texture.empty() ? nullptr
-                                                          : store->texture(material, notes));
+    surfaces->materials.push_back(make_material(material, space.scale));
+    const bool shines = surfaces->materials[i]->shines();
+    surfaces->textures.push_back(
+        material.texture.empty() ? nullptr : store->texture(material, shines, notes));
     placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
                       surfaces->textures[i] != nullptr});
-    surfaces->materials.push_back(make_material(material, space.scale));
     surfaces->lights.push_back(-1);
   }
   check_sizes(placed);

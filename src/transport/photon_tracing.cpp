@@ -1,7 +1,6 @@
 #include "transport/photon_tracing.h"
 
 #include "camera/towards_camera.h"
-#include "materials/throws_light.h"
 #include "medium/flight.h"
 
 #include <tbb/blocked_range.h>
@@ -159,7 +158,7 @@ private:
     if (path.for_surfaces && vertex.material().takes_photons())
       store_at(vertex, path);
     else if (!path.met_surface && path.bounces == 0)
-      path.for_surfaces = throws_light(vertex.material()) && lights_surfaces(path.light);
+      path.for_surfaces = vertex.material().throws_light() && lights_surfaces(path.light);
     const MaterialSample next = vertex.sample(Carried::power, path.rng);
     if (!absorption_roulette(next.weight, path.throughput, path.rng) ||
         !path.surfaces.survive(path.throughput, path.rng))

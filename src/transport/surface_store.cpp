@@ -52,18 +52,18 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
   return shapes_[name] = std::move(made);
 }
 
-std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material,
+std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material, bool shines,
                                                      std::vector<std::string>& notes) {
-  const std::string name = fmt::format(
-      "{}|{}|{}|{}", file_identity(material.texture), static_cast<int>(material.texture_wrap),
-      static_cast<int>(material.color_space), material.type == MaterialType::emissive);
+  const std::string name = fmt::format("{}|{}|{}|{}", file_identity(material.texture),
+                                       static_cast<int>(material.texture_wrap),
+                                       static_cast<int>(material.color_space), shines);
   if (const KnownTexture* known = find(textures_, name))
     return known->texture;
   KnownTexture made;
   if (const KnownTexture* known = previous_ ? find(previous_->textures_, name) : nullptr) {
     made = *known;
   } else {
-    made.texture = std::make_shared<const Texture>(read_texture(material, made.notes));
+    made.texture = std::make_shared<const Texture>(read_texture(material, shines, made.notes));
     ++textures_read_;
   }
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());

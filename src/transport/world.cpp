@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -86,10 +87,8 @@ void add_region(OccupiedRegion& region, const DensityField& field, const Affine&
 
 int phase_index_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings>& known,
                    const PhaseSettings& phase) {
-  for (std::size_t i = 0; i < known.size(); ++i)
-    if (known[i].type == phase.type && known[i].g == phase.g && known[i].g2 == phase.g2 &&
-        known[i].blend == phase.blend && known[i].droplet_diameter == phase.droplet_diameter)
-      return static_cast<int>(i);
+  if (const auto found = std::find(known.begin(), known.end(), phase); found != known.end())
+    return static_cast<int>(found - known.begin());
   known.push_back(phase);
   phases.emplace_back(phase);
   return static_cast<int>(phases.size()) - 1;
@@ -194,12 +193,13 @@ SolidAngleShape solid_angle_shape(const SurfaceSettings& settings, const RenderS
 void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& world) {
   auto surfaces = std::make_shared<Surfaces>(*world.surfaces);
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    const MaterialSettings& material = settings[i].material;
-    if (!shines(material))
+    const Material& material = *surfaces->materials[i];
+    if (!material.shines())
       continue;
+    const bool two_sided = max_component(material.emitted(false)) > 0;
     surfaces->lights[i] = static_cast<int>(world.lights.size());
     world.lights.add(std::make_unique<SurfaceLight>(
-                         surfaces->set, static_cast<int>(i), material.radiance, material.two_sided,
+                         surfaces->set, static_cast<int>(i), material.emitted(true), two_sided,
                          solid_angle_shape(settings[i], world.space), surfaces->textures[i]),
                      {settings[i].visible, false});
   }

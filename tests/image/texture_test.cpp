@@ -77,7 +77,7 @@ TEST(Texture, mends_values_and_tells) {
     channel.half = false;
   write_exr(image, material.texture);
   std::vector<std::string> notes;
-  const Texture albedo = read_texture(material, notes);
+  const Texture albedo = read_texture(material, false, notes);
   ASSERT_EQ(notes.size(), 3u);
   EXPECT_NE(notes[0].find("6 values that are infinite"), std::string::npos) << notes[0];
   EXPECT_NE(notes[1].find("3 values below 0"), std::string::npos) << notes[1];
@@ -85,8 +85,7 @@ TEST(Texture, mends_values_and_tells) {
   EXPECT_EQ(at(albedo, 1.0 / 6, 0.5), 0);
   EXPECT_EQ(at(albedo, 0.5, 0.5), 0);
   EXPECT_NEAR(at(albedo, 5.0 / 6, 0.5), 1, 1e-6);
-  material.type = MaterialType::emissive;
-  EXPECT_NEAR(at(read_texture(material, notes), 5.0 / 6, 0.5), 65504, 0.1);
+  EXPECT_NEAR(at(read_texture(material, true, notes), 5.0 / 6, 0.5), 65504, 0.1);
 }
 
 /// The primary red of Rec. 709 in ACEScg (as the conversion's own tests have it).
@@ -99,7 +98,7 @@ TEST(Texture, is_in_the_working_space) {
   image.channels[0].data[0] = 1;
   write_exr(image, material.texture);
   std::vector<std::string> notes;
-  const Rgb red = read_texture(material, notes).at({0.5f, 0.5f});
+  const Rgb red = read_texture(material, false, notes).at({0.5f, 0.5f});
   const Vec3d expected = rgb_matrix({}, chromaticities_of(ColorSpace::acescg)).apply({1, 0, 0});
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(red[c], expected[c], 1e-5);

@@ -1,9 +1,10 @@
-#include "materials/material.h"
+#include "materials/material_table.h"
 
 #include "materials/fresnel.h"
 #include "math/sampling.h"
 #include "support/chi_squared.h"
 #include "support/statistics.h"
+#include "vdbeam/error.h"
 
 #include <gtest/gtest.h>
 
@@ -269,6 +270,96 @@ TEST(Dielectric, obeys_snell_and_scales_radiance) {
     EXPECT_NEAR(-sample.wi.x * 1.5f, wo.x, 1e-5f);
     EXPECT_NEAR(sample.weight.x, 1 / (1.5f * 1.5f), 1e-6f);
   }
+}
+
+/// What the plan and all who follow light ask a material.
+struct Policies {
+  MaterialSettings settings;
+  /// In the order of `of`.
+  std::string answers;
+
+  static std::string of(const Material& material) {
+    std::string text;
+    const auto add = [&](bool yes, const char* word) {
+      text += yes ? std::string(" ") + word : "";
+    };
+    add(material.is_black(), "black");
+    add(material.is_specular(), "specular");
+    add(material.shows_surroundings(), "shows");
+    add(material.takes_photons(), "takes");
+    add(material.throws_light(), "throws");
+    add(material.refracts(), "refracts");
+    add(material.shines(), "shines");
+    return text;
+  }
+};
+
+/// A material whose other settings are as by default.
+MaterialSettings of_type(const MaterialType& type) {
+  MaterialSettings settings;
+  settings.type = type;
+  return settings;
+}
+template <class T, class V>
+MaterialSettings with(MaterialSettings settings, T MaterialSettings::*member, const V& value) {
+  settings.*member = value;
+  return settings;
+}
+
+TEST(Materials, policies_of_each_kind) {
+  using M = MaterialSettings;
+  const MaterialSettings diffuse = of_type(MaterialType::diffuse),
+                         mirror = of_type(MaterialType::mirror),
+                         metal = of_type(MaterialType::conductor),
+                         glass = of_type(MaterialType::dielectric),
+                         lamp = of_type(MaterialType::emissive);
+  const Rgb black(0);
+  const std::vector<Policies> cases{
+      {diffuse, " takes"},
+      {with(diffuse, &M::albedo, black), " black"},
+      {of_type(MaterialType::shadow_catcher), " takes"},
+      {mirror, " specular shows throws"},
+      {with(mirror, &M::reflectance, black), " black specular"},
+      {metal, " shows throws"},
+      {with(metal, &M::roughness, 0), " specular shows throws"},
+      {with(metal, &M::roughness, 0.54), " shows throws"},
+      {with(metal, &M::roughness, 0.56), " takes throws"},
+      {with(metal, &M::reflectance, black), " black"},
+      {glass, " specular shows throws refracts"},
+      {with(glass, &M::roughness, 0.54), " shows throws refracts"},
+      {with(glass, &M::roughness, 0.56), " takes throws refracts"},
+      {with(with(glass, &M::roughness, 0.56), &M::ior, 1), " specular shows throws refracts"},
+      {lamp, " black specular shines"},
+      {with(lamp, &M::radiance, black), " black specular"},
+      {of_type(MaterialType::holdout), " black specular"}};
+  for (const Policies& expected : cases)
+    EXPECT_EQ(Policies::of(*make_material(expected.settings, 1)), expected.answers)
+        << expected.settings.type.name;
+}
+
+TEST(Materials, colours_of_each_kind_are_those_of_its_own_keys) {
+  using M = MaterialSettings;
+  using T = MaterialType;
+  const Rgb red{1, 0, 0};
+  const std::vector<MaterialSettings> colored{
+      with(of_type(T::diffuse), &M::albedo, red),
+      with(of_type(T::shadow_catcher), &M::albedo, red),
+      with(of_type(T::diffuse), &M::texture, "picture.png"),
+      with(of_type(T::mirror), &M::reflectance, red),
+      with(of_type(T::conductor), &M::reflectance, red),
+      with(of_type(T::dielectric), &M::absorption, red),
+      with(of_type(T::emissive), &M::radiance, red),
+      with(of_type(T::emissive), &M::texture, "picture.png")};
+  for (const MaterialSettings& settings : colored) {
+    const MaterialKind& kind = material_kind(settings.type);
+    EXPECT_TRUE(kind.colored(settings)) << kind.name;
+    EXPECT_FALSE(kind.colored(of_type(settings.type))) << kind.name;
+  }
+  EXPECT_FALSE(mirror_material.colored(with(of_type(T::mirror), &M::albedo, red)));
+}
+
+TEST(Materials, unknown_kinds_are_errors) {
+  EXPECT_THROW(make_material(of_type({"velvet"}), 1), InputError);
 }
 
 } // namespace

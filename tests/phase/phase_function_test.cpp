@@ -55,8 +55,8 @@ std::vector<PhaseSettings> all_models() {
 }
 
 std::string name_of(const PhaseSettings& s) {
-  return fmt::format("type {} g {} g2 {} blend {} diameter {}", static_cast<int>(s.type), s.g, s.g2,
-                     s.blend, s.droplet_diameter);
+  return fmt::format("type {} g {} g2 {} blend {} diameter {}", s.type.name, s.g, s.g2, s.blend,
+                     s.droplet_diameter);
 }
 
 // The blend of Draine lobes (Draine 2003, eq. 4) in double at 1 - cos = x, or at 1 + cos = x.

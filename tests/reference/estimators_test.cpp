@@ -1,5 +1,6 @@
 // Every sample scene is one picture, whichever estimator renders it.
 #include "geometry/mesh_reader.h"
+#include "materials/material_table.h"
 #include "photons/photon_plan.h"
 #include "prepare/prepared_scene.h"
 #include "support/render_passes.h"
@@ -55,7 +56,7 @@ double half_size(const SurfaceSettings& surface) {
 double width_of_lamps(const Scene& scene) {
   double size = 0;
   for (const SurfaceSettings& surface : scene.surfaces)
-    if (shows_surroundings(surface.material))
+    if (make_material(surface.material, 1)->shows_surroundings())
       size = std::max(size, 1.5 * half_size(surface));
   return size;
 }

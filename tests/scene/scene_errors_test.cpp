@@ -135,6 +135,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:3: volume.0.albedo must lie in [0, 1], got [0.5, 1.2, 1]"},
         BadScene{VOLUME "phase = { type = 'henyey_greenstein', g = 1.2 }\n",
                  "s.toml:3: volume.0.phase.g must lie in (-1, 1), got 1.2"},
+        BadScene{VOLUME "phase = { type = 'two_lobe', g2 = 0.99999999999 }\n",
+                 "s.toml:3: volume.0.phase.g2 must lie in (-1, 1), got 0.99999999999"},
         BadScene{VOLUME "phase = { type = 'mie', droplet_diameter = 3 }\n",
                  "s.toml:3: volume.0.phase.droplet_diameter must lie in [5, 50], got 3"},
         BadScene{"[render]\npasses = 0\n", "s.toml:2: render.passes must be at least 1, got 0"},

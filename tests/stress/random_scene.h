@@ -111,7 +111,7 @@ private:
     phase.g2 = uniform(-0.9, 0.9);
     phase.blend = uniform(0, 1);
     phase.droplet_diameter = uniform(5, 50);
-    note("phase {} g {:.3g}", static_cast<int>(phase.type), phase.g);
+    note("phase {} g {:.3g}", phase.type.name, phase.g);
   }
 
   LightSettings& add_light(LightType type) { return scene_.add_light(type); }

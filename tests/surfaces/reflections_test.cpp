@@ -100,8 +100,8 @@ TEST_P(Reflections, of_rough_metal_and_glass_in_fog) {
     const PassMeans path = render_passes(scene, EstimatorType::path, 64);
     const PassMeans mine = render_passes(scene, GetParam(), 12);
     EXPECT_EQ(test::regions_apart(mine, path, 0.03), 0)
-        << static_cast<int>(material.type) << " " << *material.roughness << ": "
-        << mine.total[0].mean() << " against " << path.total[0].mean();
+        << material.type.name << " " << *material.roughness << ": " << mine.total[0].mean()
+        << " against " << path.total[0].mean();
   }
 }
 

@@ -66,7 +66,7 @@ void expect_furnace(const std::string& ball) {
     for (const EstimatorType estimator : {EstimatorType::path, EstimatorType::beam}) {
       const PassMeans means = render_passes(scene, estimator, 4);
       for (const Rgb& pixel : means.pixels)
-        EXPECT_NEAR(pixel.x, 1, 2e-3) << static_cast<int>(material.type);
+        EXPECT_NEAR(pixel.x, 1, 2e-3) << material.type.name;
     }
   }
 }
@@ -135,8 +135,8 @@ TEST(SmoothMeshes, show_the_sky_like_a_ball) {
     };
     const PassMeans truth = picture(-1);
     const double smooth = difference(picture(60), truth), flat = difference(picture(0), truth);
-    EXPECT_LT(smooth, 0.04) << static_cast<int>(type);
-    EXPECT_LT(smooth, 0.5 * flat) << static_cast<int>(type);
+    EXPECT_LT(smooth, 0.04) << type.name;
+    EXPECT_LT(smooth, 0.5 * flat) << type.name;
   }
 }
 

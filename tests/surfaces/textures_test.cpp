@@ -116,7 +116,7 @@ TEST(TexturedLamp, stretched_sphere_and_both_sides) {
       add_surface(scene, SurfaceShape::sphere, scaled(0.5), shows(picture, MaterialType::emissive));
   globe.material.two_sided = true;
   std::vector<std::string> notes;
-  const Texture texture = read_texture(globe.material, notes);
+  const Texture texture = read_texture(globe.material, true, notes);
   Vec3d sum{};
   constexpr int steps = 400;
   for (int i = 0; i < steps; ++i)

@@ -1,5 +1,4 @@
 #include "estimators/path/path_walk.h"
-#include "materials/throws_light.h"
 #include "transport/next_event.h"
 
 #include <utility>
@@ -54,7 +53,7 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   if (material.is_black())
     return false;
   const bool counts_straight =
-      !material.is_specular() && (walk.all_light || is_first || !throws_light(material));
+      !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
   if (counts_straight)
     walk.add(lights_at_surface(vertex, walk.rng) * walk.throughput);
   const MaterialSample next = vertex.sample(Carried::radiance, walk.rng);

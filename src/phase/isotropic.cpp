@@ -1,0 +1,11 @@
+#include "phase/phase_table.h"
+
+namespace vdbeam {
+
+/// All directions alike: p = 1 / (4 pi).
+const PhaseKind isotropic_phase{
+    .name = "isotropic",
+    .help = "all directions alike",
+    .lobes = [](const PhaseSettings&) -> PhaseLobes { return {DraineLobe{.g = 0, .alpha = 0}}; }};
+
+} // namespace vdbeam
