@@ -220,7 +220,6 @@ namespace {
 constexpr FeatureCondition branches_conditions[] = {
     {[](const Facts& facts) { return facts.kind.shoots_photons(); },
      "photons carry the light: only probes of the bias walk"},
-    {has_surfaces, by_surfaces},
     {has_no_sharp_peak, "no phase function has a peak that is sharp enough"},
     {has_no_narrow_light, "no light with shadow rays has a single direction"}};
 }

@@ -115,11 +115,6 @@ const std::vector<Exclusion>& exclusions() {
       {"refined edges", "meshes stand in the scene", add_ball},
       {"refined edges", "render.estimator names another method", name_beam},
       {"branches", "photons carry the light: only probes of the bias walk", [](MemoryScene&) {}},
-      {"branches", "meshes stand in the scene",
-       [](MemoryScene& s) {
-         name_path(s);
-         add_ball(s);
-       }},
       {"branches", "no phase function has a peak that is sharp enough", name_path},
       {"branches", "no light with shadow rays has a single direction", [](MemoryScene& s) {
          name_path(s);
