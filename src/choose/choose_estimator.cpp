@@ -171,6 +171,15 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
   const Choices& choices = passes->choices();
   const EstimatorType type =
       choices.gathers_finally(0) ? EstimatorType::gather : EstimatorType::beam;
+  // Most light passes the medium by, as where it hangs over a wide ground.
+  constexpr double fewest_per_path = 1.0 / 20;
+  const double stored = choices.photons.stored_per_path;
+  if (photon_input.plan.needs(Stage::photons) && photon_input.world.surfaces &&
+      stored < fewest_per_path && !photon_input.stopped())
+    return {EstimatorType::path,
+            stored > 0 ? fmt::format("one photon is stored in {:.0f} light paths", 1 / stored)
+                       : "no light path stores a photon",
+            0, nullptr};
   if (!choices.trial || choices.trial->pixels.empty())
     return {type, "without a kernel pilot there is nothing to compare", 0, std::move(passes)};
   const double lead = lead_of_photons(photon_input, *passes, path_input);

@@ -31,6 +31,8 @@ Content content_of(const std::string& path) {
     const Image header = read_exr_header(path);
     if (header.metadata.contains("vdbeam:film"))
       return Content::film;
+    if (!header.metadata.contains("vdbeam:sceneHash")) // the header may be cut by damage
+      return content_of_damaged(path);
     // An image that its limit ended says so, also where it is no more than a quick look.
     const auto stopped = header.metadata.find("vdbeam:stoppedBy");
     const bool goes_on =

@@ -3,6 +3,7 @@
 
 #include "support/make_field.h"
 #include "support/statistics.h"
+#include "support/surface_scene.h"
 #include "support/test_frame.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +73,17 @@ TEST(ChooseEstimator, GatherInADeepMediumInTheSun) {
   const Choice deep(deep_in_the_sun());
   EXPECT_EQ(deep.choice.type.name, "gather");
   ASSERT_NE(deep.choice.photons, nullptr);
+}
+
+/// Light paths are aimed at all that stands in the scene: over a wide ground few of them meet the
+/// cloud.
+TEST(ChooseEstimator, PathWherePhotonsAreRare) {
+  MemoryScene wide = deep_in_the_sun();
+  surfaces::add_surface(wide, SurfaceShape::quad,
+                        surfaces::moved(surfaces::scaled(400), {0, 0, -5}), surfaces::diffuse(0.5));
+  const Choice choice(wide);
+  EXPECT_EQ(choice.choice.type.name, "path");
+  EXPECT_NE(choice.choice.reason.find("light path"), std::string::npos) << choice.choice.reason;
 }
 
 TEST(ChooseEstimator, BeamWhereThereAreNoPhotons) {

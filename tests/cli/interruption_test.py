@@ -16,7 +16,7 @@ VDBEAM = os.environ["VDBEAM_BINARY"]
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
 CLOUD = str(DATA / "cloud.vdb")
 SMALL = ["--resolution", "32x18", "--set", "render.photons=2000"]
-LONG_DEEP = ["--resolution", "2048x1152", "--set", "image.deep=true", "--set", "image.deep_alpha=0.001"]
+LONG_DEEP = ["--resolution", "2048x1152", "--set", "image.deep=true", "--set", "image.deep_alpha=0.02"]
 LONG_SAMPLES = ["--resolution", "16x16", "--set", "render.direct_samples=1000000000"]
 PATIENCE = 60  # seconds, of a stage that would take many minutes
 
