@@ -208,13 +208,16 @@ private:
   void add_deep() {
     if (!scene_.image.deep)
       return;
-    // The developed samples, and the layout beside that of the film.
-    constexpr std::uint64_t more = 6 * sizeof(float) + 2 * sizeof(float);
-    const std::uint64_t bytes = times(hits_, plan_.deep_bytes / DeepFilm::bytes_per_piece() *
-                                                 (DeepFilm::bytes_per_piece() + more)) +
-                                pixels_ * (DeepFilm::bytes_per_piece() + more);
-    add("deep", "image.deep", "ask for greater image.deep_alpha and image.deep_depth", 0, bytes,
-        bytes / 2);
+    // Beside the film's own: the layout that passes go by, and the rows of pixels that it was cut
+    // in.
+    constexpr std::uint64_t layout = 8 * sizeof(float);
+    // Of the picture: colour, opacity and both ends of a sample, and what its file takes beside.
+    constexpr std::uint64_t developed = 8 * sizeof(float);
+    const std::uint64_t pieces =
+        times(hits_, plan_.deep_bytes / DeepFilm::bytes_per_piece()) + pixels_;
+    const std::uint64_t kept = pieces * (DeepFilm::bytes_per_piece() + layout);
+    add("deep", "image.deep", "ask for greater image.deep_alpha and image.deep_depth", 0, kept,
+        kept + pieces * developed);
   }
 
   const Scene& scene_;

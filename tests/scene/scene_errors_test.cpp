@@ -149,10 +149,10 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Choices, BadSceneFile,
     ::testing::Values(
-        BadScene{
-            "[render]\nestimator = 'beams'\n",
-            "s.toml:2: render.estimator must be auto, beam, gather, march or path, got \"beams\"; did you "
-            "mean beam?"},
+        BadScene{"[render]\nestimator = 'beams'\n",
+                 "s.toml:2: render.estimator must be auto, beam, gather, march or path, got "
+                 "\"beams\"; did you "
+                 "mean beam?"},
         BadScene{
             "[[light]]\ntype = 'sun'\n",
             "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
