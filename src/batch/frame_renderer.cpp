@@ -58,6 +58,20 @@ std::string passes_text(int passes) {
   return count_text(static_cast<std::uint64_t>(passes), "pass");
 }
 
+/// " of gather", " of beam and, from pass 8 on, gather": which estimators rendered the passes.
+std::string estimators_text(const RenderResult& result) {
+  std::string text;
+  std::string_view last;
+  for (const PassSpec& spec : result.plan.schedule) {
+    if (spec.pass >= result.passes.back().pass || spec.estimator == last)
+      continue;
+    text += last.empty() ? fmt::format(" of {}", spec.estimator)
+                         : fmt::format(" and, from pass {} on, {}", spec.pass + 1, spec.estimator);
+    last = spec.estimator;
+  }
+  return text;
+}
+
 /// What a picture shows, so that one that went wrong is noticed in the log.
 std::string picture_text(const PictureFacts& facts) {
   if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
@@ -69,8 +83,8 @@ std::string picture_text(const PictureFacts& facts) {
 
 std::string end_text(const RenderResult& result, const std::string& output) {
   const PassRecord& last = result.passes.back();
-  std::string text =
-      fmt::format("{}: {} in {}", output, passes_text(last.pass), format_duration(last.seconds));
+  std::string text = fmt::format("{}: {}{} in {}", output, passes_text(last.pass),
+                                 estimators_text(result), format_duration(last.seconds));
   if (std::isfinite(last.error_estimate))
     text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
   if (std::isfinite(last.error_low))

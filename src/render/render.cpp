@@ -1,6 +1,7 @@
 #include "vdbeam/render.h"
 
 #include "choose/choose_estimator.h"
+#include "choose/feature.h"
 #include "film/deep_film.h"
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
@@ -97,6 +98,13 @@ EstimatorChoice choose_for_frame(const Scene& scene, const FrameSetup& setup, Re
   return choice;
 }
 
+std::string reason_of(const Feature& feature, const RenderPlan& plan) {
+  for (const FeatureChoice& choice : plan.features)
+    if (choice.name == feature.name)
+      return choice.reason;
+  return {};
+}
+
 /// The type whose passes are rendered: `auto` where photons are gathered in more than one way.
 EstimatorType type_of_passes(const Scene& scene, const EstimatorChoice& choice) {
   return choice.type == EstimatorType::path ? choice.type : scene.render.estimator;
@@ -170,6 +178,9 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   // The pilot of the first pass does not count as part of it.
   const PassRenderer& passes = shutter.at(loop.next_pass(), result.statistics).passes;
   describe_choices(input, type, passes.choices(), result.plan);
+  if (scene.render.estimator == EstimatorType::gather && !passes.choices().gather)
+    note("render.estimator = \"gather\" gathers along camera rays here: " +
+         reason_of(final_gather_feature, result.plan));
   loop.run(shutter, path_input);
   if (result.quick_look || frame.pass_range)
     return result;

@@ -46,6 +46,18 @@ TEST(Auto, RendersACloudByGather) {
   expect_same_picture(result.image, render(small_cloud(EstimatorType::gather)).image);
 }
 
+/// Where final gathering is excluded, a note says why.
+TEST(Gather, SaysWhereItGathersAlongRays) {
+  Scene scene = small_cloud(EstimatorType::gather);
+  EXPECT_EQ(render(scene).plan.schedule.at(0).estimator, "gather");
+  scene.render.max_bounces = 50;
+  const RenderResult result = render(scene);
+  EXPECT_EQ(result.plan.schedule.at(0).estimator, "beam");
+  const std::string note = "render.estimator = \"gather\" gathers along camera rays here: "
+                           "render.max_bounces counts every scattering";
+  EXPECT_NE(std::find(result.notes.begin(), result.notes.end(), note), result.notes.end());
+}
+
 TEST(Auto, RendersHazeUnderAnEvenSkyByPath) {
   const RenderResult result = render(haze(EstimatorType::automatic));
   EXPECT_EQ(result.plan.estimator, "path");
