@@ -179,7 +179,8 @@ TEST_F(Usage, BadValuesNameTheirOption) {
        "--set camera.position=0,0,5: camera.position must be 3 numbers, got \"0,0,5\"; did you "
        "mean [0, 0, 5]?\n"},
       {{"--estimator", "beem"},
-       "--estimator beem: render.estimator must be auto, beam, gather, march or path, got \"beem\"; did "
+       "--estimator beem: render.estimator must be auto, beam, gather, march or path, got "
+       "\"beem\"; did "
        "you mean "
        "beam?\n"},
       {{"--resolution", "640"}, "--resolution 640: must look like 640x360\n"},
