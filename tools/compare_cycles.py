@@ -25,7 +25,7 @@ def parse_arguments(arguments):
     add("scene", type=Path)
     add("-o", "--output", type=Path, default=Path("out/cycles"), help="folder of images (%(default)s)")
     add("--binary", type=Path, default=ROOT / "build/release/vdbeam")
-    add("--estimator", default="beam", help="vdbeam's (%(default)s)")
+    add("--estimator", default="auto", help="vdbeam's (%(default)s)")
     add("--passes", type=int, default=64, help="of vdbeam per seed (%(default)s)")
     add("--samples", type=int, default=256, help="of Cycles per pixel and seed (%(default)s)")
     add("--step-rate", type=float, default=0.1, help="Cycles' steps in voxels (%(default)s)")

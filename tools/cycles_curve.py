@@ -35,7 +35,7 @@ def parse_arguments(arguments):
     add("--passes", type=numbers(int), default="2,8,32", help="of vdbeam (%(default)s)")
     add("--samples", type=numbers(int), default="4,16,64", help="of Cycles per pixel (%(default)s)")
     add("--step-rates", type=numbers(float), default="1,0.25", help="Cycles' steps in voxels (%(default)s)")
-    add("--estimator", default="beam", help="vdbeam's (%(default)s)")
+    add("--estimator", default="auto", help="vdbeam's (%(default)s)")
     add("--seeds", type=int, default=1, help="renders of each; their errors are averaged (%(default)s)")
     add("--resolution", default="240x135")
     add("--threads", type=int, default=2)

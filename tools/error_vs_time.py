@@ -39,7 +39,7 @@ except ModuleNotFoundError as problem:
     MISSING = problem  # --help works all the same
 
 ROOT = Path(__file__).resolve().parent.parent
-ESTIMATORS = ("beam", "march", "path")
+ESTIMATORS = ("auto", "beam", "march", "path")
 
 
 def parse_seeds(text):

@@ -2,6 +2,7 @@
 #include "cli/scene_options.h"
 #include "console/streams.h"
 #include "keys/estimator_kind.h"
+#include "machine/memory.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -124,7 +125,12 @@ int run_plan(const PlanOptions& options) {
   for (const std::string& note : scene.notes)
     log("note: {}", note);
   RenderPlan plan = make_plan(scene);
-  if (!options.no_pilot) {
+  const MemoryPlan memory = plan_memory(scene);
+  const bool fits = memory.peak() <= granted_memory();
+  if (!options.no_pilot && !fits)
+    log("note: the frame does not fit in the memory of this machine, so the volumes were not read "
+        "and features and schedule are left out");
+  if (!options.no_pilot && fits) {
     RenderPlan chosen = choose_plan(scene);
     plan.estimator = chosen.estimator;
     plan.choice = std::move(chosen.choice);
@@ -132,7 +138,6 @@ int run_plan(const PlanOptions& options) {
     plan.features = std::move(chosen.features);
     plan.schedule = std::move(chosen.schedule);
   }
-  const MemoryPlan memory = plan_memory(scene);
   if (!options.json) {
     print_text(plan_text(scene, plan, memory));
     return 0;

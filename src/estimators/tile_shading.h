@@ -13,7 +13,7 @@ struct TileScratch {
   RenderStatistics statistics;
 };
 
-/// The pixel of a pass to which light is added, and what is counted on the way.
+/// The pixel to which a ray adds its light, and the counters of its work.
 struct PixelTarget {
   std::size_t pixel;
   PassImage& image;

@@ -274,8 +274,8 @@ void add_render(KeyTable& table) {
             "photons are kept where the camera sees them, or everywhere alike");
   table.add(
       "forward_peak", &R::forward_peak,
-      "auto: multiple scattering without the forward peak of the phase function, less of which is "
-      "taken out as passes are added; kept: with all of it");
+      "auto: multiple scattering leaves out the forward peak of the phase function, and less of it "
+      "as passes are added; kept: multiple scattering has all of it");
   table.add("final_gather", &R::final_gather,
             "alias of older scenes: never keeps auto to gathering along camera rays, always means "
             "estimator = \"gather\"");

@@ -63,8 +63,8 @@ void remove_if_stale(const fs::path& path, bool of_this_machine, std::time_t now
   close(descriptor);
 }
 
-/// True the first time. `creates`: as a writer does who creates a file there, of which another
-/// visit is no part.
+/// True at the first visit of a folder. `creates`: the visitor creates a file there; such visits
+/// are counted apart from others.
 bool is_first_visit(const std::string& folder, bool creates) {
   static std::mutex mutex;
   static std::set<std::pair<std::string, bool>> visited;

@@ -5,8 +5,8 @@
 namespace vdbeam {
 
 /// Null collisions of a flight, or tentative ones of a shadow ray, after which it goes on without
-/// majorants. Rays that take as many are rare but where a cell of 8^3 voxels holds both dense and
-/// empty ones, and more collisions cost more than the exact integral through the rest of the grid.
+/// majorants. Only cells of 8^3 voxels that hold both dense and empty ones make a ray take this
+/// number, and further collisions would cost more than the exact integral through the rest.
 constexpr int most_tentative_collisions = 256;
 
 /// The first collision of the medium on the segment, found in the exact optical depth: a Poisson

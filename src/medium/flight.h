@@ -44,9 +44,9 @@ bool advance_flight(Walk& walk, Walker& walker) {
   return true;
 }
 
-/// Ends a flight that met too many null collisions, from its present one on: by collisions that are
-/// found in the exact optical depth, of which the first is real but where channels differ. Further
-/// collisions do not depend on what lies behind them, so nothing is changed in the mean.
+/// Ends a flight that met too many null collisions. From its present collision on, collisions are
+/// found in the exact optical depth: the first one is real, unless the extinction differs between
+/// channels. Collisions do not depend on the medium behind them, so the mean stays the same.
 template <class Walk, class Walker>
 bool end_flight(const Medium& medium, Walk& walk, Walker& walker) {
   Collision hit = walk.tracker->collision();

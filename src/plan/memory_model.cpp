@@ -159,8 +159,7 @@ private:
     const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions);
     add("photons", "render.photons", "ask for fewer photons and more passes", 0, times(count, each),
         0);
-    // Frames of which nothing but the camera moves, for which photons are stored evenly, share
-    // them.
+    // Where nothing but the camera moves and photons are stored evenly, frames share their maps.
     if (scene_.render.seeds == SeedPolicy::correlated &&
         scene_.render.thinning == PhotonThinning::even && count > 0) {
       const std::uint64_t maps = times(count * scene_.render.passes.value_or(1 << 20),
@@ -208,10 +207,9 @@ private:
   void add_deep() {
     if (!scene_.image.deep)
       return;
-    // Beside the film's own: the layout that passes go by, and the rows of pixels that it was cut
-    // in.
+    // The film has a layout; passes have another one, with the rows that it was cut in.
     constexpr std::uint64_t layout = 8 * sizeof(float);
-    // Of the picture: colour, opacity and both ends of a sample, and what its file takes beside.
+    // A developed sample has colour, opacity and two ends; writing it takes two floats more.
     constexpr std::uint64_t developed = 8 * sizeof(float);
     const std::uint64_t pieces =
         times(hits_, plan_.deep_bytes / DeepFilm::bytes_per_piece()) + pixels_;

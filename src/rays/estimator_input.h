@@ -21,7 +21,7 @@ struct EstimatorTask {
   PixelRegion window = {};
   const StopToken* stop = nullptr; ///< asks to abandon the pass
   PhotonCache* photons = nullptr;  ///< of frames with the same world; null: photons are not kept
-  /// Pixels, in ascending order, where a pass is also to tell how much its kernels blur
+  /// Pixels, in ascending order, where a pass is also to measure how much its kernels blur
   /// (PassImage::blur); null: nowhere.
   const std::vector<std::size_t>* blur_pixels = nullptr;
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere

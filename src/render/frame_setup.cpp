@@ -4,7 +4,6 @@
 #include "choose/schedule.h"
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
-#include "plan/plan.h"
 #include "prepare/read_volumes.h"
 #include "render/bias_probe.h"
 
@@ -27,20 +26,15 @@ Velocities velocities_of(const PreparedScene& prepared) {
   return velocities;
 }
 
-std::vector<VolumeFacts> facts_of(const Scene& scene, const PreparedScene& prepared,
-                                  const Camera& camera) {
-  return volume_facts(prepared.facts, *prepared.world, camera, !scene.moments.empty());
-}
-
 } // namespace
 
 FrameSetup::FrameSetup(const Scene& scene, const PreparedScenePtr& prepared,
                        const PixelRegion& window)
     : scene_(scene), prepared_(prepared), window_(window),
       camera(scene.camera, scene.image, prepared->world->space),
-      plan(with_sizes(plan_stages(scene, facts_of(scene, *prepared, camera)))),
-      path_plan(with_sizes(plan_paths(scene, facts_of(scene, *prepared, camera)))),
-      layers(scene, velocities_of(*prepared)),
+      volumes_(volume_facts(prepared->facts, *prepared->world, camera, !scene.moments.empty())),
+      plan(with_sizes(plan_stages(scene, volumes_))),
+      path_plan(with_sizes(plan_paths(scene, volumes_))), layers(scene, velocities_of(*prepared)),
       input(*prepared->world, camera, scene.render, plan,
             {frame_key(scene), window, nullptr, prepared->photons.get()}) {
   if (scene.image.cryptomatte) {

@@ -2,6 +2,7 @@
 
 #include "camera/camera.h"
 #include "choose/choices.h"
+#include "plan/plan.h"
 #include "prepare/prepared_scene.h"
 #include "rays/estimator_input.h"
 #include "vdbeam/render.h"
@@ -34,6 +35,11 @@ private:
 
 public:
   const Camera camera;
+
+private:
+  std::vector<VolumeFacts> volumes_;
+
+public:
   RenderPlan plan, path_plan;
   RayLayers layers;
   EstimatorInput input;

@@ -67,7 +67,8 @@ RenderResult render(const Scene& scene, const FrameSettings& frame, const Render
 
 namespace {
 
-/// The image's samples by depth; of the passes, none are rendered where there was no time for it.
+/// Cuts the rays of a deep picture. An empty layout means that there was no time for it, and none
+/// is left for passes.
 void cut_deep_rays(const Scene& scene, FrameSetup& setup, PassLoop& loop, DeepLayout& deep) {
   if (!scene.image.deep)
     return;
@@ -98,6 +99,7 @@ EstimatorChoice choose_for_frame(const Scene& scene, const FrameSetup& setup, Re
   return choice;
 }
 
+/// Why a feature is on or off in the plan.
 std::string reason_of(const Feature& feature, const RenderPlan& plan) {
   for (const FeatureChoice& choice : plan.features)
     if (choice.name == feature.name)

@@ -39,9 +39,9 @@ GridShape read_grid_shape(const std::string& path, const std::string& grid_name,
 class CellSet {
 public:
   CellSet() = default;
-  /// The bricks of a grid: a brick has one layer of its upper neighbours. `scale`: of the voxels,
-  /// which reach so many voxels farther: 1 and 0 for the grid itself. `wanted`: only what lies in
-  /// these voxels counts.
+  /// The bricks of a grid: a brick has one layer of its upper neighbours. `scale`: voxels
+  /// of the field per voxel of the grid, and `reach`: voxels of the field by which values spread; 1
+  /// and 0 for the grid itself. `wanted`: only these voxels count.
   CellSet(const GridShape& shape, int scale, int reach,
           const std::optional<WantedBox::Voxels>& wanted = {});
 

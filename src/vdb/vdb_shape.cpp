@@ -15,8 +15,8 @@
 namespace vdbeam {
 namespace {
 
-/// Values of so many voxels are read, which takes a moment, and little memory beside the frame that
-/// is being rendered.
+/// Grids of up to this number of voxels are read with their values: that takes a moment, and little
+/// memory beside the frame that is being rendered.
 constexpr std::uint64_t most_values = std::uint64_t{1} << 22;
 
 /// Reads the tree of a grid without its voxels' values, which lie behind it in the file, unless
