@@ -39,7 +39,7 @@ except ModuleNotFoundError as problem:
     MISSING = problem  # --help works all the same
 
 ROOT = Path(__file__).resolve().parent.parent
-ESTIMATORS = ("auto", "beam", "march", "path")
+ESTIMATORS = ("beam", "gather", "march", "path")
 
 
 def parse_seeds(text):

@@ -89,7 +89,7 @@ class Table(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in result.stdout.splitlines()[2:]]
         self.assertEqual([row[:2] for row in rows],
-                         [["vdbeam, beam", "1 passes"], ["vdbeam, beam", "4 passes"],
+                         [["vdbeam, auto", "1 passes"], ["vdbeam, auto", "4 passes"],
                           ["Cycles, steps of 1", "4 samples"], ["Cycles, steps of 0.5", "4 samples"]])
         for row, work in zip(rows, (1, 4, 4, 4)):
             self.assertAlmostEqual(float(row[3]), 0.04 / 1.01**2 / work, delta=0.001 / work)

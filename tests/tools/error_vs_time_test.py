@@ -47,7 +47,7 @@ class ErrorVsTime(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(self.output / "curves.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), 2 * 3 * 3 * 40)
+        self.assertEqual(len(rows), 2 * 4 * 3 * 40)
         self.assertEqual(rows[0]["scene"], "cloud")
         self.assertAlmostEqual(float(rows[1]["seconds"]) * float(rows[1]["mrse"]), 0.002)
         for scene in ("cloud", "smoke"):
@@ -58,8 +58,8 @@ class ErrorVsTime(unittest.TestCase):
         self.assertRegex(page, r"Measured \d{4}-\d\d-\d\d; Abacus, 2 cores, 2 threads; vdbeam 1.2.3\.")
         for text in ("MRSE x s at 0.01", "&ldquo;-&rdquo; means"):
             self.assertIn(text, page)
-        # 3 images, 3 error images and a reference for each of 2 scenes, and the scale of the errors.
-        self.assertEqual(page.count("data:image/png"), 2 * 7 + 1)
+        # 4 images, 4 error images and a reference for each of 2 scenes, and the scale of the errors.
+        self.assertEqual(page.count("data:image/png"), 2 * 9 + 1)
         self.assertNotIn("http", page)
         beam = self.table_row("cloud", "beam")
         self.assertEqual(beam[2:4], ["3", "40"])
@@ -82,7 +82,7 @@ class ErrorVsTime(unittest.TestCase):
         calls = self.calls()
         self.assertEqual(calls[0], ["path", "999983", "None"])
         # Each seed begins with another one.
-        turns = ("4", "beam march path"), ("6", "march path beam"), ("7", "path beam march")
+        turns = ("4", "beam gather march path"), ("6", "gather march path beam"), ("7", "march path beam gather")
         self.assertEqual([call[:2] for call in calls[1:]],
                          [[e, seed] for seed, order in turns for e in order.split()])
         self.assertTrue(all(call[2].endswith(".exr") for call in calls[1:]))

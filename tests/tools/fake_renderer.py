@@ -22,7 +22,7 @@ if "broken" in options.scene:
     print("broken.toml:3: medium.g must lie in (-1, 1), got 1.2", file=sys.stderr)
     sys.exit(2)
 budget = float(options.time.rstrip("s"))
-product = {"beam": 0.002, "march": 0.05, "path": 0.03}[options.estimator]
+product = {"beam": 0.002, "gather": 0.001, "march": 0.05, "path": 0.03}[options.estimator]
 product *= 1 + 0.1 * (options.seed % 3 - 1)
 passes = []
 for i in range(1, 41):
@@ -62,6 +62,6 @@ def install(folder):
     binary = Path(folder) / "vdbeam"
     binary.write_text(FAKE_RENDERER, encoding="utf-8")
     binary.chmod(0o755)
-    for estimator, brightness in (("beam", 1), ("march", 0.5), ("path", 1.2)):
+    for estimator, brightness in (("beam", 1), ("gather", 1.1), ("march", 0.5), ("path", 1.2)):
         Path(f"{binary}.{estimator}.exr").write_bytes(tiny_exr(brightness))
     return binary

@@ -9,8 +9,8 @@ from matplotlib import ticker
 
 from .report import group_runs, join_seeds
 
-# Told apart also without colour: each estimator has its own line style.
-STYLES = {"beam": ("#0072b2", "-"), "march": ("#d55e00", "--"), "path": ("#009e73", "-.")}
+# Each estimator has its own line style, so that curves can be read without colour.
+STYLES = {"beam": ("#0072b2", "-"), "gather": ("#cc79a7", "-"), "march": ("#d55e00", "--"), "path": ("#009e73", "-.")}
 OTHERS = [(colour, style) for style in ("-", "--", ":") for colour in
           ("#cc79a7", "#e69f00", "#56b4e9", "#555555", "#8c564b")]
 
