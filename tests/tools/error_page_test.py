@@ -49,8 +49,9 @@ class ErrorPage(unittest.TestCase):
         self.assertEqual(self.value("document.querySelectorAll('section').length"), 2)
         self.assertEqual(self.value("[...document.images].filter(i => !i.complete || "
                                     "i.naturalWidth === 0).length"), 0)
-        self.assertEqual(self.value("document.querySelectorAll('section figure').length"), 6)
-        self.assertEqual(self.value("document.querySelectorAll('table tbody tr').length"), 6)
+        # Four estimators in each of two scenes.
+        self.assertEqual(self.value("document.querySelectorAll('section figure').length"), 8)
+        self.assertEqual(self.value("document.querySelectorAll('table tbody tr').length"), 8)
         # Nothing comes from elsewhere, and nothing hangs over the edge.
         self.assertEqual(self.value("performance.getEntriesByType('resource')"
                                     ".filter(r => !r.name.startsWith('data:')).length"), 0)
@@ -85,14 +86,14 @@ class ErrorPage(unittest.TestCase):
         self.assertNotEqual(first[0], first[1])
         captions = {self.value("document.querySelector('.caption').textContent")}
         seen = {first[0]}
-        for estimator in (2, 3):
+        for estimator in (2, 3, 4):
             self.browser.click(f".choose-left option:nth-child({estimator})")
             left, right = shown()
             self.assertNotIn(left, seen)
             self.assertEqual(right, first[1])
             seen.add(left)
             captions.add(self.value("document.querySelector('.caption').textContent"))
-        self.assertEqual(len(captions), 3)
+        self.assertEqual(len(captions), 4)
         self.browser.click(".choose-right option:nth-child(1)")
         self.assertEqual(shown()[1], first[0])
         self.assertEqual(self.browser.console_errors(), [])
