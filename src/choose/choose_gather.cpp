@@ -30,6 +30,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
   const std::vector<TrialPixel>& pixels = choices.trial->pixels;
   const auto width = static_cast<std::size_t>(input.camera.width());
   const RngKey key{input.settings.seed, input.frame, pilot_pass};
+  const SurfaceLighting surfaces(input, input.world, nullptr);
   std::vector<GatherNoise> noise(pixels.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
     const std::size_t pixel = pixels[i].pixel;
@@ -44,7 +45,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
     std::vector<Rgb> means;
     Rgb mean, walks;
     for (const PhotonMap& map : trial.maps) {
-      const FinalGather gather(input.world, choices.photons, map);
+      const FinalGather gather(input.world, choices.photons, map, surfaces);
       const auto light = [&] {
         const GatheredLight found =
             gather.gather(ray.camera.ray(), ray.profile, GatherPlan::most_walks, 1, rng, uncounted);

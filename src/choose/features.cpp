@@ -15,9 +15,6 @@ bool stores_scattered_flux(const Facts& facts) {
 bool limits_bounces(const Facts& facts) {
   return facts.input.settings.max_bounces.has_value();
 }
-bool has_surfaces(const Facts& facts) {
-  return facts.input.world.surfaces != nullptr;
-}
 bool shoots_no_photons(const Facts& facts) {
   return !facts.kind.shoots_photons();
 }
@@ -33,7 +30,7 @@ bool gathers_along_rays(const Facts& facts) {
 bool has_light_that_loses_its_peak(const Facts& facts) {
   const LightSet& lights = facts.input.world.lights;
   for (std::size_t i = 0; i < lights.size(); ++i)
-    if (!facts.sampled_lights[i] &&
+    if (!facts.sampled_lights[i] && !lights.traits(i).is_emission &&
         (!lights.traits(i).surrounds || lights.traits(i).wants_shadow_rays))
       return true;
   return false;
@@ -77,7 +74,6 @@ bool has_no_sharp_peak(const Facts& facts) {
 
 constexpr std::string_view by_scattered_flux = "photons store scattered flux (render.store)";
 constexpr std::string_view by_bounces = "render.max_bounces counts every scattering";
-constexpr std::string_view by_surfaces = "meshes stand in the scene";
 
 } // namespace
 
@@ -123,9 +119,6 @@ constexpr FeatureCondition forward_peak_conditions[] = {
     {limits_bounces, by_bounces},
     {[](const Facts& facts) { return facts.input.world.medium.isotropic(); },
      "phase functions are isotropic"},
-    {[](const Facts& facts) { return !facts.input.world.medium.emitters.empty(); },
-     "a volume glows"},
-    {has_surfaces, by_surfaces},
     {[](const Facts& facts) { return facts.input.world.medium.colored(); },
      "a grid of colours changes the albedo from place to place"},
     {has_light_that_loses_its_peak,
@@ -147,7 +140,6 @@ constexpr FeatureCondition final_gather_conditions[] = {
      "render.final_gather is \"never\""},
     {stores_scattered_flux, by_scattered_flux},
     {limits_bounces, by_bounces},
-    {has_surfaces, by_surfaces},
     {has_light_that_walks_miss, "photons alone bring a light of one point or direction"},
     {has_light_that_pilots_miss, "a lamp or a small light makes walks too noisy to forecast"}};
 }
@@ -205,7 +197,7 @@ const Feature hidden_lights_feature{
 
 namespace {
 constexpr FeatureCondition edges_conditions[] = {
-    {has_surfaces, by_surfaces}, {gathers_along_rays, "render.estimator names another method"}};
+    {gathers_along_rays, "render.estimator names another method"}};
 }
 const Feature edges_feature{
     .name = "refined edges",

@@ -2,7 +2,6 @@
 
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
-#include "photons/surface_photons.h"
 #include "rays/caught_shadow.h"
 #include "rays/direct_light.h"
 #include "rays/profile_shading.h"
@@ -116,19 +115,17 @@ private:
 };
 
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
-                               GatherAlong gather)
-    : world_(photons.world()), lights_of_matte_(input.lights_of_matte()), photons_(photons),
-      gather_(std::move(gather)),
-      tracer_(world_, lights_of_surfaces(input), input.settings.max_bounces),
-      photons_on_surfaces_(input.plan.needs(Stage::surface_photons)),
+                               const SurfaceLighting& surfaces, GatherAlong gather)
+    : input_(input), world_(photons.world()), lights_of_matte_(input.lights_of_matte()),
+      photons_(photons), gather_(std::move(gather)), surfaces_(surfaces),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
 
-SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
                                  RenderStatistics& counts) const {
   if (!camera.hit)
     return {};
   const auto path_rng = [&](int i) {
-    return Rng(key, RngStage::surface, pixel * paths_per_ray + static_cast<std::size_t>(i));
+    return Rng(key, RngStage::surface, stream * paths_per_ray + static_cast<std::size_t>(i));
   };
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
@@ -140,11 +137,19 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   Rgb sum, photons;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
-    sum += tracer_.from_surface(*camera.hit, camera.ray().direction, rng, !shows_photons(vertex));
+    sum += surfaces_.by_paths(vertex, camera.ray().direction, rng);
     if (i == 0) // the same for all
-      photons = by_photons(vertex, rng);
+      photons = surfaces_.by_photons(vertex, rng);
   }
-  return {sum / static_cast<float>(paths_per_ray) + photons};
+  return {sum / static_cast<float>(paths_per_ray) + photons + vertex.emitted(), 0, lamp_of(vertex)};
+}
+
+/// What the surface emits as a light with shadow rays into the medium.
+Rgb SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
+  const int light = vertex.light();
+  const bool sampled =
+      light >= 0 && photons_.plan().sampled_lights[static_cast<std::size_t>(light)];
+  return sampled ? vertex.emitted() : Rgb();
 }
 
 /// What the first surface shows of its surroundings: the mean over a few paths. Glass sends some of
@@ -183,7 +188,7 @@ Rgb SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng&
     if (i == 0) // by a facet of which no path makes use
       reflected = paths_by_share(vertex.both_ways(Carried::radiance, rng).reflected.weight);
     Chain chain{rng, counts, vertex.absorbed()};
-    sum += tracer_.lights_at_surface(vertex, rng) * chain.throughput / paths_per_ray;
+    sum += surfaces_.tracer().lights_at_surface(vertex, rng) * chain.throughput / paths_per_ray;
     const bool reflects = i < reflected;
     Rgb light;
     if (!reflects) {
@@ -214,7 +219,7 @@ Rgb SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
       continue;
     const SurfaceVertex next(*world_.surfaces, *ray.hit, way.wi);
     if (next.material().shows_surroundings() && !next.material().is_specular())
-      sum += tracer_.lights_at_surface(next, rng) * next.absorbed() * way.weight *
+      sum += surfaces_.tracer().lights_at_surface(next, rng) * next.absorbed() * way.weight *
              exact_transmittance(world_.medium, ray.segment);
   }
   return sum / lamp_rays;
@@ -226,7 +231,7 @@ Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
   const bool specular = vertex.material().is_specular();
   Rgb light;
   if (!std::exchange(chain.lamps_found, false) && !specular)
-    light = tracer_.lights_at_surface(vertex, chain.rng) * chain.throughput;
+    light = surfaces_.tracer().lights_at_surface(vertex, chain.rng) * chain.throughput;
   if (chain.splits > 0 && splits_light(vertex)) {
     const SpecularBranches ways = vertex.both_ways(Carried::radiance, chain.rng);
     if (go_both_ways(ways)) {
@@ -253,28 +258,41 @@ Rgb SurfaceShading::follow(Chain chain) const {
     const CameraRay ray = next_ray(world_, chain.origin, chain.direction);
     profile.build(world_.medium, ray.segment, cutoff_);
     const Rgb tr = transmittance(world_.medium, profile);
+    const Rgb lamps = left_of_lamps(profile);
     sum += along(ray, profile, tr, chain) * chain.throughput;
     chain.throughput *= tr;
     if (!ray.hit || !chain.survives_roulette())
       return sum;
     const SurfaceVertex vertex(*world_.surfaces, *ray.hit, chain.direction);
     if (!vertex.material().shows_surroundings())
-      return sum + at_end(vertex, chain) * chain.throughput;
+      return sum + at_end(vertex, lamps, chain) * chain.throughput;
     chain.throughput *= vertex.absorbed();
     sum += scatter(vertex, chain);
   }
   return sum;
 }
 
-/// The radiance that a segment of the chain adds.
+/// The radiance that a segment of the chain adds. Light that only the peak of the phase function
+/// scatters comes with that which goes straight on, but for lights with shadow rays, where
+/// direct_light has it.
 Rgb SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
                           Chain& chain) const {
-  Rgb radiance = lights_through(world_, ray.whole(), profile, tr, false, [&](std::size_t i) {
+  const std::vector<bool>& sampled_lights = photons_.plan().sampled_lights;
+  const bool has_peak = world_.medium.peak && !profile.empty();
+  const auto weight = [&](std::size_t i) {
     const Light& light = world_.lights[i];
     return sampled_too(i, chain)
                ? chain.pdf / (chain.pdf + light.incident_pdf(ray.ray().origin, chain.direction))
                : 1.0f;
+  };
+  Rgb radiance = lights_through(world_, ray.whole(), profile, tr, false, [&](std::size_t i) {
+    return has_peak && sampled_lights[i] ? 0.0f : weight(i);
   });
+  if (has_peak)
+    radiance += lights_through(input_.world, ray.whole(),
+                               profile.scaled(world_.medium.peak->extinction_factor),
+                               tr * left_of_lamps(profile), false,
+                               [&](std::size_t i) { return sampled_lights[i] ? weight(i) : 0.0f; });
   if (!ray.segment.empty())
     radiance += emission_along(world_.medium, ray.segment, profile, cutoff_);
   if (!profile.empty())
@@ -282,28 +300,34 @@ Rgb SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, con
   return radiance;
 }
 
-/// What leaves the surface at which the chain ends.
-Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, Chain& chain) const {
-  float emitted = 1;
-  if (const int light = vertex.light(); light >= 0)
-    if (const auto i = static_cast<std::size_t>(light); sampled_too(i, chain))
-      emitted =
+/// The transmittance of the scene's own medium over that of the medium at hand.
+Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
+  Rgb left(1);
+  const PeakTakenOut* peak = world_.medium.peak.get();
+  for (std::size_t v = 0; peak && !profile.empty() && v < world_.medium.volumes.size(); ++v)
+    for (int c = 0; c < 3; ++c)
+      left[c] *= std::exp(-peak->excess[v][c] * profile.tau(profile.knots() - 1, v));
+  return left;
+}
+
+/// What leaves the surface at which the chain ends. `lamps`: transmittance on the way there for
+/// lights with shadow rays over that for others.
+Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const {
+  Rgb emitted(1);
+  if (const int light = vertex.light(); light >= 0) {
+    const auto i = static_cast<std::size_t>(light);
+    if (sampled_too(i, chain))
+      emitted *=
           chain.pdf / (chain.pdf + world_.lights[i].surface_pdf(vertex.hit(), chain.direction));
-  return tracer_.from_surface(vertex.hit(), chain.direction, chain.rng, !shows_photons(vertex),
-                              emitted) +
-         by_photons(vertex, chain.rng);
+    if (photons_.plan().sampled_lights[i])
+      emitted *= lamps;
+  }
+  return vertex.emitted() * emitted + surfaces_.reflected(vertex, chain.direction, chain.rng);
 }
 
 /// The surface that the segment leaves has sent a shadow ray to this light as well.
 bool SurfaceShading::sampled_too(std::size_t light, const Chain& chain) const {
-  return chain.pdf > 0 && tracer_.samples_light(light);
-}
-
-/// The part of a surface's light that photons bring, if they do.
-Rgb SurfaceShading::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
-  if (!shows_photons(vertex))
-    return {};
-  return SurfacePhotons(*world_.surfaces, photons_.surface_map()).reflected(vertex, rng);
+  return chain.pdf > 0 && surfaces_.tracer().samples_light(light);
 }
 
 /// Light that the medium scatters into the ray: once, by shadow rays; else by photons.

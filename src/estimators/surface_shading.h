@@ -1,6 +1,6 @@
 #pragma once
 
-#include "estimators/path/path_walk.h"
+#include "estimators/surface_lighting.h"
 #include "photons/photon_pass.h"
 #include "rays/profile_shading.h"
 #include "transport/camera_ray.h"
@@ -24,17 +24,14 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.
-  SurfaceShading(const EstimatorInput& input, const PhotonPass& photons, GatherAlong gather);
+  SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
+                 const SurfaceLighting& surfaces, GatherAlong gather);
 
   /// What is seen of the surface at which the camera ray ends: the mean over a few random paths.
-  SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t pixel,
+  SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
                    RenderStatistics& counts) const;
 
 private:
-  /// Photons bring light to the surface, which it spreads.
-  bool shows_photons(const SurfaceVertex& vertex) const {
-    return photons_on_surfaces_ && vertex.material().takes_photons();
-  }
   struct Chain;
 
   template <class PathRng>
@@ -46,19 +43,20 @@ private:
   Rgb lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb scatter(const SurfaceVertex& vertex, Chain& chain) const;
   Rgb follow(Chain chain) const;
+  Rgb lamp_of(const SurfaceVertex& vertex) const;
+  Rgb left_of_lamps(const DepthProfile& profile) const;
   Rgb along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr, Chain& chain) const;
-  Rgb at_end(const SurfaceVertex& vertex, Chain& chain) const;
+  Rgb at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const;
   bool sampled_too(std::size_t light, const Chain& chain) const;
-  Rgb by_photons(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
                    RenderStatistics& counts) const;
 
-  const World& world_;
+  const EstimatorInput& input_;
+  const World& world_; ///< of the map, perhaps without forward peaks
   const LightSet& lights_of_matte_;
   const PhotonPass& photons_;
   GatherAlong gather_;
-  WalkTracer tracer_;
-  bool photons_on_surfaces_;
+  const SurfaceLighting& surfaces_;
   float cutoff_;
 };
 

@@ -51,14 +51,15 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   }
 }
 
-/// Light of surrounding lights that only the peak of the phase function scattered on its way along
-/// the ray: what the medium without its peak lets through beyond what the scene's own does. Lights
-/// with shadow rays have theirs from these.
-Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
+/// Light of surfaces and of surrounding lights that only the peak of the phase function scattered
+/// on its way along the ray: what the medium without its peak lets through beyond what the scene's
+/// own does. Lights with shadow rays have theirs from these.
+Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray, const SeenSurface& surface,
                       const std::vector<bool>& sampled_lights, const RaySink& sink) {
   Rgb radiance;
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
+  radiance = surface.radiance - surface.lamp;
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     if (!sampled_lights[i])
       radiance += world.lights[i].emitted_radiance(ray.camera.whole()).radiance;
@@ -79,17 +80,50 @@ Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
   return radiance;
 }
 
+/// Opacity and depth of a tile's medium, whatever surfaces stand in it.
+class TileMedium {
+public:
+  TileMedium(const EstimatorInput& input, const World& world, const TileRays& rays)
+      : x0_(rays.x0()), y0_(rays.y0()), width_(std::min(tile_width, input.camera.width() - x0_)),
+        height_(std::min(tile_width, input.camera.height() - y0_)) {
+    const auto width = static_cast<std::size_t>(input.camera.width());
+    for (int i = 0; i < TileRays::count; ++i) {
+      const TileRays::PixelRay& ray = rays[i];
+      if (!ray.inside)
+        continue;
+      const auto x = static_cast<int>(ray.pixel % width), y = static_cast<int>(ray.pixel / width);
+      const OpacityAndDepth seen = medium_seen(input, world, ray);
+      opacity_[seen_by().index(x, y)] = seen.opacity;
+      depth_[seen_by().index(x, y)] = seen.depth;
+    }
+  }
+
+  SeenMedium seen_by() const { return {x0_, y0_, width_, height_, opacity_.data(), depth_.data()}; }
+
+private:
+  int x0_, y0_, width_, height_;
+  std::array<float, TileRays::count> opacity_{}, depth_{};
+};
+
 /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
-void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const RngKey& key,
-                  TileScratch& scratch, PassImage& image) {
+void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
+                  const SurfaceShading* surfaces, const RngKey& key, TileScratch& scratch,
+                  PassImage& image) {
   const World& world = photons.world();
+  const auto width = static_cast<std::size_t>(image.width);
+  std::optional<TileMedium> medium;
+  if (surfaces)
+    medium.emplace(input, world, scratch.rays);
+  const SeenMedium seen =
+      medium
+          ? medium->seen_by()
+          : SeenMedium{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
   std::array<bool, TileRays::count> uneven;
   for (int i = 0; i < TileRays::count; ++i) {
     const TileRays::PixelRay& ray = scratch.rays[i];
-    const auto width = static_cast<std::size_t>(image.width);
     uneven[static_cast<std::size_t>(i)] =
         ray.inside &&
-        is_uneven(image, input.camera, world.space.scale, static_cast<int>(ray.pixel % width),
+        is_uneven(seen, input.camera, world.space.scale, static_cast<int>(ray.pixel % width),
                   static_cast<int>(ray.pixel / width));
   }
   for (int i = 0; i < TileRays::count && !input.stopped(); ++i) {
@@ -97,15 +131,27 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons, const 
       continue;
     const std::size_t pixel = scratch.rays[i].pixel;
     scratch.rays.refine(input.in(world), key, i);
-    for (const TileRays::PixelRay& ray : scratch.rays.more(i))
-      shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, {},
+    for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
+      const SeenSurface surface =
+          surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
+                   : SeenSurface();
+      shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
                 TileRays::rays_if_refined);
+    }
     image.scale_pixel(pixel, 1.0f / TileRays::rays_if_refined);
     scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
   }
 }
 
 } // namespace
+
+OpacityAndDepth medium_seen(const EstimatorInput& input, const World& world,
+                            const TileRays::PixelRay& ray) {
+  const PeakTakenOut* peak = world.medium.peak.get();
+  if (!peak || ray.profile.empty())
+    return opacity_and_depth(input.world, ray.camera, ray.profile);
+  return opacity_and_depth(input.world, ray.camera, ray.profile.scaled(peak->extinction_factor));
+}
 
 void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
@@ -116,10 +162,10 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   counts.depth_profiles += ray.profile.empty() ? 0 : 1;
   if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
     shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), target.pixel,
-                  image, counts.emission_rays);
+                  image, surface);
   else
-    shade_profile(input, ray.camera, ray.profile, target.pixel, image, counts.emission_rays,
-                  surface);
+    shade_profile(input, ray.camera, ray.profile, target.pixel, image, surface);
+  shade_emission(input, world, ray.camera, ray.profile, target.pixel, image, counts.emission_rays);
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
   const int of_pixel =
@@ -128,8 +174,13 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
                                &photons.shadows(), input.stop};
   image.direct[target.pixel] +=
-      light_of_the_peak(world, ray, plan.sampled_lights, sink) +
+      light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
       direct_light(world, ray.camera.ray(), ray.profile, sampling, rng, counts.shadow_rays, sink);
+}
+
+SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& photons) {
+  const bool on_surfaces = input.plan.needs(Stage::surface_photons);
+  return {input, photons.world(), on_surfaces ? &photons.surface_map() : nullptr};
 }
 
 void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass,
@@ -140,8 +191,9 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
                input.object_count(), input.plane_count());
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
+  const SurfaceLighting lighting = surface_lighting(input, photons);
   if (world.surfaces)
-    surfaces.emplace(input, photons, tiles.gather_along);
+    surfaces.emplace(input, photons, lighting, tiles.gather_along);
   tbb::enumerable_thread_specific<TileScratch> scratches;
   for_each_tile(input, image, [&](int x0, int y0, int, int) {
     TileScratch& scratch = scratches.local();
@@ -151,12 +203,12 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
         const SeenSurface surface =
-            surfaces ? surfaces->seen(ray.camera, key, ray.pixel, scratch.statistics)
+            surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
                      : SeenSurface();
         shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
       }
     if (tiles.refine)
-      refine_edges(input, photons, key, scratch, image);
+      refine_edges(input, photons, surfaces ? &*surfaces : nullptr, key, scratch, image);
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       tiles.gather(scratch, key);

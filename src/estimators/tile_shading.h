@@ -20,6 +20,11 @@ struct PixelTarget {
   RenderStatistics& counts;
 };
 
+/// Opacity and depth of the medium alone, as the picture has them; `world`: to which the ray's
+/// profile belongs.
+OpacityAndDepth medium_seen(const EstimatorInput& input, const World& world,
+                            const TileRays::PixelRay& ray);
+
 /// Adds what a ray of the picture sees but for what it gathers from the photon map: direct light,
 /// and what is seen through the medium. `surface`: what is seen of the surface at which the ray
 /// ends, if it does. `rays`: how many rays of the pixel share its shadow rays.
@@ -34,6 +39,9 @@ struct TileGather {
   std::function<void(TileScratch& scratch, const RngKey& key)> gather;
   GatherAlong gather_along; ///< the same for a ray that goes on behind a mirror or glass
 };
+
+/// The light of the surfaces in the world of a pass's photons.
+SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& photons);
 
 /// The camera side of a pass that gathers photons: rays and depth profiles tile by tile, direct
 /// light, what is seen through the medium, and the stage times.

@@ -15,6 +15,7 @@ struct LightTraits {
   bool visible = true;           ///< the camera sees it where its rays meet it
   bool surrounds = false;        ///< its light comes from all around, as a sky's does (LightKind)
   bool wants_shadow_rays = true; ///< they find it better than scattered rays do (LightKind)
+  bool is_emission = false;      ///< of the medium: whatever looks along a ray sees it anyway
 };
 
 /// All lights of a scene.

@@ -223,7 +223,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       light_group_names(scene).size(),
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
-      scene.render.final_gather != FinalGathering::never && scene.surfaces.empty())
+      scene.render.final_gather != FinalGathering::never)
     plan.film_bytes += GatherPass::bytes_per_pixel() *
                        static_cast<std::uint64_t>(scene.image.raster_width()) *
                        static_cast<std::uint64_t>(scene.image.raster_height());

@@ -20,11 +20,6 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-/// What a ray adds to PassImage::opacity and PassImage::depth.
-struct OpacityAndDepth {
-  float opacity = 0, depth = 0;
-};
-
 /// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
 /// the share that is in shadow is.
 void end_at_surface(const World& world, const CameraRay& camera, float shadow,
@@ -85,20 +80,24 @@ Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
+OpacityAndDepth opacity_and_depth(const World& world, const CameraRay& camera,
+                                  const DepthProfile& profile) {
+  if (profile.empty())
+    return {};
+  // Not 1 - tr, which has no digits left where the medium is thin.
+  const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
+  const float opacity =
+      mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
+  const double depth = profile.opacity_depth(world.medium) + camera.shift * opacity;
+  return {opacity, static_cast<float>(depth / world.space.scale)};
+}
+
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   std::uint64_t& emission_rays, const SeenSurface& surface) {
+                   const SeenSurface& surface) {
   const World& world = input.world;
-  Rgb tr(1);
-  OpacityAndDepth seen;
-  if (!profile.empty()) {
-    const Rgb tau = profile.channels(world.medium, profile.knots() - 1);
-    tr = {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
-    // Not 1 - tr, which has no digits left where the medium is thin.
-    seen.opacity = mean_component(Rgb(opacity_of(tau.x), opacity_of(tau.y), opacity_of(tau.z)));
-    seen.depth = static_cast<float>(
-        (profile.opacity_depth(world.medium) + camera.shift * seen.opacity) / world.space.scale);
-  }
+  const Rgb tr = transmittance(world.medium, profile);
+  OpacityAndDepth seen = opacity_and_depth(world, camera, profile);
   Rgb background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
     background += tr * surface.radiance;
@@ -107,27 +106,30 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   image.background[pixel] += background;
   image.opacity[pixel] += seen.opacity;
   image.depth[pixel] += seen.depth;
-  if (!image.emission.empty() && !camera.segment.empty()) {
-    ++emission_rays;
-    const VolumeLights volumes(input.layers, pixel, image);
-    std::vector<Rgb> of_emitters;
-    image.emission[pixel] +=
-        emission_along(world.medium, camera.segment, profile,
-                       static_cast<float>(input.settings.cutoff), volumes ? &of_emitters : nullptr);
-    for (std::size_t i = 0; i < of_emitters.size(); ++i)
-      volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
-  }
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
     input.layers->record(world, camera, profile, {mean_component(tr), surface.shadow, seen.depth},
                          pixel, image);
-  if (const DeepRay deep(world, camera, pixel, image); deep) {
+  if (const DeepRay deep(world, camera, pixel, image); deep)
     deep.add_opacity(world.medium, profile);
-    if (!camera.segment.empty())
-      deep.add_emission(world.medium, camera.segment, profile,
-                        static_cast<float>(input.settings.cutoff));
-  }
+}
+
+void shade_emission(const EstimatorInput& input, const World& world, const CameraRay& camera,
+                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                    std::uint64_t& emission_rays) {
+  if (image.emission.empty() || camera.segment.empty())
+    return;
+  ++emission_rays;
+  const auto cutoff = static_cast<float>(input.settings.cutoff);
+  const VolumeLights volumes(input.layers, pixel, image);
+  std::vector<Rgb> of_emitters;
+  image.emission[pixel] += emission_along(world.medium, camera.segment, profile, cutoff,
+                                          volumes ? &of_emitters : nullptr);
+  for (std::size_t i = 0; i < of_emitters.size(); ++i)
+    volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
+  if (const DeepRay deep(world, camera, pixel, image); deep)
+    deep.add_emission(world.medium, camera.segment, profile, cutoff);
 }
 
 } // namespace vdbeam

@@ -12,15 +12,30 @@ namespace vdbeam {
 struct SeenSurface {
   Rgb radiance = {}; ///< that leaves it against the ray
   float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+  Rgb lamp = {};     ///< the part of `radiance` that the surface emits, as a light with shadow rays
 };
 
-/// The parts of a pixel that follow from a depth profile alone: opacity, depth, the lights seen
-/// through the medium, and emission. They are added to what other rays gave the pixel. `surface`:
-/// what is seen of the surface at which the ray ends, if it does. Counts a ray in `emission_rays`
-/// where emission was integrated.
+/// What a ray adds to PassImage::opacity and PassImage::depth.
+struct OpacityAndDepth {
+  float opacity = 0, depth = 0;
+};
+
+/// Those of the medium alone; the profile may be empty.
+OpacityAndDepth opacity_and_depth(const World& world, const CameraRay& camera,
+                                  const DepthProfile& profile);
+
+/// The parts of a pixel that follow from a depth profile alone: opacity, depth, and the lights seen
+/// through the medium. They are added to what other rays gave the pixel. `surface`: what is seen of
+/// the surface at which the ray ends, if it does.
 void shade_profile(const EstimatorInput& input, const CameraRay& camera,
                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   std::uint64_t& emission_rays, const SeenSurface& surface = {});
+                   const SeenSurface& surface = {});
+
+/// Adds the emission of the world's medium, to which the profile belongs. Counts a ray in
+/// `emission_rays` where emission was integrated.
+void shade_emission(const EstimatorInput& input, const World& world, const CameraRay& camera,
+                    const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                    std::uint64_t& emission_rays);
 
 /// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
 /// is `tr`. `camera`: only those that the camera sees. `weight`, if given: factor of each light.

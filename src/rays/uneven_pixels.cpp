@@ -24,21 +24,21 @@ struct Range {
 
 } // namespace
 
-bool is_uneven(const PassImage& image, const Camera& camera, double world_scale, int x, int y) {
+bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y) {
   constexpr int tile = PassImage::tile_width;
   const int x0 = x / tile * tile, y0 = y / tile * tile;
+  const int right = std::min(x0 + tile, seen.x0 + seen.width) - 1;
+  const int bottom = std::min(y0 + tile, seen.y0 + seen.height) - 1;
   Range opacities, depths;
-  for (int py = std::max(y0, y - 1); py <= std::min({y0 + tile - 1, image.height - 1, y + 1}); ++py)
-    for (int px = std::max(x0, x - 1); px <= std::min({x0 + tile - 1, image.width - 1, x + 1});
-         ++px) {
+  for (int py = std::max(y0, y - 1); py <= std::min(bottom, y + 1); ++py)
+    for (int px = std::max(x0, x - 1); px <= std::min(right, x + 1); ++px) {
       if (px == x && py == y)
         continue;
-      const auto pixel = static_cast<std::size_t>(py) * static_cast<std::size_t>(image.width) +
-                         static_cast<std::size_t>(px);
-      const float opacity = image.opacity[pixel];
+      const std::size_t pixel = seen.index(px, py);
+      const float opacity = seen.opacity[pixel];
       opacities.add(opacity);
       if (opacity > uneven_opacity)
-        depths.add(image.depth[pixel] / opacity);
+        depths.add(seen.depth[pixel] / opacity);
     }
   if (opacities.width() > uneven_opacity)
     return true;

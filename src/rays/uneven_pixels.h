@@ -5,10 +5,23 @@
 
 namespace vdbeam {
 
+/// Opacity and depth of the medium in a rectangle of pixels: as in PassImage, row by row.
+struct SeenMedium {
+  int x0, y0, width, height; ///< where the rectangle lies in the picture
+  const float* opacity;
+  const float* depth; ///< opacity times the mean distance [world]
+
+  /// Of the pixel (x, y) of the picture.
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x - x0);
+  }
+};
+
 /// Whether one ray tells little of the pixel (x, y): the edge of the medium runs nearby, or that of
 /// a lump before another. Only rays of the pixels around it in its tile are looked at, not its own:
 /// if a pixel's own value decided how many rays share its weight, its mean would be biased.
-/// `image` holds opacity and depth of the tile's pixels.
-bool is_uneven(const PassImage& image, const Camera& camera, double world_scale, int x, int y);
+/// `seen` holds the tile's pixels.
+bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y);
 
 } // namespace vdbeam

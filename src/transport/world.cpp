@@ -166,7 +166,7 @@ void add_volume_lights(World& world) {
     scatters = scatters || max_component(volume.albedo) > 0;
   for (const Emitter& emitter : world.medium.emitters)
     if (scatters)
-      world.lights.add(std::make_unique<VolumeLight>(emitter));
+      world.lights.add(std::make_unique<VolumeLight>(emitter), {.is_emission = true});
 }
 
 /// What a surface is, where lights can be drawn by solid angle: a sphere that is not stretched, or

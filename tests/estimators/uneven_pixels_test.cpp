@@ -37,7 +37,11 @@ struct Picture {
     image.opacity[pixel] = opacity;
     image.depth[pixel] = opacity * distance;
   }
-  bool uneven(int x, int y) const { return is_uneven(image, camera, 1, x, y); }
+  bool uneven(int x, int y) const {
+    const SeenMedium seen{
+        0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
+    return is_uneven(seen, camera, 1, x, y);
+  }
 };
 
 TEST(UnevenPixels, LieBesideEdgesOfOpacityAndDepth) {

@@ -1,6 +1,7 @@
 #include "choose/pilot/trial_tile.h"
 
 #include "estimators/beam/beam_weights.h"
+#include "estimators/path/path_walk.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
@@ -61,6 +62,7 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
   weights.colored = input.photon_channels() > 1;
   BeamTile tile;
   fill_beam_tile(world, input.camera, rays, weights, tile);
+  const WalkTracer surfaces(world, lights_of_surfaces(input), input.settings.max_bounces);
   TrialTile view;
   view.place = place;
   view.narrow = gather(input, narrow, tile);
@@ -74,10 +76,18 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || ray.profile.empty() || input.stopped())
       continue;
-    shade_profile(input, ray.camera, ray.profile, i, beside, emission_rays);
+    CameraRay without_surface = ray.camera;
+    without_surface.hit.reset();
+    shade_profile(input, without_surface, ray.profile, i, beside);
+    shade_emission(input, world, ray.camera, ray.profile, i, beside, emission_rays);
     // Also of lights that the camera does not see: hiding a sky must change no other pixel's plan.
-    beside.background[i] = lights_through(world, ray.camera.whole(), ray.profile,
-                                          transmittance(world.medium, ray.profile), false);
+    const Rgb tr = transmittance(world.medium, ray.profile);
+    beside.background[i] = lights_through(world, ray.camera.whole(), ray.profile, tr, false);
+    if (ray.camera.hit) {
+      Rng rng(key, RngStage::surface, ray.pixel);
+      beside.background[i] +=
+          tr * surfaces.from_surface(*ray.camera.hit, ray.camera.ray().direction, rng);
+    }
     const std::size_t x = ray.pixel % width - static_cast<std::size_t>(place.x0);
     const std::size_t y = ray.pixel / width - static_cast<std::size_t>(place.y0);
     view.ray_of[y * tile_width + x] = i;

@@ -50,12 +50,17 @@ struct FinalGather::Walk : Flight {
   Vec3f beginning;
   int scatterings = 1;
   float gathered = 0; ///< distance of the flight up to which light that it meets was added
+  std::optional<SurfaceHit> end; ///< of the present flight
   GatheredLight found;
+
+  /// Light that comes along the present flight.
+  void add(const Rgb& light) { (scatterings == 1 ? found.direct : found.indirect) += light; }
 };
 
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-                         const PhotonMap* compared)
-    : world_(world), plan_(plan), map_(map), compared_(compared), far_enough_(map.mean_radius()),
+                         const SurfaceLighting& surfaces, const PhotonMap* compared)
+    : world_(world), plan_(plan), map_(map), surfaces_(surfaces), compared_(compared),
+      far_enough_(map.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
@@ -80,7 +85,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
         draw_first_direction(medium, volume.phase_index, ray.direction, rng, weight);
     Walk walk(rng, chosen->weight * std::abs(weight), counts);
     walk.beginning = point.position;
-    walk.start(medium, {{point.position, direction}});
+    set_out(walk, point.position, direction);
     follow(walk);
     rng = walk.rng;
     ++counts.gather_walks;
@@ -100,6 +105,12 @@ void FinalGather::follow(Walk& walk) const {
     goes_on = step_flight(world_.medium, walk, *this);
 }
 
+/// Begins a flight, which ends at the first surface.
+void FinalGather::set_out(Walk& walk, const Vec3f& origin, const Vec3f& direction) const {
+  walk.gathered = 0;
+  walk.start(world_.medium, flight_segment(world_, Vec3d(origin), direction, walk.end));
+}
+
 void FinalGather::meet(Walk& walk, const Collision& hit) const {
   if (meets_light_)
     meet_light(walk, hit.t);
@@ -107,7 +118,9 @@ void FinalGather::meet(Walk& walk, const Collision& hit) const {
 
 /// The flight leaves the medium, and with it the walk ends.
 bool FinalGather::leave(Walk& walk) const {
-  meet_light(walk, walk.segment.t_end);
+  meet_light(walk, walk.end ? static_cast<float>(walk.end->t) : walk.segment.t_end);
+  if (walk.end)
+    meet_surface(walk);
   return false;
 }
 
@@ -126,8 +139,7 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   send_shadow_rays(walk, medium.gathered_phases()[phase]);
   if (last || !survive_roulette(roulette_below, walk.throughput, walk.rng))
     return false;
-  walk.gathered = 0;
-  walk.start(medium, {{point, walk.sample_direction(medium.phases[phase])}});
+  set_out(walk, point, walk.sample_direction(medium.phases[phase]));
   return advance_flight(walk, *this);
 }
 
@@ -139,10 +151,20 @@ void FinalGather::meet_light(Walk& walk, float end) const {
   if (!world_.medium.emitters.empty())
     light += sample_emission(world_.medium, piece, walk.rng);
   for (std::size_t l = 0; l < world_.lights.size(); ++l)
-    if (!plan_.sampled_lights[l] && !world_.lights[l].is_delta())
+    if (!plan_.sampled_lights[l] && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
       light += world_.lights[l].emitted_radiance(piece).radiance;
-  (walk.scatterings == 1 ? walk.found.direct : walk.found.indirect) += light * walk.throughput;
+  walk.add(light * walk.throughput);
   walk.gathered = end;
+}
+
+/// The light of the surface at which the flight ends. Shadow rays have found the lights among them.
+void FinalGather::meet_surface(Walk& walk) const {
+  const Vec3f& direction = walk.segment.ray.direction;
+  const SurfaceVertex vertex(*world_.surfaces, *walk.end, direction);
+  Rgb light = surfaces_.reflected(vertex, direction, walk.rng);
+  if (vertex.light() >= 0 && !plan_.sampled_lights[static_cast<std::size_t>(vertex.light())])
+    light += vertex.emitted();
+  walk.add(light * walk.throughput);
 }
 
 /// What the collision at the walk's place scatters of lights with shadow rays.
@@ -154,7 +176,8 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
     const auto shadow_ray = // these lights are found in no other way
         sample_shadow_ray(world_.lights[l], flight.origin, walk.rng,
                           [](const Vec3f&) { return 0.0f; });
-    if (!shadow_ray)
+    if (!shadow_ray ||
+        !unoccluded(world_, Vec3d(flight.origin), shadow_ray->direction, shadow_ray->distance))
       continue;
     ++walk.counts.shadow_rays;
     const Vec3f& wi = shadow_ray->direction;

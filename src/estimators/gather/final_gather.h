@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/surface_lighting.h"
 #include "layers/ray_sink.h"
 #include "photons/photon_plan.h"
 
@@ -16,14 +17,16 @@ struct GatheredLight {
 /// photons are not gathered along the camera ray, but where walks arrive that begin on it. A walk
 /// scatters at a point of the ray and goes on until it is a kernel's radius away, with shadow rays
 /// at each collision on its way; there the photons' density is what scatters into its last flight.
-/// So kernels blur only what walks are about to blur anyway, and most of their bias is gone, for
-/// noise of the walks' own (docs/physics.md, "Final gathering").
+/// A walk that meets a surface ends there, with the light that the surface sends back. So kernels
+/// blur only what walks are about to blur anyway, and most of their bias is gone, for noise of the
+/// walks' own (docs/physics.md, "Final gathering").
 class FinalGather {
 public:
-  /// `map`: of the world's photons, as the plan has them; `compared`: the same in kernels of
-  /// another width, null where the blur is not asked for. All must outlive this.
+  /// `map`: of the world's photons, as the plan has them; `surfaces`: light of what walks meet;
+  /// `compared`: the photons in kernels of another width, null where the blur is not asked for. All
+  /// must outlive this.
   FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-              const PhotonMap* compared = nullptr);
+              const SurfaceLighting& surfaces, const PhotonMap* compared = nullptr);
 
   /// So many walks from the ray, whose profile is not empty, their distances stratified.
   /// `ray_weight`: of the ray among those of its pixel.
@@ -41,13 +44,16 @@ public:
 
 private:
   void follow(Walk& walk) const;
+  void set_out(Walk& walk, const Vec3f& origin, const Vec3f& direction) const;
   void meet_light(Walk& walk, float end) const;
+  void meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume) const;
 
   const World& world_;
   const PhotonPlan& plan_;
   const PhotonMap& map_;
+  const SurfaceLighting& surfaces_;
   const PhotonMap* compared_;
   float far_enough_; ///< distance from its beginning at which a walk ends
   bool meets_light_; ///< flights may meet light before they end

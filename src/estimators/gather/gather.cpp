@@ -13,8 +13,12 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
   const auto gather = [&](TileScratch& scratch, const RngKey& key) {
     walks.gather(scratch, key, blur, image);
   };
-  // No ray goes on behind a surface: there are none.
-  shade_tiles(walks.input(), photons_, spec.pass, {true, gather, nullptr}, image, statistics);
+  shade_tiles(walks.input(), photons_, spec.pass,
+              {true, gather,
+               [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
+                 return walks.gather_along(ray, profile, rng);
+               }},
+              image, statistics);
   walks.fit(blur, image);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);

@@ -55,6 +55,7 @@ float blur_over_difference(float narrow, float wide) {
 
 GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec)
     : wide_(input), window_(wanted(input)), photons_(photons),
+      surfaces_(surface_lighting(input, photons)),
       regression_(input.camera, input.world.space.scale, spec.regression_radius),
       narrow_(input.camera, input.world.space.scale, narrower(regression_.radius())),
       blur_over_difference_(blur_over_difference(narrow_.radius(), regression_.radius())),
@@ -64,6 +65,10 @@ GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, c
                       static_cast<std::size_t>(input.camera.height());
   walked_.direct.resize(pixels);
   walked_.indirect.resize(pixels);
+  if (input.world.surfaces) {
+    walked_.opacity.resize(pixels);
+    walked_.depth.resize(pixels);
+  }
   if (input.layers && input.layers->tells_volumes())
     walked_.planes.assign(input.plane_count(), std::vector<float>(pixels));
 }
@@ -72,8 +77,8 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
                         PassImage& image) {
   const World& world = photons_.world();
   const PhotonMap* compared = wide_.blur_pixels ? &photons_.compared_map() : nullptr;
-  const FinalGather gather(world, photons_.plan(), photons_.map());
-  const FinalGather twice(world, photons_.plan(), photons_.map(), compared);
+  const FinalGather gather(world, photons_.plan(), photons_.map(), surfaces_);
+  const FinalGather twice(world, photons_.plan(), photons_.map(), surfaces_, compared);
   for (int i = 0; i < TileRays::count && !wide_.stopped(); ++i) {
     const TileRays::PixelRay& ray = scratch.rays[i];
     if (!ray.inside)
@@ -85,14 +90,20 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
     const int walks = more.empty() ? walks_ : std::max(2, walks_ / rays);
     GatheredLight sum;
     const auto send = [&](const TileRays::PixelRay& from) {
+      const float ray_weight = 1 / static_cast<float>(rays);
+      if (world.surfaces) {
+        const OpacityAndDepth seen = medium_seen(wide_, world, from);
+        walked_.opacity[ray.pixel] += seen.opacity * ray_weight;
+        walked_.depth[ray.pixel] += seen.depth * ray_weight;
+      }
       if (from.profile.empty())
         return;
       Rng rng(key, RngStage::final_gather, from.stream);
-      const GatheredLight light = (probe ? twice : gather)
-                                      .gather(from.camera.ray(), from.profile, walks,
-                                              1 / static_cast<float>(rays), rng, scratch.statistics,
-                                              {DeepRay(world, from.camera, from.pixel, image),
-                                               VolumeLights(wide_.layers, from.pixel, walked_)});
+      const GatheredLight light =
+          (probe ? twice : gather)
+              .gather(from.camera.ray(), from.profile, walks, ray_weight, rng, scratch.statistics,
+                      {DeepRay(world, from.camera, from.pixel, image),
+                       VolumeLights(wide_.layers, from.pixel, walked_)});
       sum.direct += light.direct;
       sum.indirect += light.indirect;
       sum.blur += light.blur;
@@ -106,6 +117,14 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
     if (probe)
       probe->radiance = sum.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
   }
+}
+
+Rgb GatherPass::gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const {
+  constexpr int walks = 2;
+  RenderStatistics uncounted;
+  const FinalGather gather(photons_.world(), photons_.plan(), photons_.map(), surfaces_);
+  const GatheredLight light = gather.gather(ray.ray(), profile, walks, 1, rng, uncounted);
+  return light.direct + light.indirect;
 }
 
 /// Whether the tile and those around it that are wanted are finished.
@@ -148,7 +167,9 @@ GatheredLight GatherPass::fitted(std::span<const PixelRegression::Share> shares)
 }
 
 void GatherPass::fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const {
-  const SeenMedium seen{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
+  const PassImage& medium = walked_.opacity.empty() ? image : walked_;
+  const SeenMedium seen{
+      0, 0, image.width, image.height, medium.opacity.data(), medium.depth.data()};
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x);
   PixelRegression::Shares buffer;

@@ -25,6 +25,9 @@ public:
   /// Sends the walks of a tile's rays; of any thread, each tile once.
   void gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image);
 
+  /// What a few walks from a ray gather that goes on behind a mirror or glass.
+  Rgb gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const;
+
   /// After all tiles: adds the fitted light to `image`, which has the pixels' opacity and depth.
   /// Tiles around which some were not finished are no longer finished themselves.
   void fit(BlurProbe& blur, PassImage& image) const;
@@ -41,10 +44,12 @@ private:
   EstimatorInput wide_;
   PixelRegion window_; ///< of pixels that are wanted
   const PhotonPass& photons_;
+  SurfaceLighting surfaces_;
   PixelRegression regression_, narrow_; ///< the latter shows how much the former blurs
   float blur_over_difference_; ///< all that the fit blurs over what it blurs beyond the narrow one
   int walks_;                  ///< of a ray
-  PassImage walked_;           ///< what the walks of each pixel gathered
+  /// What the walks of each pixel gathered and, among surfaces, its medium's opacity and depth.
+  PassImage walked_;
 };
 
 } // namespace vdbeam

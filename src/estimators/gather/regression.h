@@ -1,19 +1,12 @@
 #pragma once
 
 #include "camera/camera.h"
-#include "image/pass_image.h"
+#include "rays/uneven_pixels.h"
 
 #include <array>
 #include <span>
 
 namespace vdbeam {
-
-/// Opacity and depth of a rectangle of pixels, which the fit goes by: as in PassImage, row by row.
-struct SeenMedium {
-  int x0, y0, width, height; ///< where the rectangle lies in the picture
-  const float* opacity;
-  const float* depth; ///< opacity times the mean distance [world]
-};
 
 /// What the walks of a camera ray gather has the noise of few walks, and its neighbours see nearly
 /// the same light. At each pixel, light per opacity is therefore taken from a plane fitted to it

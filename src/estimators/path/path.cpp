@@ -102,8 +102,8 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   Rng rng(key, RngStage::path, pixel);
   DepthProfile& profile = scratch.profile;
   profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff));
-  shade_profile(input_, camera, profile, target, image, scratch.counts.emission_rays,
-                seen_surface(camera, key, pixel));
+  shade_profile(input_, camera, profile, target, image, seen_surface(camera, key, pixel));
+  shade_emission(input_, world, camera, profile, target, image, scratch.counts.emission_rays);
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;

@@ -8,12 +8,12 @@
 namespace vdbeam {
 
 Rgb WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                             bool all_light, float emitted) const {
+                             bool all_light, bool emits) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
   first.least_weight = roulette_from(Rgb(1));
-  Rgb sum = vertex.emitted() * emitted;
+  Rgb sum = emits ? vertex.emitted() : Rgb();
   std::vector<PathWalk> branches;
   const auto follow = [&](PathWalk& walk, bool goes_on) {
     while (goes_on)

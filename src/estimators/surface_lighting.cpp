@@ -1,0 +1,28 @@
+#include "estimators/surface_lighting.h"
+
+#include "photons/photon_plan.h"
+#include "photons/surface_photons.h"
+
+namespace vdbeam {
+
+SurfaceLighting::SurfaceLighting(const EstimatorInput& input, const World& world,
+                                 const PhotonMap* photons)
+    : world_(world), photons_(photons),
+      tracer_(world, lights_of_surfaces(input), input.settings.max_bounces) {}
+
+Rgb SurfaceLighting::reflected(const SurfaceVertex& vertex, const Vec3f& direction,
+                               Rng& rng) const {
+  return by_paths(vertex, direction, rng) + by_photons(vertex, rng);
+}
+
+Rgb SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const {
+  return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false);
+}
+
+Rgb SurfaceLighting::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
+  if (!shows_photons(vertex))
+    return {};
+  return SurfacePhotons(*world_.surfaces, *photons_).reflected(vertex, rng);
+}
+
+} // namespace vdbeam

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "estimators/path/path_walk.h"
+#include "photonmap/photon_map.h"
+#include "rays/estimator_input.h"
+
+namespace vdbeam {
+
+/// The light of surfaces that are no mirrors, for estimators that gather photons: by path tracing
+/// (WalkTracer), but for caustics and the like, which photons on the surfaces bring where the plan
+/// has them (Stage::surface_photons).
+class SurfaceLighting {
+public:
+  /// `world`: in which paths are traced; `photons`: those that lie on its surfaces, null: paths
+  /// find what they find. What is given must outlive this.
+  SurfaceLighting(const EstimatorInput& input, const World& world, const PhotonMap* photons);
+
+  const WalkTracer& tracer() const { return tracer_; }
+
+  /// Radiance that leaves the surface against `direction`, along which a ray meets it, but for what
+  /// the surface itself emits.
+  Rgb reflected(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
+
+  /// The two parts of it.
+  Rgb by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
+  Rgb by_photons(const SurfaceVertex& vertex, Rng& rng) const;
+
+private:
+  /// Photons bring light to the surface, which it spreads.
+  bool shows_photons(const SurfaceVertex& vertex) const {
+    return photons_ && vertex.material().takes_photons();
+  }
+
+  const World& world_;
+  const PhotonMap* photons_;
+  WalkTracer tracer_;
+};
+
+} // namespace vdbeam
