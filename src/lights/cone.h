@@ -12,6 +12,11 @@ struct Cone {
   Vec3d axis{0, 0, 1};
   double one_minus_cos = 2; ///< 2: the whole sphere
 
+  /// Whether a unit vector lies in it.
+  bool holds(const Vec3f& direction) const {
+    return dot(Vec3d(direction), axis) >= 1 - one_minus_cos;
+  }
+
   double solid_angle() const { return 2 * std::numbers::pi * one_minus_cos; }
 
   /// Uniform by solid angle.

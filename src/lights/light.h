@@ -26,6 +26,11 @@ struct LightHit {
 struct EmittedPhoton {
   Ray ray;
   Rgb flux; ///< emitted power / density; the mean over photons is the light's power into the region
+  /// Where the light is aimed at several targets (AimedLight): those that the photon counts for, if
+  /// its ray meets none before them.
+  int first_target = 0, last_target = 0;
+  /// Flux of such a light's photons to the medium, in the strongest channel; 0: of any other light.
+  float flux_to_medium = 0;
 };
 
 /// A light in render space. All quantities that depend on length are converted when it is made.

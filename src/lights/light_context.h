@@ -9,12 +9,16 @@
 
 namespace vdbeam {
 
+class Light;
+
 /// What is needed of the scene to make a light.
 struct LightContext {
   Vec3d up{0, 1, 0}; ///< the camera's, about which environment images turn
   const RenderSpace& space;
   const OccupiedRegion& region;              ///< lights copy what they need of it
   std::vector<std::string>* notes = nullptr; ///< for the user, one line each; are appended to
+  /// The same light, made for another region, with which large tables may be shared; may be null.
+  const Light* other = nullptr;
 };
 
 } // namespace vdbeam

@@ -1,5 +1,7 @@
 #include "lights/surface_light.h"
 
+#include "lights/cone.h"
+#include "lights/light_table.h"
 #include "math/sampling.h"
 
 #include <bit>
@@ -18,11 +20,15 @@ double another(float u) {
 
 SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface,
                            const Rgb& radiance, bool two_sided, const SolidAngleShape& seen_as,
-                           std::shared_ptr<const Texture> texture)
+                           std::shared_ptr<const Texture> texture, const OccupiedRegion* target)
     : surfaces_(std::move(surfaces)), surface_(surface), radiance_(radiance), two_sided_(two_sided),
       seen_as_(seen_as), texture_(std::move(texture)) {
   const auto index = static_cast<std::size_t>(surface);
   center_ = surfaces_->bounds(index).center();
+  if (target) {
+    target_.center = target->center;
+    target_.radius = target->radius;
+  }
   const double sides = two_sided ? 2 : 1;
   if (texture_) {
     cells_.emplace(surfaces_, surface, *texture_);
@@ -30,6 +36,8 @@ SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surfa
   } else {
     power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) * sides));
   }
+  if (target)
+    power_ = estimate_power(*this);
 }
 
 SurfacePoint SurfaceLight::sample_area(double place, double u, double v) const {
@@ -137,22 +145,39 @@ LightHit SurfaceLight::emitted_radiance(const Segment& segment) const {
   return {radiance(hit->uv), static_cast<float>(hit->t)};
 }
 
+/// By Lambert's cosine law, or evenly in the cone that holds the target.
+Vec3f SurfaceLight::sample_leaving(const SurfacePoint& from, Rng& rng, float& weight) const {
+  const float u = rng.uniform_positive(), v = rng.uniform();
+  const float side = two_sided_ && rng.uniform() >= 0.5f ? -1.0f : 1.0f;
+  const Vec3d way = Vec3d(target_.center) - from.position;
+  const double distance = length(way), sine = static_cast<double>(target_.radius) / distance;
+  if (!(target_.radius > 0) || !(sine < 1)) {
+    weight = two_sided_ ? 2 * pi : pi;
+    return direction_about(from.normal * side, std::sqrt(u), 2 * pi * v);
+  }
+  Cone cone{way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+  const Vec3f direction(cone.sample(static_cast<double>(u), static_cast<double>(v)));
+  const float cosine = dot(from.normal, direction);
+  const bool lit = two_sided_ || cosine > 0;
+  weight = lit ? std::abs(cosine) * static_cast<float>(cone.solid_angle()) : 0;
+  return direction;
+}
+
 EmittedPhoton SurfaceLight::emit(double place, Rng& rng) const {
   const double u = rng.uniform(), v = rng.uniform();
   const SurfacePoint on = sample_area(place, u, v);
-  const float cosine2 = rng.uniform_positive(), phi = 2 * pi * rng.uniform();
-  const bool front = !two_sided_ || rng.uniform() < 0.5f;
+  float weight = 0;
+  const Vec3f direction = sample_leaving(on, rng, weight);
   SurfaceHit from;
   from.position = on.position;
   from.normal = on.normal;
-  const Vec3f direction = direction_about(front ? on.normal : -on.normal, std::sqrt(cosine2), phi);
-  const float weight = pi / on.pdf * (two_sided_ ? 2.0f : 1.0f);
+  const bool front = dot(on.normal, direction) >= 0;
   // Moved off the surface by several roundings to single precision.
   Vec3d start = from.leave(direction);
   const double largest =
       max_component(Vec3d{std::abs(start.x), std::abs(start.y), std::abs(start.z)});
   start += Vec3d(front ? on.normal : -on.normal) * (4e-7 * largest + 1e-12);
-  return {{Vec3f(start), direction}, radiance(on.uv) * weight};
+  return {{Vec3f(start), direction}, radiance(on.uv) * (weight / on.pdf)};
 }
 
 } // namespace vdbeam

@@ -3,6 +3,7 @@
 #include "geometry/surface_set.h"
 #include "lights/emission_cells.h"
 #include "lights/light.h"
+#include "lights/occupied_region.h"
 #include "lights/solid_angle.h"
 
 #include <memory>
@@ -15,10 +16,12 @@ namespace vdbeam {
 class SurfaceLight final : public Light {
 public:
   /// `seen_as`: what the surface is, where it can be drawn by solid angle; `texture`, unless it is
-  /// null: the picture that the radiance is multiplied by.
+  /// null: the picture that the radiance is multiplied by; `target`, unless it is null: the region
+  /// to which photons are sent, the others are left out.
   SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surface, const Rgb& radiance,
                bool two_sided, const SolidAngleShape& seen_as = {},
-               std::shared_ptr<const Texture> texture = nullptr);
+               std::shared_ptr<const Texture> texture = nullptr,
+               const OccupiedRegion* target = nullptr);
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
   float incident_pdf(const Vec3f& point, const Vec3f& wi) const override;
@@ -43,6 +46,8 @@ private:
   std::optional<SolidAnglePoint> sample_solid_angle(const Vec3d& point, float u, float v) const;
   /// What it fills as seen from `point`; 0 where points on it are drawn by area.
   double solid_angle(const Vec3d& point) const;
+  /// A direction for a photon from a point, and pi times its cosine over its density.
+  Vec3f sample_leaving(const SurfacePoint& from, Rng& rng, float& weight) const;
   bool shines(const Vec3f& normal, const Vec3f& away) const {
     return two_sided_ ? dot(normal, away) != 0 : dot(normal, away) > 0;
   }
@@ -55,6 +60,7 @@ private:
   std::shared_ptr<const Texture> texture_;
   std::optional<EmissionCells> cells_; ///< where there is a texture
   Vec3d center_;
+  OccupiedRegion target_; ///< without boxes; of no radius: all that it shines on
   Rgb power_;
 };
 

@@ -17,14 +17,6 @@ Affine moved(const Vec3d& by) {
   return map;
 }
 
-/// A flat box has no inside at which photons can be aimed.
-Parallelepiped thick_box(const Boxd& box) {
-  const Vec3d margin = Vec3d(1e-3 * max_component(box.size()) + 1e-9);
-  const Vec3d lower = box.lower - margin, size = box.size() + margin * 2.0;
-  return {Vec3f(lower),
-          {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
-}
-
 /// Throws InputError where single precision, in which Embree works, cannot hold both a surface and
 /// the rest of the scene, of which the medium is about 1 wide.
 void check_sizes(const std::vector<PlacedShape>& surfaces) {
@@ -106,27 +98,6 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
     if (surfaces->materials[i]->is_solid())
       surfaces->solids.push_back(surfaces->set->bounds(i));
   return surfaces;
-}
-
-OccupiedRegion lit_region(const OccupiedRegion& medium, const SurfaceSet& surfaces) {
-  OccupiedRegion region = medium;
-  Boxd bounds = surfaces.bounds();
-  if (!medium.boxes.empty())
-    for (const Parallelepiped& box : medium.boxes)
-      for (int corner = 0; corner < 8; ++corner) {
-        Vec3f point = box.corner;
-        for (int i = 0; i < 3; ++i)
-          if (corner >> i & 1)
-            point += box.edges[i];
-        bounds.extend(Vec3d(point));
-      }
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    region.boxes.push_back(thick_box(surfaces.bounds(i)));
-    region.cells.push_back(region.boxes.back());
-  }
-  region.center = Vec3f(bounds.center());
-  region.radius = static_cast<float>(0.5 * length(bounds.size()) * 1.01);
-  return region;
 }
 
 } // namespace vdbeam

@@ -34,7 +34,4 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
                const std::shared_ptr<SurfaceStore>& store, const SurfaceSet* previous,
                std::vector<std::string>& notes);
 
-/// The region of the medium and of the surfaces, which throw light into it.
-OccupiedRegion lit_region(const OccupiedRegion& medium, const SurfaceSet& surfaces);
-
 } // namespace vdbeam

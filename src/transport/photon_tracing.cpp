@@ -1,7 +1,9 @@
 #include "transport/photon_tracing.h"
 
 #include "camera/towards_camera.h"
+#include "lights/local_aim.h"
 #include "medium/flight.h"
+#include "transport/photon_targets.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -28,6 +30,9 @@ struct LightPath : Flight {
   std::optional<SurfaceHit> end; ///< of the present flight
   bool met_surface = false;
   bool for_surfaces = false; ///< stored at surfaces: of surface_photon_lights
+  /// Flux, in the strongest channel, with which such paths go to the medium straight from their
+  /// light; 0: surfaces do not aim it.
+  float fair_flux = 0;
   SurfaceRoulette surfaces;
 };
 
@@ -35,6 +40,11 @@ struct LightPath : Flight {
 // mean is ended with a chance that brings survivors to the mean, but is no less than
 // `least_chance`; one that is worth more than `highest_value` is split in two.
 constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
+
+/// Copies of a path that a surface sends to the medium, at most, and the least value of the
+/// material, in parts of its albedo over pi, by which they are counted.
+constexpr int most_copies = 8;
+constexpr float least_aimed = 0.01f;
 
 /// Traces one chunk of paths into one list.
 class PathTracer {
@@ -130,9 +140,7 @@ private:
 
   /// Sends a copy of the path on its own way; it is traced when one of those under way has ended.
   void split(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
-    LightPath copy = path;
-    const std::uint64_t high = path.rng.bits(), low = path.rng.bits();
-    copy.rng = Rng(settings_.key, RngStage::split, high << 32 | low);
+    LightPath copy = copy_of(path);
     if (scatter(copy, phase, point))
       split_.push_back(std::move(copy));
   }
@@ -159,13 +167,88 @@ private:
       store_at(vertex, path);
     else if (!path.met_surface && path.bounces == 0)
       path.for_surfaces = vertex.material().throws_light() && lights_surfaces(path.light);
+    const std::optional<Cone> aimed = send_to_medium(path, vertex);
     const MaterialSample next = vertex.sample(Carried::power, path.rng);
     if (!absorption_roulette(next.weight, path.throughput, path.rng) ||
-        !path.surfaces.survive(path.throughput, path.rng))
+        !path.surfaces.survive(path.throughput, path.rng) || (aimed && aimed->holds(next.wi)))
       return false;
     path.met_surface = true;
     begin_flight(path, vertex.hit().leave(next.wi), next.wi);
     return true;
+  }
+
+  /// Sends copies of the path from a surface to the medium, about as many as give each the flux
+  /// that paths bring there straight from the light, and returns the cone of their directions, in
+  /// which the path itself then does not go on. Within the medium's sphere, where the cone would be
+  /// all directions, the path shares its flux with copies of the same kind.
+  std::optional<Cone> send_to_medium(LightPath& path, const SurfaceVertex& vertex) {
+    const Material& material = vertex.material();
+    if (!(path.fair_flux > 0) || material.is_specular() || material.refracts() ||
+        world_.medium.empty())
+      return std::nullopt;
+    const Vec3d& point = vertex.hit().position;
+    const Vec3d way = Vec3d(world_.region.center) - point;
+    const double distance = length(way),
+                 sine = static_cast<double>(world_.region.radius) / distance;
+    if (!(sine < 1)) {
+      share_flux(path, vertex);
+      return std::nullopt;
+    }
+    const Cone cone{way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+    const auto solid_angle = static_cast<float>(cone.solid_angle());
+    // About what goes that way, whatever the directions that are drawn.
+    const Vec3f axis(cone.axis);
+    const float value = std::max(max_component(vertex.evaluate(axis, Carried::power)), least_aimed);
+    const float wanted = max_component(path.throughput) * value * solid_angle / path.fair_flux;
+    const int copies = copies_of(wanted, path.rng);
+    // One that is drawn by chance stands for those that are not.
+    const float share = solid_angle / (wanted < 1 ? wanted : static_cast<float>(copies));
+    for (int i = 0; i < copies; ++i) {
+      const float u = path.rng.uniform(), v = path.rng.uniform();
+      const Vec3f wi(cone.sample(static_cast<double>(u), static_cast<double>(v)));
+      LightPath copy = copy_of(path);
+      copy.throughput *= vertex.evaluate(wi, Carried::power) * share;
+      leave_surface(copy, vertex, wi);
+    }
+    return cone;
+  }
+
+  /// The path goes on as one of several with equal shares of its flux.
+  void share_flux(LightPath& path, const SurfaceVertex& vertex) {
+    const int paths = std::clamp(static_cast<int>(max_component(path.throughput) / path.fair_flux),
+                                 1, most_copies);
+    path.throughput *= 1 / static_cast<float>(paths);
+    for (int i = 1; i < paths; ++i) {
+      LightPath copy = copy_of(path);
+      const MaterialSample next = vertex.sample(Carried::power, copy.rng);
+      if (absorption_roulette(next.weight, copy.throughput, copy.rng))
+        leave_surface(copy, vertex, next.wi);
+    }
+  }
+
+  /// How many copies stand for a wanted number.
+  static int copies_of(float wanted, Rng& rng) {
+    if (wanted < 1)
+      return rng.uniform() < wanted ? 1 : 0;
+    return static_cast<int>(std::min(wanted + 0.5f, static_cast<float>(most_copies)));
+  }
+
+  /// Puts a copy that has been scattered at a surface to those that wait for their turn.
+  void leave_surface(LightPath& copy, const SurfaceVertex& vertex, const Vec3f& wi) {
+    if (!(max_component(copy.throughput) > 0) || !copy.surfaces.survive(copy.throughput, copy.rng))
+      return;
+    copy.met_surface = true;
+    begin_flight(copy, vertex.hit().leave(wi), wi);
+    if (advance_flight(copy, *this))
+      split_.push_back(std::move(copy));
+  }
+
+  /// The same path with random numbers of its own.
+  LightPath copy_of(LightPath& path) {
+    LightPath copy = path;
+    const std::uint64_t high = path.rng.bits(), low = path.rng.bits();
+    copy.rng = Rng(settings_.key, RngStage::split, high << 32 | low);
+    return copy;
   }
 
   /// Shadow rays find what comes straight from their light, and nothing that a surface sent on.
@@ -185,6 +268,8 @@ private:
     const PathGuide::Emission start =
         settings_.guide ? settings_.guide->emission(light, place) : PathGuide::Emission{place, 1};
     const EmittedPhoton photon = world_.lights[light].emit(start.place, rng);
+    if (photon.flux_to_medium > 0 && !counts_for_its_target(world_, photon))
+      return;
     const Rgb flux =
         photon.flux / static_cast<float>(static_cast<double>(light_paths) * start.density);
     if (!(max_component(flux) > 0) ||
@@ -193,9 +278,25 @@ private:
     path.emplace(rng, flux);
     path->light = light;
     path->number = static_cast<std::uint32_t>(number);
-    begin_flight(*path, Vec3d(photon.ray.origin), photon.ray.direction);
+    path->fair_flux = photon.flux_to_medium / static_cast<float>(light_paths);
+    begin_flight(*path, beginning(world_.lights[light], photon), photon.ray.direction);
     if (!advance_flight(*path, *this))
       path.reset();
+  }
+
+  /// Where the flight of a photon begins: at the edge of the region that it is aimed at, or, where
+  /// a surface stands before that, at the light, or before everything if the light is far away.
+  Vec3d beginning(const Light& light, const EmittedPhoton& photon) const {
+    const Vec3d origin(photon.ray.origin), direction(photon.ray.direction);
+    if (!(photon.flux_to_medium > 0) || light.surface() >= 0)
+      return origin;
+    const OccupiedRegion& all = world_.targets.back();
+    const double back =
+        light.position()
+            ? length(origin - *light.position())
+            : 2 * (length(origin - Vec3d(all.center)) + static_cast<double>(all.radius));
+    return world_.surfaces->set->occluded(origin, -direction, 0, back) ? origin - direction * back
+                                                                       : origin;
   }
 
   bool lights_surfaces(std::size_t light) const {

@@ -53,8 +53,13 @@ public:
   /// What absorption inside left of the light on its way from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
-  Rgb evaluate(const Vec3f& wi) const {
-    return sum_of<Rgb>(wi, [&](const Vec3f& local) { return material_.evaluate(wo_, local); }) *
+  Rgb evaluate(const Vec3f& wi, Carried carried = Carried::radiance) const {
+    const bool corrected = hit_.smooth && carried == Carried::power;
+    return sum_of<Rgb>(wi,
+                       [&](const Vec3f& local) {
+                         return material_.evaluate(wo_, local) *
+                                (corrected ? power_factor(local, wi) : 1);
+                       }) *
            shown_;
   }
   float pdf(const Vec3f& wi) const {

@@ -4,6 +4,7 @@
 #include "lights/volume_light.h"
 #include "math/color.h"
 #include "transport/build_surfaces.h"
+#include "transport/photon_targets.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -198,10 +199,12 @@ void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& wor
       continue;
     const bool two_sided = max_component(material.emitted(false)) > 0;
     surfaces->lights[i] = static_cast<int>(world.lights.size());
-    world.lights.add(std::make_unique<SurfaceLight>(
-                         surfaces->set, static_cast<int>(i), material.emitted(true), two_sided,
-                         solid_angle_shape(settings[i], world.space), surfaces->textures[i]),
-                     {settings[i].visible, false});
+    const auto make = [&](const OccupiedRegion* medium) {
+      return std::make_unique<SurfaceLight>(
+          surfaces->set, static_cast<int>(i), material.emitted(true), two_sided,
+          solid_angle_shape(settings[i], world.space), surfaces->textures[i], medium);
+    };
+    world.lights.add(aim_surface_light(world, make), {settings[i].visible, false});
   }
   world.surfaces = std::move(surfaces);
 }
@@ -287,10 +290,12 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   if (world.surfaces)
     found.surfaces = {store->meshes_read(), store->textures_read(),
                       world.surfaces->set->trees_built()};
-  // What stands about the medium throws light into it.
-  const OccupiedRegion lit =
-      world.surfaces ? lit_region(world.region, *world.surfaces->set) : world.region;
-  world.lights = LightSet(scene.lights, scene.camera.up, world.space, lit, &found.notes);
+  if (world.surfaces) { // what stands about the medium throws light into it
+    world.targets = photon_targets(world.region, *world.surfaces->set);
+    add_aimed_lights(scene.lights, scene.camera.up, found.notes, world);
+  } else {
+    world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &found.notes);
+  }
   check_lights(scene, world);
   if (world.surfaces)
     add_surface_lights(scene.surfaces, world);

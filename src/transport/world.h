@@ -18,6 +18,7 @@ struct World {
   LightSet lights;
   OccupiedRegion region;                    ///< of the medium
   std::shared_ptr<const Surfaces> surfaces; ///< null: there are none
+  std::vector<OccupiedRegion> targets;      ///< of photons, in a scene with surfaces
 };
 
 /// No surface stands between a point and a light, or another point, at a distance along

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "lights/light.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbeam {
+
+/// A light whose photons are aimed at several targets, one within the other: the medium, what
+/// stands about it, and so on to all that stands in the scene. Few photons go to a wide ground
+/// then, however wide it is, and each of them brings much.
+///
+/// An aim is the same light, made for the target alone. What it sends may meet a target before its
+/// own, which is then another aim's: such a photon does not count (EmittedPhoton::first_target). So
+/// every line of light belongs to one aim, and its density is that of one strategy.
+class AimedLight final : public Light {
+public:
+  struct Aim {
+    std::unique_ptr<const Light> light;
+    int first_target, last_target; ///< that its photons count for
+    double share;                  ///< of the photons, > 0; they add up to 1
+  };
+  /// At least one aim, the first of which is at the medium.
+  explicit AimedLight(std::vector<Aim> aims);
+
+  IncidentSample sample_incident(const Vec3f& point, float u, float v) const override {
+    return light().sample_incident(point, u, v);
+  }
+  float incident_pdf(const Vec3f& point, const Vec3f& wi) const override {
+    return light().incident_pdf(point, wi);
+  }
+  LightHit emitted_radiance(const Segment& segment) const override {
+    return light().emitted_radiance(segment);
+  }
+  bool has_extent() const override { return light().has_extent(); }
+  EmittedPhoton emit(double place, Rng& rng) const override;
+  Rgb power() const override { return power_; }
+  bool is_delta() const override { return light().is_delta(); }
+  const Vec3d* position() const override { return light().position(); }
+  Segment lit_part(const Segment& segment) const override { return light().lit_part(segment); }
+  const Vec3f* narrow_direction() const override { return light().narrow_direction(); }
+  int surface() const override { return light().surface(); }
+  float surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const override {
+    return light().surface_pdf(hit, wi);
+  }
+
+private:
+  const Light& light() const { return *aims_[0].light; }
+
+  std::vector<Aim> aims_;
+  Rgb power_;
+  float flux_to_medium_; ///< of a photon of the first aim
+};
+
+} // namespace vdbeam

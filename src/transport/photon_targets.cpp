@@ -1,0 +1,218 @@
+#include "transport/photon_targets.h"
+
+#include "lights/aimed_light.h"
+#include "lights/light_table.h"
+
+#include <algorithm>
+
+namespace vdbeam {
+
+namespace {
+
+/// Half the width of the first box about the medium in radii of the medium, and how much wider each
+/// further box is.
+constexpr double first_box = 1.5, next_box = 4;
+/// Boxes beyond so many are one.
+constexpr std::size_t most_boxes = 64;
+constexpr int most_targets = 8;
+/// Photons that find out how much of an aim's light counts.
+constexpr std::uint64_t trial_photons = 512;
+
+/// A flat box has no inside at which photons can be aimed.
+Parallelepiped thick_box(const Boxd& box) {
+  const Vec3d margin = Vec3d(1e-3 * max_component(box.size()) + 1e-9);
+  const Vec3d lower = box.lower - margin, size = box.size() + margin * 2.0;
+  return {Vec3f(lower),
+          {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
+}
+
+Boxd bounds_of(const Parallelepiped& box) {
+  Boxd bounds;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3f point = box.corner;
+    for (int i = 0; i < 3; ++i)
+      if (corner >> i & 1)
+        point += box.edges[static_cast<std::size_t>(i)];
+    bounds.extend(Vec3d(point));
+  }
+  return bounds;
+}
+
+bool contains(const Boxd& box, const Boxd& other) {
+  for (int i = 0; i < 3; ++i)
+    if (!(other.lower[i] >= box.lower[i] && other.upper[i] <= box.upper[i]))
+      return false;
+  return true;
+}
+
+/// The surfaces within a box, and the medium's boxes.
+OccupiedRegion region_within(const Boxd& box, const OccupiedRegion& medium,
+                             const SurfaceSet& surfaces) {
+  OccupiedRegion region;
+  Boxd all;
+  std::vector<Boxd> parts;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Boxd whole = surfaces.bounds(i);
+    const Boxd part{max(whole.lower, box.lower), min(whole.upper, box.upper)};
+    if (part.lower.x <= part.upper.x && part.lower.y <= part.upper.y &&
+        part.lower.z <= part.upper.z)
+      parts.push_back(part);
+  }
+  for (const Boxd& part : parts) {
+    all.extend(part.lower);
+    all.extend(part.upper);
+  }
+  if (parts.size() > most_boxes)
+    parts = {all};
+  for (const Boxd& part : parts)
+    region.boxes.push_back(thick_box(part));
+  for (const Parallelepiped& own : medium.boxes) {
+    const Boxd bounds = bounds_of(own);
+    all.extend(bounds.lower);
+    all.extend(bounds.upper);
+    region.boxes.push_back(own);
+  }
+  region.center = Vec3f(all.center());
+  region.radius = static_cast<float>(0.5 * length(all.size()) * 1.01);
+  return region;
+}
+
+/// Whether a line from its origin on meets one of the boxes.
+bool meets(const std::vector<Parallelepiped>& boxes, const Ray& ray) {
+  for (const Parallelepiped& box : boxes) {
+    const float volume = dot(box.edges[0], cross(box.edges[1], box.edges[2]));
+    float enter = 0, leave = infinity;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3f dual = cross(box.edges[(i + 1) % 3], box.edges[(i + 2) % 3]) / volume;
+      const float x = dot(dual, ray.origin - box.corner), slope = dot(dual, ray.direction);
+      if (slope == 0) {
+        if (x < 0 || x > 1)
+          leave = -1;
+        continue;
+      }
+      const float a = -x / slope, b = (1 - x) / slope;
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (enter < leave)
+      return true;
+  }
+  return false;
+}
+
+/// Whether a line from its origin on meets a cell in which there may be medium.
+bool meets(const Medium& medium, const Ray& ray) {
+  const Segment segment = medium.clip({ray});
+  if (segment.empty())
+    return false;
+  for (const Volume& volume : medium.volumes)
+    for (GridTraversal walk = volume.traverse(segment); !walk.done(); walk.advance()) {
+      const Vec3<int>& cell = walk.cell();
+      if (volume.majorants[volume.field.cell_offset(cell.x, cell.y, cell.z)] > 0)
+        return true;
+    }
+  return false;
+}
+
+bool meets_target(const World& world, std::size_t target, const Ray& ray) {
+  return target == 0 && !world.medium.empty() ? meets(world.medium, ray)
+                                              : meets(world.targets[target].boxes, ray);
+}
+
+/// Shares of the photons: half as many for each target after the medium, but no more than the flux
+/// that counts there in units of that to the medium.
+void share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
+  std::vector<double> weights;
+  double sum = 0, to_medium = 0;
+  for (std::size_t i = 0; i < aims.size(); ++i) {
+    double flux = 0;
+    for (std::uint64_t n = 0; n < trial_photons; ++n) {
+      Rng rng({}, RngStage::light, n);
+      EmittedPhoton photon =
+          aims[i].light->emit((static_cast<double>(n) + 0.5) / trial_photons, rng);
+      photon.first_target = aims[i].first_target;
+      photon.last_target = aims[i].last_target;
+      if (counts_for_its_target(world, photon))
+        flux += static_cast<double>(max_component(photon.flux));
+    }
+    if (i == 0)
+      to_medium = flux;
+    const double relative = to_medium > 0 ? std::min(1.0, flux / to_medium) : 1;
+    constexpr double least = 1e-3;
+    weights.push_back(i == 0 ? 1 : std::max(least, relative) * std::exp2(-static_cast<double>(i)));
+    sum += weights.back();
+  }
+  for (std::size_t i = 0; i < aims.size(); ++i)
+    aims[i].share = weights[i] / sum;
+}
+
+} // namespace
+
+std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,
+                                           const SurfaceSet& surfaces) {
+  std::vector<OccupiedRegion> targets;
+  const Boxd everywhere{Vec3d(-1e300), Vec3d(1e300)};
+  if (!medium.boxes.empty()) {
+    targets.push_back(medium);
+    double half = first_box * static_cast<double>(medium.radius);
+    const Vec3d center(medium.center);
+    while (static_cast<int>(targets.size()) + 1 < most_targets) {
+      const Boxd box{center - Vec3d(half), center + Vec3d(half)};
+      if (contains(box, surfaces.bounds()))
+        break;
+      OccupiedRegion region = region_within(box, medium, surfaces);
+      if (region.boxes.size() > medium.boxes.size())
+        targets.push_back(std::move(region));
+      half *= next_box;
+    }
+  }
+  targets.push_back(region_within(everywhere, medium, surfaces));
+  return targets;
+}
+
+bool counts_for_its_target(const World& world, const EmittedPhoton& photon) {
+  const auto first = static_cast<std::size_t>(photon.first_target);
+  const auto last = static_cast<std::size_t>(photon.last_target);
+  for (std::size_t target = 0; target < first; ++target)
+    if (meets_target(world, target, photon.ray))
+      return false;
+  if (last + 1 >= world.targets.size()) // beyond the last there is nothing to be met
+    return true;
+  for (std::size_t target = first; target <= last; ++target)
+    if (meets_target(world, target, photon.ray))
+      return true;
+  return false;
+}
+
+void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& up,
+                      std::vector<std::string>& notes, World& world) {
+  const auto count = static_cast<int>(world.targets.size());
+  for (const LightSettings& light : settings) {
+    const LightKind& kind = light_kind(light.type);
+    std::vector<AimedLight::Aim> aims;
+    for (int target = 0; target < count; ++target) {
+      const LightContext context{up, world.space, world.targets[static_cast<std::size_t>(target)],
+                                 target == 0 ? &notes : nullptr,
+                                 target == 0 ? nullptr : aims[0].light.get()};
+      aims.push_back({kind.make(light, context), target, target, 1});
+    }
+    share_out(world, aims);
+    world.lights.add(std::make_unique<AimedLight>(std::move(aims)),
+                     {light.visible, kind.surrounds, kind.wants_shadow_rays(light)});
+  }
+}
+
+std::unique_ptr<Light>
+aim_surface_light(const World& world,
+                  const std::function<std::unique_ptr<Light>(const OccupiedRegion*)>& make) {
+  const auto count = static_cast<int>(world.targets.size());
+  if (world.medium.empty() || count < 2)
+    return make(nullptr);
+  std::vector<AimedLight::Aim> aims;
+  aims.push_back({make(&world.targets[0]), 0, 0, 1});
+  aims.push_back({make(nullptr), 1, count - 1, 1});
+  share_out(world, aims);
+  return std::make_unique<AimedLight>(std::move(aims));
+}
+
+} // namespace vdbeam
