@@ -64,20 +64,6 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
   return way;
 }
 
-/// The ray that leaves a surface, up to the next.
-CameraRay next_ray(const World& world, const Vec3d& origin, const Vec3f& direction) {
-  CameraRay ray;
-  ray.segment.ray = {Vec3f(origin), direction};
-  ray.hit =
-      world.surfaces->set->intersect(origin, Vec3d(direction), 0, static_cast<double>(infinity));
-  ray.segment.t_end = world.surfaces->medium_end(ray.hit, direction);
-  if (world.medium.visible())
-    ray.segment = world.medium.clip(ray.segment);
-  else
-    ray.segment.t_end = 0;
-  return ray;
-}
-
 } // namespace
 
 /// A camera ray that goes on from surface to surface.
@@ -214,7 +200,7 @@ Rgb SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
     const MaterialSample way = vertex.both_ways(Carried::radiance, rng).refracted;
     if (!(max_component(way.weight) > 0))
       continue;
-    const CameraRay ray = next_ray(world_, vertex.hit().leave(way.wi), way.wi);
+    const CameraRay ray = ray_from_surface(world_, vertex.hit().leave(way.wi), way.wi);
     if (!ray.hit)
       continue;
     const SurfaceVertex next(*world_.surfaces, *ray.hit, way.wi);
@@ -255,7 +241,7 @@ Rgb SurfaceShading::follow(Chain chain) const {
   Rgb sum;
   DepthProfile profile;
   while (chain.survives_roulette() && chain.length.survive(chain.throughput, chain.rng)) {
-    const CameraRay ray = next_ray(world_, chain.origin, chain.direction);
+    const CameraRay ray = ray_from_surface(world_, chain.origin, chain.direction);
     profile.build(world_.medium, ray.segment, cutoff_);
     const Rgb tr = transmittance(world_.medium, profile);
     const Rgb lamps = left_of_lamps(profile);

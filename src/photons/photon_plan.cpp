@@ -148,7 +148,7 @@ PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& 
   settings.store = input.settings.store;
   settings.store_probability = static_cast<float>(plan.store_probability);
   settings.store_probability_by_cell = plan.store_probability_by_cell;
-  if (plan.store_probability_by_cell)
+  if (plan.store_probability_by_cell && sees_directly(world))
     settings.camera = input.camera;
   settings.guide = plan.guide;
   settings.skip_first_flight = plan.sampled_lights;

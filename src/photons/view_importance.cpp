@@ -34,9 +34,9 @@ Rgb hidden_channels(const Medium& medium) {
 }
 
 /// Raises the cells that the ray meets to the transmittance with which it enters them, of the
-/// clearest channel that is not hidden.
-void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, const Ray& ray,
-                const DepthProfile& profile, std::vector<float>& table) {
+/// clearest channel that is not hidden, times `weight`.
+void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, float weight,
+                const Ray& ray, const DepthProfile& profile, std::vector<float>& table) {
   const DensityField& field = medium.volumes[volume].field;
   ProfileCursor cursor(profile);
   GridTraversal walk = medium.volumes[volume].traverse({ray, profile.front(), profile.back()});
@@ -47,9 +47,69 @@ void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, con
       tau += medium.volumes[v].channel_scale * cursor.tau(v);
     const Vec3<int>& cell = walk.cell();
     raise(table[field.cell_offset(cell.x, cell.y, cell.z)],
-          std::exp(-std::min(tau.x, std::min(tau.y, tau.z))));
+          weight * std::exp(-std::min(tau.x, std::min(tau.y, tau.z))));
   }
 }
+
+/// A way that light takes to the camera, from the camera on.
+struct Sight {
+  CameraRay ray;
+  float weight = 1; ///< of what is seen at its end, in the strongest channel
+  int mirrors = 0;  ///< that it has met
+};
+
+/// Marks what camera rays see, behind mirrors and glass too.
+class ViewMarker {
+public:
+  ViewMarker(const World& world, float floor, CellTables& tables)
+      : world_(world), floor_(floor), hidden_(hidden_channels(world.medium)), tables_(tables) {}
+
+  /// `number`: of the ray, from which its random numbers follow.
+  void mark(const CameraRay& ray, std::uint64_t number, DepthProfile& profile) const {
+    const Medium& medium = world_.medium;
+    Rng rng({}, RngStage::line, number);
+    std::vector<Sight> sights{{ray}};
+    while (!sights.empty()) {
+      const Sight sight = std::move(sights.back());
+      sights.pop_back();
+      profile.build(medium, sight.ray.segment, floor_);
+      for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
+        mark_cells(medium, v, hidden_, sight.weight, sight.ray.segment.ray, profile, tables_[v]);
+      if (sight.ray.hit && sight.mirrors < most_mirrors)
+        go_on(sight, rng, sights);
+    }
+  }
+
+private:
+  static constexpr int most_mirrors = 6;
+
+  /// The ways on from the surface at which the ray ends.
+  void go_on(const Sight& sight, Rng& rng, std::vector<Sight>& sights) const {
+    const SurfaceVertex vertex(*world_.surfaces, *sight.ray.hit, sight.ray.ray().direction);
+    const Material& material = vertex.material();
+    if (!material.shows_surroundings())
+      return;
+    std::vector<MaterialSample> ways;
+    if (material.is_specular()) {
+      const SpecularBranches both = vertex.branches(Carried::radiance);
+      ways = {both.reflected, both.refracted};
+    } else {
+      ways = {vertex.sample(Carried::radiance, rng)};
+    }
+    for (const MaterialSample& way : ways) {
+      const float weight = sight.weight * max_component(way.weight * vertex.absorbed());
+      if (!(weight > floor_))
+        continue;
+      sights.push_back({ray_from_surface(world_, vertex.hit().leave(way.wi), way.wi), weight,
+                        sight.mirrors + 1});
+    }
+  }
+
+  const World& world_;
+  float floor_;
+  Rgb hidden_;
+  CellTables& tables_;
+};
 
 /// Lets values fall no faster than to `falls[axis]` from cell to cell along each axis of the grid.
 void spread(const Vec3<int>& counts, const Vec3f& falls, std::vector<float>& table) {
@@ -99,17 +159,17 @@ CellTables view_importance(const World& world, const Camera& camera, float reach
   const double spacing = static_cast<double>(longer) / rays_across;
   const int columns = static_cast<int>(std::ceil(camera.width() / spacing));
   const int rows = static_cast<int>(std::ceil(camera.height() / spacing));
-  const Rgb hidden = hidden_channels(medium);
+  const ViewMarker marker(world, floor, tables);
   tbb::enumerable_thread_specific<DepthProfile> profiles;
   tbb::parallel_for(0, rows, [&](int row) {
     DepthProfile& profile = profiles.local();
     for (int column = 0; column < columns; ++column) {
       const EyeRay eye = camera.ray((column + 0.5) * camera.width() / columns,
                                     (row + 0.5) * camera.height() / rows);
-      const CameraRay ray = camera_ray(world, camera, eye);
-      profile.build(medium, ray.segment, floor);
-      for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
-        mark_cells(medium, v, hidden, ray.segment.ray, profile, tables[v]);
+      marker.mark(camera_ray(world, camera, eye),
+                  static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(columns) +
+                      static_cast<std::uint64_t>(column),
+                  profile);
     }
   });
   rays += static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);

@@ -15,7 +15,7 @@ constexpr double most_factor = 4;
 /// towards the camera, of the volume for which that is most.
 std::vector<float> worth_of(const World& world, const Camera& camera, const CellTables& importance,
                             const PhotonList& photons) {
-  if (photons.direction.empty())
+  if (photons.direction.empty() || !sees_directly(world))
     return view_importance_at(world, importance, photons);
   std::vector<float> values(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)

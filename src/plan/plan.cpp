@@ -89,12 +89,11 @@ private:
              {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
              {!needs_.photons, "single bounce, all by shadow rays"},
              {true, "light scatters in the medium: photons carry it"}}));
-    const bool importance = needs_.photons && sees && by_view && !needs_.specular;
+    const bool importance = needs_.photons && sees && by_view;
     add(Stage::photon_importance, importance,
         first_reason({{!needs_.photons, no_photons},
                       {!sees, "the estimator stores photons whatever the camera sees"},
                       {!by_view, "photons are stored evenly, as asked for"},
-                      {needs_.specular, "mirrors or glass show more than camera rays meet"},
                       {true, "photons are stored where the camera sees them"}}));
     // Where photons may serve frames with other views, kernels must not depend on the view either.
     const bool pilot = importance && runs(Stage::kernel_pilot) &&
@@ -106,7 +105,6 @@ private:
                       {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"},
                       {render.neighbours > 0, "render.neighbours is given"},
                       {render.store != PhotonStore::fluence, "it needs fluence photons"},
-                      {needs_.specular, "photons are stored evenly"},
                       {true, "photons do not depend on the view"}}));
     add(Stage::surface_photons, needs_.surface_photons,
         first_reason(

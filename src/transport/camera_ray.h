@@ -46,6 +46,17 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeR
   return result;
 }
 
+/// The ray that leaves a surface, up to the next.
+inline CameraRay ray_from_surface(const World& world, const Vec3d& origin, const Vec3f& direction) {
+  CameraRay ray;
+  ray.segment = flight_segment(world, origin, direction, ray.hit);
+  if (world.medium.visible())
+    ray.segment = world.medium.clip(ray.segment);
+  else
+    ray.segment.t_end = 0;
+  return ray;
+}
+
 /// False only where no ray of the camera can meet the medium or an emitting volume.
 inline bool may_see_medium(const World& world, const Camera& camera) {
   const Boxf& box = world.medium.bounds;

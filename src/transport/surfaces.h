@@ -5,6 +5,7 @@
 #include "materials/material.h"
 #include "transport/surface_store.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Surfaces {
   /// Of meshes, trees and textures.
   std::size_t bytes() const;
   std::vector<Boxd> solids; ///< bounds of the surfaces inside of which there is no medium
+
+  /// Some surface is a mirror, glass, or metal that is not very rough.
+  bool show_surroundings() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const auto& material) { return material->shows_surroundings(); });
+  }
 
   /// How far from its beginning a flight that ends there meets the medium. Within a solid, whose
   /// surface is the next of a solid that the flight, or its continuation, meets, and from the back,

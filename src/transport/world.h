@@ -21,6 +21,12 @@ struct World {
   std::vector<OccupiedRegion> targets;      ///< of photons, in a scene with surfaces
 };
 
+/// Whether the camera sees all of what it sees of the medium by its rays, and nothing by way of
+/// mirrors or glass.
+inline bool sees_directly(const World& world) {
+  return !world.surfaces || !world.surfaces->show_surroundings();
+}
+
 /// No surface stands between a point and a light, or another point, at a distance along
 /// `direction`. What lies within 1e-4 of the distance before its end does not count: it is the end.
 inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& direction,
