@@ -17,7 +17,7 @@ bool stores_scattered_flux(const Facts& facts) {
   return facts.input.settings.store == PhotonStore::scatter;
 }
 bool limits_bounces(const Facts& facts) {
-  return facts.input.settings.max_bounces.has_value();
+  return facts.input.settings.max_bounces && facts.input.reaches_bounce_limit;
 }
 bool shoots_no_photons(const Facts& facts) {
   return !facts.kind.shoots_photons();

@@ -140,6 +140,20 @@ std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const Photon
   return static_cast<std::uint64_t>(std::clamp(wanted, paths, most_for_hidden_lights * paths));
 }
 
+bool reach_bounce_limit(const EstimatorInput& input) {
+  if (!input.settings.max_bounces || !input.plan.needs(Stage::photons))
+    return input.settings.max_bounces.has_value();
+  constexpr std::uint64_t probe_paths = 128;
+  constexpr double seen_share = 1e-3;
+  PhotonPassSettings pass = pass_settings(input, default_photon_plan(input), limit_pass);
+  pass.paths = probe_paths;
+  pass.store_probability = 0;
+  const double within = trace_photons(input.world, pass).mean_collisions;
+  pass.max_bounces.reset(); // the same paths, to their end
+  const double all = trace_photons(input.world, pass).mean_collisions;
+  return all - within > seen_share * all;
+}
+
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,
                                  std::uint64_t pass) {
   const World& world = input.world;

@@ -73,11 +73,15 @@ inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,
-                               sight_pass = guide_pass - 2;
+                               sight_pass = guide_pass - 2, limit_pass = guide_pass - 3;
 
 /// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
 /// bring, since a path from a surface may not meet it.
 std::vector<bool> lights_of_surfaces(const EstimatorInput& input);
+
+/// Whether light paths reach the scene's limit of bounces: by a few of them, a thousandth of whose
+/// collisions at least lie beyond it.
+bool reach_bounce_limit(const EstimatorInput& input);
 
 /// How photons of a pass are traced and stored.
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,

@@ -33,6 +33,8 @@ struct EstimatorTask {
   /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
   /// belong to the matte, which groups do not change. Null: the world has them all.
   const LightSet* all_lights = nullptr;
+  /// Light paths reach the limit of bounces often enough to be seen, where there is one.
+  bool reaches_bounce_limit = true;
 };
 
 /// What every estimator is made from; the references must outlive it.

@@ -4,6 +4,7 @@
 #include "choose/schedule.h"
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "photons/photon_plan.h"
 #include "prepare/read_volumes.h"
 #include "render/bias_probe.h"
 
@@ -43,6 +44,7 @@ FrameSetup::FrameSetup(const Scene& scene, const PreparedScenePtr& prepared,
   }
   if (layers.planes() > 0)
     input.layers = &layers;
+  input.reaches_bounce_limit = reach_bounce_limit(input);
 }
 
 RenderPlan FrameSetup::with_sizes(RenderPlan sized) const {
