@@ -300,6 +300,8 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   if (world.surfaces)
     add_surface_lights(scene.surfaces, world);
   add_volume_lights(world);
+  if (world.surfaces && !world.medium.emitters.empty())
+    world.emission = std::make_shared<const EmissionDirections>(world.medium.emitters);
   if (facts)
     *facts = std::move(found);
   return world;

@@ -2,6 +2,7 @@
 
 #include "camera/camera.h"
 #include "grids/emission_grid.h"
+#include "lights/emission_directions.h"
 #include "lights/light_set.h"
 #include "medium/medium.h"
 #include "transport/surfaces.h"
@@ -19,6 +20,8 @@ struct World {
   OccupiedRegion region;                    ///< of the medium
   std::shared_ptr<const Surfaces> surfaces; ///< null: there are none
   std::vector<OccupiedRegion> targets;      ///< of photons, in a scene with surfaces
+  /// Towards what glows in the medium, where surfaces may see it; else null.
+  std::shared_ptr<const EmissionDirections> emission;
 };
 
 /// Whether the camera sees all of what it sees of the medium by its rays, and nothing by way of

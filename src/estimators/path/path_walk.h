@@ -73,8 +73,9 @@ public:
                    bool emits = true) const;
 
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
-  /// shadow rays, weighted against the direction that `vertex` draws.
-  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const;
+  /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of
+  /// this tracer does, the walk.
+  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng, bool goes_on_as_walk = false) const;
   bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
 
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
@@ -97,6 +98,9 @@ private:
   bool scatter(PathWalk& walk, const Vec3f& direction) const;
   bool meet_surface(PathWalk& walk) const;
   bool bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first) const;
+  bool looks_for_emission(const SurfaceVertex& vertex) const;
+  float surface_density(const SurfaceVertex& vertex, const Vec3f& wi) const;
+  MaterialSample leave_surface(const SurfaceVertex& vertex, Rng& rng) const;
   bool outlives_roulette(PathWalk& walk) const;
   float flight_density(const PathWalk& walk, const Vec3f& direction) const;
   void gather_light(PathWalk& walk, float medium_end, float t_end) const;

@@ -55,8 +55,8 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   const bool counts_straight =
       !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
   if (counts_straight)
-    walk.add(lights_at_surface(vertex, walk.rng) * walk.throughput);
-  const MaterialSample next = vertex.sample(Carried::radiance, walk.rng);
+    walk.add(lights_at_surface(vertex, walk.rng, true) * walk.throughput);
+  const MaterialSample next = leave_surface(vertex, walk.rng);
   walk.throughput *= next.weight;
   walk.refraction *= next.refraction;
   if (!survive_roulette(walk.least_weight * walk.refraction, walk.throughput, walk.rng) ||
@@ -69,13 +69,53 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   return true;
 }
 
-Rgb WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng) const {
+/// Half of the walks leave a surface towards what glows in the medium.
+bool WalkTracer::looks_for_emission(const SurfaceVertex& vertex) const {
+  const Material& material = vertex.material();
+  return world_.emission && !material.is_specular() && !material.refracts();
+}
+
+/// Density with which a walk leaves a surface in this direction.
+float WalkTracer::surface_density(const SurfaceVertex& vertex, const Vec3f& wi) const {
+  const float own = vertex.pdf(wi);
+  if (!looks_for_emission(vertex))
+    return own;
+  return 0.5f * (own + world_.emission->pdf(Vec3f(vertex.hit().position), wi));
+}
+
+/// Draws the direction in which a walk leaves a surface.
+MaterialSample WalkTracer::leave_surface(const SurfaceVertex& vertex, Rng& rng) const {
+  if (!looks_for_emission(vertex))
+    return vertex.sample(Carried::radiance, rng);
+  MaterialSample next;
+  if (rng.uniform() < 0.5f) {
+    const auto towards = world_.emission->sample(Vec3f(vertex.hit().position), rng);
+    if (!towards)
+      return {};
+    next.wi = towards->wi;
+  } else {
+    next = vertex.sample(Carried::radiance, rng);
+    if (!(max_component(next.weight) > 0))
+      return {};
+  }
+  next.pdf = surface_density(vertex, next.wi);
+  next.weight = next.pdf > 0 ? vertex.evaluate(next.wi) / next.pdf : Rgb();
+  // A faint walk that was sent to bright light on purpose is no loss.
+  if (const float own = vertex.pdf(next.wi); own < next.pdf)
+    next.refraction *= std::max(own / next.pdf, 1e-6f);
+  return next;
+}
+
+Rgb WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
+                                  bool goes_on_as_walk) const {
   Rgb sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     if (!shadow_rays_[i])
       continue;
-    const auto shadow_ray = sample_shadow_ray(world_.lights[i], Vec3f(vertex.hit().position), rng,
-                                              [&](const Vec3f& wi) { return vertex.pdf(wi); });
+    const auto shadow_ray = sample_shadow_ray(
+        world_.lights[i], Vec3f(vertex.hit().position), rng, [&](const Vec3f& wi) {
+          return goes_on_as_walk ? surface_density(vertex, wi) : vertex.pdf(wi);
+        });
     if (!shadow_ray)
       continue;
     const Vec3f& wi = shadow_ray->direction;
