@@ -30,6 +30,9 @@ struct RenderResult {
   PictureFacts picture;           ///< of a whole picture; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
   bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
+  /// Where the time limit left no time for a pass: the picture was rendered in 1 / so many of its
+  /// pixels each way, and enlarged; else 0.
+  int draft = 0;
 };
 
 /// Passes first to last, both included, counted from 0.
@@ -71,7 +74,7 @@ struct RenderHooks {
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
   std::function<void(RenderResult&)> on_snapshot;
-  /// Gets a quick look before the first pass, which takes a quarter of a second.
+  /// Gets a quick look before the first pass, which takes a part of the time of a pass.
   std::function<void(RenderResult&)> on_quick_look;
 };
 

@@ -82,6 +82,8 @@ std::string picture_text(const PictureFacts& facts) {
 }
 
 std::string end_text(const RenderResult& result, const std::string& output) {
+  if (result.draft > 0)
+    return fmt::format("{}: a draft in 1/{} of the pixels each way", output, result.draft);
   const PassRecord& last = result.passes.back();
   std::string text = fmt::format("{}: {}{} in {}", output, passes_text(last.pass),
                                  estimators_text(result), format_duration(last.seconds));
@@ -294,7 +296,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
       attempt(write_report);
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
-    if (!result.quick_look)
+    if (!result.quick_look && result.draft == 0)
       remove_side_files(loaded.frame());
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);

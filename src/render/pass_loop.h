@@ -2,6 +2,7 @@
 
 #include "film/film_file.h"
 #include "machine/stopwatch.h"
+#include "render/draft.h"
 #include "render/shutter.h"
 
 #include <chrono>
@@ -23,7 +24,11 @@ public:
   /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
   /// plan of the path estimator (plan_paths).
   void show_quick_look(EstimatorInput input);
-  /// `quick_look` is the input of the quick look that stands for a picture without any pass.
+  /// Renders a draft, shows it to the caller, and goes on with it where the time limit leaves no
+  /// time for a pass; false where passes are to follow. `full` is the input of the estimators.
+  bool draft(const PreparedScenePtr& prepared, const EstimatorInput& full);
+  /// `quick_look` is the input of the quick look that stands for a picture without any pass and
+  /// without a draft.
   void run(Shutter& shutter, const EstimatorInput& quick_look);
 
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
@@ -55,6 +60,12 @@ private:
   void set_deadline();
   void render_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
+  void take_picture(PassImage& image);
+  void take_draft(const EstimatorInput& full);
+  template <class Take>
+  void show(const Take& take);
+  bool may_draft() const;
+  int affordable_reduction() const;
   double limit_seconds() const;
   void note(const std::string& line);
   double seconds() const;
@@ -71,9 +82,10 @@ private:
   /// Seconds count from here, so that what an estimator tries out before its first pass is in them.
   Clock::time_point start_ = Clock::now();
   StopToken stop_;
-  double earlier_seconds_ = 0; ///< of the passes that came from a checkpoint
-  double shortest_pass_ = 0;   ///< [s] of those rendered here; 0: there is none
-  PassImage image_;            ///< of the pass in progress
+  double earlier_seconds_ = 0;   ///< of the passes that came from a checkpoint
+  double shortest_pass_ = 0;     ///< [s] of those rendered here; 0: there is none
+  PassImage image_;              ///< of the pass in progress
+  std::unique_ptr<Draft> draft_; ///< with a pass at least; null: there is none
   std::uint64_t photons_before_ = 0;
   Stopwatch since_attempt_; ///< to write a checkpoint
   int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;

@@ -158,6 +158,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   DeepLayout deep;
   cut_deep_rays(scene, setup, loop, deep);
   const EstimatorInput path_input = setup.path_input();
+  if (loop.draft(prepared, setup.input))
+    return result;
   loop.show_quick_look(path_input);
   EstimatorChoice choice = choose_for_frame(scene, setup, result.plan, result.statistics);
   const bool path = choice.type == EstimatorType::path;
@@ -184,7 +186,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
     note("render.estimator = \"gather\" gathers along camera rays here: " +
          reason_of(final_gather_feature, result.plan));
   loop.run(shutter, path_input);
-  if (result.quick_look || frame.pass_range)
+  if (result.quick_look || result.draft > 0 || frame.pass_range)
     return result;
   result.picture = picture_facts(result.image, sight);
   if (!scene.lights.empty() || scene.glows()) // the scene's own note says that there is no light

@@ -150,6 +150,10 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "not one pass was finished";
     image.numbers["vdbeam:passes"] = 0;
+  } else if (result.draft > 0) {
+    image.numbers["vdbeam:draft"] = result.draft;
+    image.numbers["vdbeam:passes"] = 0;
+    image.integers.insert("vdbeam:draft");
   } else if (result.stopped_by != "stop")
     image.numbers["vdbeam:complete"] = 1; // what --skip-existing looks for
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);

@@ -209,6 +209,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
                        {"over_one", number(result.picture.over_one)}};
   report["stopped_by"] = result.stopped_by;
   report["quick_look"] = result.quick_look;
+  report["draft"] = result.draft;
   report["resumed_passes"] = result.resumed_passes;
   report["passes"] = passes_json(result);
   return report;

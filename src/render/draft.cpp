@@ -1,0 +1,180 @@
+#include "render/draft.h"
+
+#include "machine/stopwatch.h"
+#include "rays/profile_shading.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// How far a pixel looks for others of its surface, in pixels of the draft.
+constexpr int farthest = 3;
+/// The light of a pixel is at most so many times that of the draft's pixels around it: where the
+/// draft has missed a wisp it has missed its light, too.
+constexpr float greatest_gain = 2;
+
+/// The same scene in fewer pixels, of the same shape together, and without what drafts leave out.
+Scene reduced(const Scene& scene, int reduction) {
+  Scene small = scene;
+  ImageSettings& image = small.image;
+  const auto fewer = [&](int pixels) { return (pixels + reduction - 1) / reduction; };
+  const double shape = static_cast<double>(image.width) / image.height;
+  image.width = fewer(image.width);
+  image.height = fewer(image.height);
+  image.pixel_aspect *= shape * image.height / image.width;
+  image.deep = image.cryptomatte = false;
+  small.layers.clear();
+  small.moments.clear();
+  for (LightSettings& light : small.lights)
+    light.group.clear();
+  return small;
+}
+
+/// The ray through the middle of a pixel, and its profile.
+CameraRay middle_ray(const EstimatorInput& input, int x, int y, DepthProfile& profile) {
+  const CameraRay ray = camera_ray(input.world, input.camera, input.camera.ray(x + 0.5, y + 0.5));
+  profile.build(input.world.medium, ray.segment, static_cast<float>(input.settings.cutoff));
+  return ray;
+}
+
+void add(const PassImage& image, PassImage& sum) {
+  const auto add_all = [](const auto& values, auto& sums) {
+    std::transform(sums.begin(), sums.end(), values.begin(), sums.begin(), std::plus<>());
+  };
+  add_all(image.direct, sum.direct);
+  add_all(image.indirect, sum.indirect);
+  add_all(image.background, sum.background);
+  add_all(image.emission, sum.emission);
+  add_all(image.opacity, sum.opacity);
+}
+
+} // namespace
+
+/// What a pixel of the draft holds, per opacity or transmittance.
+struct Draft::Seen {
+  float opacity = 0; ///< of the medium
+  Rgb direct, indirect, emission;
+  int surface = -1; ///< at which its middle ray ends
+  Rgb radiance;     ///< of that surface
+};
+
+Draft::Draft(const Scene& scene, const PreparedScenePtr& prepared, int reduction,
+             const StopToken& stop)
+    : scene_(reduced(scene, reduction)), reduction_(reduction) {
+  const Stopwatch watch;
+  setup_ = std::make_unique<FrameSetup>(
+      scene_, prepared,
+      PixelRegion{0, 0, scene_.image.raster_width(), scene_.image.raster_height()});
+  setup_->input.stop = &stop;
+  const bool path = scene.render.estimator == EstimatorType::path;
+  renderer_ = std::make_unique<FramePasses>(scene.render.estimator,
+                                            path ? setup_->path_input() : setup_->input);
+  pilot_seconds_ = watch.seconds();
+}
+
+bool Draft::add_pass() {
+  const Stopwatch watch;
+  PassImage image;
+  RenderStatistics uncounted;
+  if (!setup_->input.stopped())
+    renderer_->render_pass(passes_, image, uncounted);
+  if (setup_->input.stopped())
+    return false;
+  if (passes_ == 0)
+    sum_ = std::move(image);
+  else
+    add(image, sum_);
+  ++passes_;
+  pass_seconds_ = watch.seconds();
+  return true;
+}
+
+/// What the draft's pixels hold.
+std::vector<Draft::Seen> Draft::look_through() const {
+  const EstimatorInput& input = setup_->input;
+  std::vector<Seen> pixels(sum_.direct.size());
+  const float share = 1 / static_cast<float>(passes_);
+  tbb::parallel_for(0, sum_.height, [&](int y) {
+    DepthProfile profile;
+    for (int x = 0; x < sum_.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(sum_.width) +
+                            static_cast<std::size_t>(x);
+      Seen& seen = pixels[i];
+      const CameraRay ray = middle_ray(input, x, y, profile);
+      // Of its own rays, unless a surface has made them opaque.
+      seen.opacity = input.world.surfaces ? opacity_and_depth(input.world, ray, profile).opacity
+                                          : sum_.opacity[i] * share;
+      seen.direct = sum_.direct[i] * share;
+      seen.indirect = sum_.indirect[i] * share;
+      if (!sum_.emission.empty())
+        seen.emission = sum_.emission[i] * share;
+      const Rgb tr = transmittance(input.world.medium, profile);
+      if (ray.hit && max_component(tr) > 0.01f) {
+        seen.surface = ray.hit->surface;
+        seen.radiance = sum_.background[i] * (share / mean_component(tr));
+      }
+    }
+  });
+  return pixels;
+}
+
+PassImage Draft::enlarged(const EstimatorInput& full) const {
+  const std::vector<Seen> seen = look_through();
+  PassImage image;
+  const Camera& camera = full.camera;
+  image.resize(camera.width(), camera.height(), !full.world.medium.emitters.empty());
+  const double step_x = static_cast<double>(sum_.width) / camera.width(),
+               step_y = static_cast<double>(sum_.height) / camera.height();
+  tbb::parallel_for(full.window.y0, full.window.y1, [&](int y) {
+    DepthProfile profile;
+    for (int x = full.window.x0; x < full.window.x1; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+          static_cast<std::size_t>(x);
+      const CameraRay ray = middle_ray(full, x, y, profile);
+      const double at_x = (x + 0.5) * step_x - 0.5, at_y = (y + 0.5) * step_y - 0.5;
+      Seen mean;
+      float weights = 0;
+      const int reach = ray.hit ? farthest : 1;
+      for (int j = std::max(0, static_cast<int>(std::floor(at_y)) - reach + 1);
+           j <= std::min(sum_.height - 1, static_cast<int>(std::floor(at_y)) + reach); ++j)
+        for (int i = std::max(0, static_cast<int>(std::floor(at_x)) - reach + 1);
+             i <= std::min(sum_.width - 1, static_cast<int>(std::floor(at_x)) + reach); ++i) {
+          const Seen& other =
+              seen[static_cast<std::size_t>(j) * static_cast<std::size_t>(sum_.width) +
+                   static_cast<std::size_t>(i)];
+          const auto tent = [](double d) { return static_cast<float>(std::max(0.0, 1 - d)); };
+          const double dx = std::abs(i - at_x), dy = std::abs(j - at_y);
+          const float near = tent(dx) * tent(dy);
+          mean.opacity += near * other.opacity;
+          mean.direct += other.direct * near;
+          mean.indirect += other.indirect * near;
+          mean.emission += other.emission * near;
+          if (ray.hit && other.surface == ray.hit->surface) {
+            const float far = near + 1e-3f * tent(std::max(dx, dy) / (farthest + 1));
+            mean.radiance += other.radiance * far;
+            weights += far;
+          }
+        }
+      SeenSurface surface;
+      if (weights > 0)
+        surface.radiance = mean.radiance / weights;
+      shade_profile(full, ray, profile, pixel, image, surface);
+      const float opacity = opacity_and_depth(full.world, ray, profile).opacity;
+      const float of_medium =
+          opacity > 0 ? opacity / std::max(mean.opacity, opacity / greatest_gain) : 0;
+      image.direct[pixel] = mean.direct * of_medium;
+      image.indirect[pixel] = mean.indirect * of_medium;
+      if (!image.emission.empty()) // glows where nothing may be opaque
+        image.emission[pixel] = mean.emission;
+    }
+  });
+  return image;
+}
+
+} // namespace vdbeam
