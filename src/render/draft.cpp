@@ -57,7 +57,7 @@ void add(const PassImage& image, PassImage& sum) {
 
 /// What a pixel of the draft holds, per opacity or transmittance.
 struct Draft::Seen {
-  float opacity = 0; ///< of the medium
+  float opacity = 0, depth = 0; ///< of the medium, as in PassImage
   Rgb direct, indirect, emission;
   int surface = -1; ///< at which its middle ray ends
   Rgb radiance;     ///< of that surface
@@ -106,9 +106,10 @@ std::vector<Draft::Seen> Draft::look_through() const {
                             static_cast<std::size_t>(x);
       Seen& seen = pixels[i];
       const CameraRay ray = middle_ray(input, x, y, profile);
-      // Of its own rays, unless a surface has made them opaque.
-      seen.opacity = input.world.surfaces ? opacity_and_depth(input.world, ray, profile).opacity
-                                          : sum_.opacity[i] * share;
+      const OpacityAndDepth medium = opacity_and_depth(input.world, ray, profile);
+      // The opacity of its own rays, unless a surface has made them opaque.
+      seen.opacity = input.world.surfaces ? medium.opacity : sum_.opacity[i] * share;
+      seen.depth = medium.depth;
       seen.direct = sum_.direct[i] * share;
       seen.indirect = sum_.indirect[i] * share;
       if (!sum_.emission.empty())
@@ -121,6 +122,68 @@ std::vector<Draft::Seen> Draft::look_through() const {
     }
   });
   return pixels;
+}
+
+/// The draft's pixels around a place of the picture, weighted.
+struct Draft::Around {
+  Seen mean;          ///< per weight of 1; the radiance is that of the surface asked for
+  bool opaque = true; ///< all of them
+  bool clear = true;  ///< of the medium
+};
+
+Draft::Around Draft::around(const std::vector<Seen>& seen, double x, double y, int surface) const {
+  Around around;
+  float of_surface = 0;
+  const int reach = surface >= 0 ? farthest : 1;
+  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+  const auto tent = [](double d) { return static_cast<float>(std::max(0.0, 1 - d)); };
+  for (int j = std::max(0, top - reach + 1); j <= std::min(sum_.height - 1, top + reach); ++j)
+    for (int i = std::max(0, left - reach + 1); i <= std::min(sum_.width - 1, left + reach); ++i) {
+      const Seen& other = seen[static_cast<std::size_t>(j) * static_cast<std::size_t>(sum_.width) +
+                               static_cast<std::size_t>(i)];
+      const double dx = std::abs(i - x), dy = std::abs(j - y);
+      const float near = tent(dx) * tent(dy);
+      around.opaque = around.opaque && other.opacity > 0.999f;
+      around.clear = around.clear && other.opacity == 0;
+      around.mean.opacity += near * other.opacity;
+      around.mean.depth += near * other.depth;
+      around.mean.direct += other.direct * near;
+      around.mean.indirect += other.indirect * near;
+      around.mean.emission += other.emission * near;
+      if (surface >= 0 && other.surface == surface) {
+        const float far = near + 1e-3f * tent(std::max(dx, dy) / (farthest + 1));
+        around.mean.radiance += other.radiance * far;
+        of_surface += far;
+      }
+    }
+  if (of_surface > 0)
+    around.mean.radiance *= 1 / of_surface;
+  return around;
+}
+
+/// One pixel of the picture, where the draft is at (x, y).
+void Draft::enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, double x, double y,
+                    CameraRay ray, std::size_t pixel, DepthProfile& profile,
+                    PassImage& image) const {
+  const Around near = around(seen, x, y, ray.hit ? ray.hit->surface : -1);
+  const Seen& mean = near.mean;
+  float opacity = 1;
+  if (near.opaque) { // there is nothing to be seen behind, and no edge
+    image.opacity[pixel] = 1;
+    image.depth[pixel] = mean.depth / mean.opacity;
+  } else {
+    if (near.clear && !ray.hit)
+      ray.segment.t_end = ray.segment.t_begin;
+    profile.build(full.world.medium, ray.segment, static_cast<float>(full.settings.cutoff));
+    shade_profile(full, ray, profile, pixel, image, {mean.radiance});
+    opacity = opacity_and_depth(full.world, ray, profile).opacity;
+  }
+  const float of_medium =
+      opacity > 0 ? opacity / std::max(mean.opacity, opacity / greatest_gain) : 0;
+  image.direct[pixel] = mean.direct * of_medium;
+  image.indirect[pixel] = mean.indirect * of_medium;
+  if (!image.emission.empty()) // glows where nothing may be opaque
+    image.emission[pixel] = mean.emission;
 }
 
 PassImage Draft::enlarged(const EstimatorInput& full) const {
@@ -136,42 +199,9 @@ PassImage Draft::enlarged(const EstimatorInput& full) const {
       const std::size_t pixel =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
           static_cast<std::size_t>(x);
-      const CameraRay ray = middle_ray(full, x, y, profile);
-      const double at_x = (x + 0.5) * step_x - 0.5, at_y = (y + 0.5) * step_y - 0.5;
-      Seen mean;
-      float weights = 0;
-      const int reach = ray.hit ? farthest : 1;
-      for (int j = std::max(0, static_cast<int>(std::floor(at_y)) - reach + 1);
-           j <= std::min(sum_.height - 1, static_cast<int>(std::floor(at_y)) + reach); ++j)
-        for (int i = std::max(0, static_cast<int>(std::floor(at_x)) - reach + 1);
-             i <= std::min(sum_.width - 1, static_cast<int>(std::floor(at_x)) + reach); ++i) {
-          const Seen& other =
-              seen[static_cast<std::size_t>(j) * static_cast<std::size_t>(sum_.width) +
-                   static_cast<std::size_t>(i)];
-          const auto tent = [](double d) { return static_cast<float>(std::max(0.0, 1 - d)); };
-          const double dx = std::abs(i - at_x), dy = std::abs(j - at_y);
-          const float near = tent(dx) * tent(dy);
-          mean.opacity += near * other.opacity;
-          mean.direct += other.direct * near;
-          mean.indirect += other.indirect * near;
-          mean.emission += other.emission * near;
-          if (ray.hit && other.surface == ray.hit->surface) {
-            const float far = near + 1e-3f * tent(std::max(dx, dy) / (farthest + 1));
-            mean.radiance += other.radiance * far;
-            weights += far;
-          }
-        }
-      SeenSurface surface;
-      if (weights > 0)
-        surface.radiance = mean.radiance / weights;
-      shade_profile(full, ray, profile, pixel, image, surface);
-      const float opacity = opacity_and_depth(full.world, ray, profile).opacity;
-      const float of_medium =
-          opacity > 0 ? opacity / std::max(mean.opacity, opacity / greatest_gain) : 0;
-      image.direct[pixel] = mean.direct * of_medium;
-      image.indirect[pixel] = mean.indirect * of_medium;
-      if (!image.emission.empty()) // glows where nothing may be opaque
-        image.emission[pixel] = mean.emission;
+      const CameraRay ray = camera_ray(full.world, camera, camera.ray(x + 0.5, y + 0.5));
+      enlarge(full, seen, (x + 0.5) * step_x - 0.5, (y + 0.5) * step_y - 0.5, ray, pixel, profile,
+              image);
     }
   });
   return image;

@@ -2,6 +2,7 @@
 
 #include "choose/pass_renderer.h"
 #include "render/frame_setup.h"
+#include "transport/camera_ray.h"
 
 #include <memory>
 
@@ -29,7 +30,11 @@ public:
 
 private:
   struct Seen;
+  struct Around;
   std::vector<Seen> look_through() const;
+  Around around(const std::vector<Seen>& seen, double x, double y, int surface) const;
+  void enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, double x, double y,
+               CameraRay ray, std::size_t pixel, DepthProfile& profile, PassImage& image) const;
 
   Scene scene_;
   int reduction_;

@@ -75,13 +75,12 @@ TEST(ChooseEstimator, GatherInADeepMediumInTheSun) {
   ASSERT_NE(deep.choice.photons, nullptr);
 }
 
-/// Light paths are aimed at all that stands in the scene: over a wide ground few of them meet the
-/// cloud.
+/// Under a wide roof the sun reaches no cloud.
 TEST(ChooseEstimator, PathWherePhotonsAreRare) {
-  MemoryScene wide = deep_in_the_sun();
-  surfaces::add_surface(wide, SurfaceShape::quad,
-                        surfaces::moved(surfaces::scaled(400), {0, 0, -5}), surfaces::diffuse(0.5));
-  const Choice choice(wide);
+  MemoryScene shaded = deep_in_the_sun();
+  surfaces::add_surface(shaded, SurfaceShape::quad,
+                        surfaces::moved(surfaces::scaled(400), {0, 0, 5}), surfaces::diffuse(0.5));
+  const Choice choice(shaded);
   EXPECT_EQ(choice.choice.type.name, "path");
   EXPECT_NE(choice.choice.reason.find("light path"), std::string::npos) << choice.choice.reason;
 }

@@ -1,4 +1,5 @@
 // When photons are gathered by walks, and that it lessens the blur of kernels.
+#include "support/lumpy_cloud.h"
 #include "support/render_passes.h"
 
 #include "choose/pass_renderer.h"
@@ -10,24 +11,6 @@ namespace {
 
 using namespace test;
 
-/// Lumps with sharp edges, some in the shade of others.
-MemoryScene lumps(double extinction, int width) {
-  MemoryScene scene;
-  const Vec3<int> cells{4, 4, 4};
-  VolumeSettings& volume = scene.add(
-      closed_field(cells,
-                   [](int i, int j, int k) {
-                     return std::sin(0.7 * i) * std::cos(0.5 * j + 1) * std::sin(0.6 * k + 2) > 0.1
-                                ? 1.0
-                                : 0.0;
-                   }),
-      box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
-  volume.extinction = extinction;
-  scene.add_light(LightType::distant).direction = {1, -0.4, -0.5};
-  scene.look({0.5, 0.6, 2.5}, {0, 0, 0}, 24, width, width);
-  return scene;
-}
-
 std::optional<int> first_final_gather(const MemoryScene& scene) {
   const TestFrame frame(scene);
   const FramePasses passes(EstimatorType::automatic, frame.input());
@@ -37,13 +20,13 @@ std::optional<int> first_final_gather(const MemoryScene& scene) {
 
 /// Where the medium is thin kernels blur little, and walks are noisier than kernels.
 TEST(FinalGather, IsUsedWhereItPays) {
-  EXPECT_EQ(first_final_gather(lumps(2, 48)), std::nullopt);
-  EXPECT_EQ(first_final_gather(lumps(160, 48)), 0);
+  EXPECT_EQ(first_final_gather(lumpy_cloud(2, 48)), std::nullopt);
+  EXPECT_EQ(first_final_gather(lumpy_cloud(160, 48)), 0);
 }
 
 /// Shadow rays to a lamp among the lumps have no bound, which a pilot would miss.
 TEST(FinalGather, IsNotUsedByItselfWithLamps) {
-  MemoryScene scene = lumps(160, 160);
+  MemoryScene scene = lumpy_cloud(160, 160);
   scene.add_light(LightType::point).position = {0, 0, 0};
   EXPECT_EQ(first_final_gather(scene), std::nullopt);
   scene.scene.render.final_gather = FinalGathering::always;
@@ -51,7 +34,7 @@ TEST(FinalGather, IsNotUsedByItselfWithLamps) {
 }
 
 TEST(FinalGather, FollowsTheSettings) {
-  MemoryScene scene = lumps(160, 160);
+  MemoryScene scene = lumpy_cloud(160, 160);
   RenderSettings& render = scene.scene.render;
   render.final_gather = FinalGathering::never;
   EXPECT_EQ(first_final_gather(scene), std::nullopt);
@@ -67,7 +50,7 @@ TEST(FinalGather, FollowsTheSettings) {
 /// Kernels as wide as the lumps: the mean over many passes is off by their blur, and less so where
 /// photons are gathered by walks.
 TEST(FinalGather, LessensTheBlur) {
-  MemoryScene scene = lumps(40, 48);
+  MemoryScene scene = lumpy_cloud(40, 48);
   RenderSettings& render = scene.scene.render;
   const PassMeans truth = render_passes(scene, EstimatorType::path, 200);
   render.kernel = KernelRadius::fixed;
@@ -93,7 +76,7 @@ TEST(FinalGather, LessensTheBlur) {
 /// At a probed pixel the blur is told by the same walks in narrower kernels, and no pixel changes
 /// for it.
 TEST(FinalGather, TellsItsBlur) {
-  MemoryScene scene = lumps(40, 48);
+  MemoryScene scene = lumpy_cloud(40, 48);
   RenderSettings& render = scene.scene.render;
   render.kernel = KernelRadius::fixed;
   render.radius = 0.15;
