@@ -10,7 +10,7 @@ namespace {
 using Facts = FeatureFacts;
 
 /// Distance of a lamp from the medium, in radii of the medium, from which on shadow rays to it are
-/// no noisier than others: the light within the medium changes by a factor of 10 at most.
+/// no noisier than others: its light within the medium changes by a factor of 25 at most.
 constexpr double nearest_lamp = 0.5;
 
 bool stores_scattered_flux(const Facts& facts) {

@@ -36,7 +36,7 @@ constexpr std::string_view gather_keys[] = {
 const EstimatorKind gather_estimator{
     .name = "gather",
     .help = "final gathering: photons, gathered where random walks from the camera ray arrive; "
-            "along camera rays where surfaces or a limit of bounces exclude that",
+            "along camera rays where a limit of bounces excludes that",
     .unbiased = false,
     .stages = gather_stages,
     .keys = gather_keys,
