@@ -72,8 +72,10 @@ std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& 
   constexpr int passes_without_limit = 1024;
   const int last = settings.passes.value_or(passes_without_limit) - 1;
   std::set<int> passes{0, last};
-  for (int pass = 1; pass < last; pass *= 2)
+  for (std::int64_t power = 1; power < last; power *= 2) {
+    const auto pass = static_cast<int>(power);
     passes.insert({pass, std::min(last, pass + 1)}); // truncation takes turns from pass to pass
+  }
   if (choices.gather && choices.gather->first <= last)
     passes.insert(choices.gather->first);
   std::vector<PassSpec> list;

@@ -10,7 +10,6 @@
 #include "render/error_record.h"
 #include "render/limit_notes.h"
 #include "render/pass_window.h"
-#include "render/quick_look.h"
 #include "report/image_metadata.h"
 #include "report/side_files.h"
 #include "scene/shutter.h"
@@ -36,19 +35,6 @@ std::uint64_t peak_memory() {
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
-
-/// How long a quick look may take.
-constexpr std::chrono::milliseconds quick_look_time{250};
-
-/// Pixels across the first draft, and the least and greatest factor by which a picture has more.
-constexpr double draft_width = 120;
-constexpr int least_reduction = 2, greatest_reduction = 16;
-/// Pictures of fewer pixels have their first pass soon enough.
-constexpr double worth_drafting = 2e5;
-/// What a pass and its pilots take in units of a draft's, per pixel, and enlarging in units of a
-/// pass: guesses from drafts and passes of clouds (docs/decisions.md). They are no part of any
-/// picture, but decide whether there is time for it.
-constexpr double pilot_over_draft = 2.5, pilot_of_next_draft = 1.5, enlarging = 0.08;
 
 } // namespace
 
@@ -130,16 +116,8 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
     write_checkpoint();
   else if (!frame_.partial.empty())
     write_film(file_info(), film_, frame_.partial);
-  if (film_.passes() == 0 && draft_) {
-    take_draft(quick_look);
-  } else if (film_.passes() == 0) {
-    StopToken soon;
-    soon.set_deadline(Clock::now() + quick_look_time);
-    take_quick_look(quick_look, soon, image_);
-    result_.quick_look = true;
-    // For the report; the program has words of its own for it.
-    result_.notes.emplace_back(
-        "not one pass was finished: the image is a quick look, rough and for the eye only");
+  if (film_.passes() == 0) {
+    take_early_picture(quick_look);
   } else {
     develop();
   }
@@ -181,111 +159,6 @@ void PassLoop::render_pass(Shutter& shutter) {
   shortest_pass_ = shortest_pass_ > 0 ? std::min(shortest_pass_, took) : took;
   record();
   serve_requests();
-}
-
-/// Develops a picture that is no pass, by way of the film that has none yet.
-void PassLoop::take_picture(PassImage& image) {
-  if (!whole_)
-    image = cut_out(image, window_);
-  clamp(image);
-  film_.add(image);
-  develop();
-}
-
-/// Renders a quick look into the result's image.
-void PassLoop::take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image) {
-  input.stop = &stop;
-  fill_with_quick_look(input, image);
-  take_picture(image);
-}
-
-/// Shows the caller what `take` puts into the result's image, and forgets it.
-template <class Take>
-void PassLoop::show(const Take& take) {
-  const RenderStatistics before = result_.statistics;
-  result_.quick_look = true;
-  take();
-  attempt([&] { hooks_.on_quick_look(result_); });
-  replace_film();
-  result_.statistics = before;
-  result_.quick_look = false;
-  result_.image = {};
-}
-
-void PassLoop::show_quick_look(EstimatorInput input) {
-  if (!hooks_.on_quick_look || draft_ || film_.passes() > 0 || stop_.stopped())
-    return;
-  StopToken soon(hooks_.stop);
-  soon.set_deadline(Clock::now() + quick_look_time);
-  PassImage image;
-  show([&] { take_quick_look(input, soon, image); });
-}
-
-/// Drafts have no layers of their own, and no part of a picture is worth one.
-bool PassLoop::may_draft() const {
-  const bool plain = scene_.layers.empty() && light_group_names(scene_).empty() &&
-                     !scene_.image.deep && !scene_.image.cryptomatte && scene_.image.overscan == 0;
-  return plain && whole_ && film_.passes() == 0 && !frame_.pass_range && !stop_.stopped();
-}
-
-/// 1 where the first pass is likely to be finished in time.
-int PassLoop::affordable_reduction() const {
-  const double left = limit_seconds() - seconds(), pilot = draft_->pilot_seconds();
-  const double pass = draft_->pass_seconds() * draft_->reduction() * draft_->reduction();
-  if (pilot_over_draft * pilot + pass <= left)
-    return 1;
-  for (int reduction = least_reduction; reduction < draft_->reduction(); ++reduction)
-    if (pilot_of_next_draft * pilot + pass / (reduction * reduction) + enlarging * pass <= left)
-      return reduction;
-  return draft_->reduction();
-}
-
-bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& full) {
-  const bool limited = std::isfinite(limit_seconds());
-  const double width = scene_.image.width;
-  const bool shown = hooks_.on_quick_look && width * scene_.image.height >= worth_drafting;
-  if (!may_draft() || (!limited && !shown))
-    return false;
-  const auto reduction = static_cast<int>(std::lround(width / draft_width));
-  draft_ = std::make_unique<Draft>(
-      scene_, prepared, std::clamp(reduction, least_reduction, greatest_reduction), stop_);
-  if (!draft_->add_pass()) {
-    draft_.reset();
-    return false;
-  }
-  const int affordable = limited ? affordable_reduction() : 1;
-  if (affordable == 1) {
-    if (shown)
-      show([&] {
-        PassImage image = draft_->enlarged(full);
-        take_picture(image);
-      });
-    return false;
-  }
-  if (affordable < draft_->reduction()) {
-    auto finer = std::make_unique<Draft>(scene_, prepared, affordable, stop_);
-    if (finer->add_pass())
-      draft_ = std::move(finer);
-  }
-  const double pass = draft_->pass_seconds();
-  const double end = enlarging * pass * draft_->reduction() * draft_->reduction();
-  while (seconds() + pass + end <= limit_seconds() && draft_->add_pass())
-    continue;
-  stop(stop_.requested() ? "stop" : "time");
-  take_draft(full);
-  return true;
-}
-
-/// Makes the draft the frame's picture.
-void PassLoop::take_draft(const EstimatorInput& full) {
-  image_ = draft_->enlarged(full);
-  take_picture(image_);
-  result_.draft = draft_->reduction();
-  result_.quick_look = result_.stopped_by == "stop";
-  note(fmt::format("there was no time for a pass: the picture is a draft, {} of 1/{} of the pixels "
-                   "each way, enlarged; give it more time or fewer pixels",
-                   count_text(static_cast<std::uint64_t>(draft_->passes()), "pass"),
-                   draft_->reduction()));
 }
 
 void PassLoop::clamp(PassImage& pass) {
@@ -421,8 +294,7 @@ void PassLoop::serve_requests() {
 }
 
 /// Writes a file that the picture does not need: a full disk must not cost the passes so far.
-template <class F>
-void PassLoop::attempt(F write) {
+void PassLoop::attempt(const std::function<void()>& write) {
   try {
     write();
   } catch (const FrameError& error) {

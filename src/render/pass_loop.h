@@ -47,8 +47,7 @@ private:
   void compare(PassRecord& record);
   void clamp(PassImage& pass);
   void serve_requests();
-  template <class F>
-  void attempt(F write);
+  void attempt(const std::function<void()>& write);
   void write_checkpoint();
   Film make_film() const;
   void replace_film();
@@ -62,8 +61,8 @@ private:
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
   void take_picture(PassImage& image);
   void take_draft(const EstimatorInput& full);
-  template <class Take>
-  void show(const Take& take);
+  void show(const std::function<void()>& take);
+  void take_early_picture(const EstimatorInput& quick_look);
   bool may_draft() const;
   int affordable_reduction() const;
   double limit_seconds() const;

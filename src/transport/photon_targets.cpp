@@ -184,6 +184,42 @@ bool counts_for_its_target(const World& world, const EmittedPhoton& photon) {
   return false;
 }
 
+Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedPhoton& photon) {
+  const Vec3d origin(photon.ray.origin), direction(photon.ray.direction);
+  if (!(photon.flux_to_medium > 0) || light.surface() >= 0)
+    return origin;
+  const OccupiedRegion& all = world.targets.back();
+  const double back =
+      light.position() ? length(origin - *light.position())
+                       : 2 * (length(origin - Vec3d(all.center)) + static_cast<double>(all.radius));
+  return world.surfaces->set->occluded(origin, -direction, 0, back) ? origin - direction * back
+                                                                    : origin;
+}
+
+std::optional<Cone> cone_to_medium(const World& world, const Vec3d& point) {
+  const Vec3d way = Vec3d(world.region.center) - point;
+  const double distance = length(way), sine = static_cast<double>(world.region.radius) / distance;
+  if (!(sine < 1))
+    return std::nullopt;
+  return Cone{way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+}
+
+CopiesToMedium copies_to_medium(const SurfaceVertex& vertex, const Cone& cone, float flux,
+                                Rng& rng) {
+  // About what goes that way, whatever the directions that are drawn: in a direction in which the
+  // material sends nothing there may be parts of the cone in which it does.
+  constexpr float least_value = 0.01f;
+  const auto solid_angle = static_cast<float>(cone.solid_angle());
+  const float value =
+      std::max(max_component(vertex.evaluate(Vec3f(cone.axis), Carried::power)), least_value);
+  const float wanted = flux * value * solid_angle;
+  if (wanted < 1)
+    return {rng.uniform() < wanted ? 1 : 0, solid_angle / wanted};
+  const float copies =
+      std::min(std::floor(wanted + 0.5f), static_cast<float>(CopiesToMedium::most));
+  return {static_cast<int>(copies), solid_angle / copies};
+}
+
 void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& up,
                       std::vector<std::string>& notes, World& world) {
   const auto count = static_cast<int>(world.targets.size());

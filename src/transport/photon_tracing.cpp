@@ -1,7 +1,6 @@
 #include "transport/photon_tracing.h"
 
 #include "camera/towards_camera.h"
-#include "lights/local_aim.h"
 #include "medium/flight.h"
 #include "transport/photon_targets.h"
 
@@ -9,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <optional>
 
 namespace vdbeam {
 
@@ -19,7 +17,6 @@ namespace {
 constexpr std::uint64_t paths_per_chunk = 512;
 /// Collisions of every path under way between two looks at the clock.
 constexpr std::uint32_t rounds_per_check = 128;
-
 /// A light path under way. Its throughput is flux.
 struct LightPath : Flight {
   using Flight::Flight;
@@ -41,10 +38,14 @@ struct LightPath : Flight {
 // `least_chance`; one that is worth more than `highest_value` is split in two.
 constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
 
-/// Copies of a path that a surface sends to the medium, at most, and the least value of the
-/// material, in parts of its albedo over pi, by which they are counted.
-constexpr int most_copies = 8;
-constexpr float least_aimed = 0.01f;
+/// Rate of tentative collisions: the majorants of overlapping volumes add.
+float total_majorant(const Medium& medium, const Ray& ray, const Collision& hit) {
+  float sum = hit.majorant;
+  for (const Volume& volume : medium.volumes)
+    if (&volume != hit.volume)
+      sum += volume.majorant(ray.at(hit.t));
+  return sum;
+}
 
 /// Traces one chunk of paths into one list.
 class PathTracer {
@@ -91,7 +92,7 @@ public:
   static constexpr bool bounds_null_collisions = false;
   void meet(LightPath& path, const Collision& hit) {
     if (may_store(path) && settings_.store == PhotonStore::fluence)
-      store(path, hit, path.throughput / total_majorant(path.segment.ray, hit));
+      store(path, hit, path.throughput / total_majorant(world_.medium, path.segment.ray, hit));
   }
   bool pass(LightPath& path) const { return path.length.survive(path.throughput, path.rng); }
   bool collide(LightPath& path, const Collision& hit) {
@@ -177,46 +178,35 @@ private:
     return true;
   }
 
-  /// Sends copies of the path from a surface to the medium, about as many as give each the flux
-  /// that paths bring there straight from the light, and returns the cone of their directions, in
-  /// which the path itself then does not go on. Within the medium's sphere, where the cone would be
-  /// all directions, the path shares its flux with copies of the same kind.
+  /// Sends copies of the path from a surface to the medium, and returns the cone of their
+  /// directions, in which the path itself does not go on. Within the medium's sphere it is shared.
   std::optional<Cone> send_to_medium(LightPath& path, const SurfaceVertex& vertex) {
     const Material& material = vertex.material();
     if (!(path.fair_flux > 0) || material.is_specular() || material.refracts() ||
         world_.medium.empty())
       return std::nullopt;
-    const Vec3d& point = vertex.hit().position;
-    const Vec3d way = Vec3d(world_.region.center) - point;
-    const double distance = length(way),
-                 sine = static_cast<double>(world_.region.radius) / distance;
-    if (!(sine < 1)) {
+    const std::optional<Cone> cone = cone_to_medium(world_, vertex.hit().position);
+    if (!cone) {
       share_flux(path, vertex);
       return std::nullopt;
     }
-    const Cone cone{way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
-    const auto solid_angle = static_cast<float>(cone.solid_angle());
-    // About what goes that way, whatever the directions that are drawn.
-    const Vec3f axis(cone.axis);
-    const float value = std::max(max_component(vertex.evaluate(axis, Carried::power)), least_aimed);
-    const float wanted = max_component(path.throughput) * value * solid_angle / path.fair_flux;
-    const int copies = copies_of(wanted, path.rng);
-    // One that is drawn by chance stands for those that are not.
-    const float share = solid_angle / (wanted < 1 ? wanted : static_cast<float>(copies));
-    for (int i = 0; i < copies; ++i) {
+    const CopiesToMedium copies =
+        copies_to_medium(vertex, *cone, max_component(path.throughput) / path.fair_flux, path.rng);
+    for (int i = 0; i < copies.count; ++i) {
       const float u = path.rng.uniform(), v = path.rng.uniform();
-      const Vec3f wi(cone.sample(static_cast<double>(u), static_cast<double>(v)));
+      const Vec3f wi(cone->sample(static_cast<double>(u), static_cast<double>(v)));
       LightPath copy = copy_of(path);
-      copy.throughput *= vertex.evaluate(wi, Carried::power) * share;
+      copy.throughput *= vertex.evaluate(wi, Carried::power) * copies.solid_angle;
       leave_surface(copy, vertex, wi);
     }
     return cone;
   }
 
-  /// The path goes on as one of several with equal shares of its flux.
+  /// The path goes on as one of several of equal flux.
   void share_flux(LightPath& path, const SurfaceVertex& vertex) {
-    const int paths = std::clamp(static_cast<int>(max_component(path.throughput) / path.fair_flux),
-                                 1, most_copies);
+    constexpr auto most = static_cast<float>(CopiesToMedium::most);
+    const int paths =
+        static_cast<int>(std::clamp(max_component(path.throughput) / path.fair_flux, 1.0f, most));
     path.throughput *= 1 / static_cast<float>(paths);
     for (int i = 1; i < paths; ++i) {
       LightPath copy = copy_of(path);
@@ -224,13 +214,6 @@ private:
       if (absorption_roulette(next.weight, copy.throughput, copy.rng))
         leave_surface(copy, vertex, next.wi);
     }
-  }
-
-  /// How many copies stand for a wanted number.
-  static int copies_of(float wanted, Rng& rng) {
-    if (wanted < 1)
-      return rng.uniform() < wanted ? 1 : 0;
-    return static_cast<int>(std::min(wanted + 0.5f, static_cast<float>(most_copies)));
   }
 
   /// Puts a copy that has been scattered at a surface to those that wait for their turn.
@@ -279,46 +262,19 @@ private:
     path->light = light;
     path->number = static_cast<std::uint32_t>(number);
     path->fair_flux = photon.flux_to_medium / static_cast<float>(light_paths);
-    begin_flight(*path, beginning(world_.lights[light], photon), photon.ray.direction);
+    begin_flight(*path, beginning_of_flight(world_, world_.lights[light], photon),
+                 photon.ray.direction);
     if (!advance_flight(*path, *this))
       path.reset();
-  }
-
-  /// Where the flight of a photon begins: at the edge of the region that it is aimed at, or, where
-  /// a surface stands before that, at the light, or before everything if the light is far away.
-  Vec3d beginning(const Light& light, const EmittedPhoton& photon) const {
-    const Vec3d origin(photon.ray.origin), direction(photon.ray.direction);
-    if (!(photon.flux_to_medium > 0) || light.surface() >= 0)
-      return origin;
-    const OccupiedRegion& all = world_.targets.back();
-    const double back =
-        light.position()
-            ? length(origin - *light.position())
-            : 2 * (length(origin - Vec3d(all.center)) + static_cast<double>(all.radius));
-    return world_.surfaces->set->occluded(origin, -direction, 0, back) ? origin - direction * back
-                                                                       : origin;
   }
 
   bool lights_surfaces(std::size_t light) const {
     return !settings_.surface_photon_lights.empty() && settings_.surface_photon_lights[light];
   }
-
   void store_at(const SurfaceVertex& vertex, const LightPath& path) {
     surface_photons.position.emplace_back(vertex.hit().position);
     surface_photons.direction.push_back(path.segment.ray.direction);
     surface_photons.power.push_back(path.throughput);
-  }
-
-  /// Rate of tentative collisions at the point: the majorants of overlapping volumes add.
-  float total_majorant(const Ray& ray, const Collision& hit) const {
-    if (world_.medium.volumes.size() == 1)
-      return hit.majorant;
-    float sum = hit.majorant;
-    const Vec3f point = ray.at(hit.t);
-    for (const Volume& volume : world_.medium.volumes)
-      if (&volume != hit.volume)
-        sum += volume.majorant(point);
-    return sum;
   }
 
   float store_probability(const Volume& volume, const Vec3f& point, const Vec3f& direction) const {

@@ -2,7 +2,7 @@
 
 #include "camera/camera.h"
 #include "grids/emission_grid.h"
-#include "lights/emission_directions.h"
+#include "medium/emission_directions.h"
 #include "lights/light_set.h"
 #include "medium/medium.h"
 #include "transport/surfaces.h"

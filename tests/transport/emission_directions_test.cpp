@@ -1,5 +1,5 @@
 // Directions towards what glows: their density is what it says, and finds all light.
-#include "lights/emission_directions.h"
+#include "medium/emission_directions.h"
 
 #include "math/sampling.h"
 #include "support/render_passes.h"

@@ -1,4 +1,4 @@
-#include "lights/emission_directions.h"
+#include "medium/emission_directions.h"
 
 #include "medium/grid_traversal.h"
 
