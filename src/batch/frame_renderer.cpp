@@ -355,6 +355,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   frame.region = options_.region;
   if (options_.pass_range)
     frame.partial = output(loaded.frame());
+  frame.seconds_used = loaded.seconds_waited;
   frame.checkpoint = options_.checkpoint;
   frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
   frame.reference = reference ? &*reference : nullptr;

@@ -54,6 +54,7 @@ private:
   bool time_is_over() const;
   void set_deadline();
   void render_pass(Shutter& shutter);
+  std::optional<Shutter::Renderer> renderer_of_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
   double limit_seconds() const;
   void note(const std::string& line);
