@@ -62,7 +62,8 @@ void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& 
   const Scene& scene = loaded.frame.scene;
   const std::uint64_t granted = granted_memory();
   const std::uint64_t beside = before && !alone ? std::min(before->bytes, granted) : 0;
-  if (const std::optional<MemoryPlan> plan = plan_large_frame(scene, granted - beside)) {
+  if (const std::optional<MemoryPlan> plan =
+          plan_large_frame(scene, options_.frame.files.references(), granted - beside)) {
     check_planned_memory(scene, *plan, granted);
     loaded.bytes = std::max(plan->rendering, plan->writing);
     loaded.kept_bytes = plan->kept;

@@ -45,6 +45,9 @@ std::optional<Image> read_reference(const char* option, const std::string& path,
   for (const char* channel : {"R", "G", "B"})
     if (!reference.find(channel))
       throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
+  std::erase_if(reference.channels, [](const ImageChannel& channel) {
+    return channel.name != "R" && channel.name != "G" && channel.name != "B";
+  });
   convert_colors(reference, chromaticities_of(size.working_space));
   return reference;
 }
