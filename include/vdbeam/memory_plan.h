@@ -37,7 +37,8 @@ struct MemoryPlan {
 };
 
 /// Estimates a frame's memory from its settings and the topology of its volumes' trees; reads no
-/// voxels. Throws InputError and FrameError as reading the files does.
-MemoryPlan plan_memory(const Scene& scene);
+/// voxels. `references`: images that its passes are compared with. Throws InputError and FrameError
+/// as reading the files does.
+MemoryPlan plan_memory(const Scene& scene, int references = 0);
 
 } // namespace vdbeam

@@ -55,6 +55,8 @@ struct FrameSettings {
   std::string partial; ///< where the passes go as a partial image, for merge_partials
   /// Written at intervals and when stopped, removed by nobody but the caller.
   CheckpointSettings checkpoint;
+  /// Of the time that the scene's stop rule gives, what preparing the frame has taken already.
+  double seconds_used = 0;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
   /// A second one, of noise that is independent of the first's: errors are then free of both.
@@ -82,14 +84,17 @@ class PreparedScene; ///< a scene's volumes and lights, read and made ready for 
 using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
 
 /// Reads what `render` needs, and takes over from `previous` (or null) what is the same. May run
-/// while `previous` is rendered. Throws InputError and FrameError.
-PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous = nullptr);
+/// while `previous` is rendered. Throws InputError and FrameError, the latter also where `stop`
+/// becomes true.
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous = nullptr,
+                               const std::atomic<bool>* stop = nullptr);
 
 /// Renders one frame of a scene that is ready. Throws InputError and FrameError.
 RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
                     const FrameSettings& frame = {}, const RenderHooks& hooks = {});
 
-/// Renders one frame. Throws InputError and FrameError.
+/// Prepares and renders one frame. Throws InputError and FrameError, the latter also where the time
+/// or the caller ends it while it is prepared.
 RenderResult render(const Scene& scene, const FrameSettings& frame = {},
                     const RenderHooks& hooks = {});
 

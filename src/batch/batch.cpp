@@ -9,6 +9,7 @@
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "plan/memory_check.h"
+#include "prepare/prepared_scene.h"
 #include "text/frame_range.h"
 #include "text/printable.h"
 #include "vdbeam/error.h"
@@ -57,11 +58,12 @@ void Batch::say(const std::string& line) const {
 
 /// Reads a frame's files. `before`: the frame before it, which is being rendered unless this one is
 /// read `alone`.
-void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone) const {
+void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& watch) const {
   const Scene& scene = loaded.frame.scene;
   const std::uint64_t granted = granted_memory();
   const std::uint64_t beside = before && !alone ? std::min(before->bytes, granted) : 0;
-  if (const std::optional<MemoryPlan> plan = plan_large_frame(scene, granted - beside)) {
+  if (const std::optional<MemoryPlan> plan =
+          plan_large_frame(scene, options_.frame.files.references(), granted - beside)) {
     check_planned_memory(scene, *plan, granted);
     loaded.bytes = std::max(plan->rendering, plan->writing);
     loaded.kept_bytes = plan->kept;
@@ -72,10 +74,13 @@ void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone) const {
     loaded.bytes = (granted - beside) / 2;
   }
   const PreparedScenePtr previous = before ? before->frame.prepared : nullptr;
-  loaded.frame.prepared = loaded.deferred ? nullptr : prepare_scene(scene, previous);
+  if (!options_.frame.pass_range)
+    watch.limit = preparation_limit(scene.render);
+  loaded.frame.prepared =
+      loaded.deferred ? nullptr : prepare_scene(scene, previous, &watch.give_up);
 }
 
-Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone) const {
+Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone, Watch& watch) const {
   Loaded loaded;
   if (before)
     loaded.frame.prepared = before->frame.prepared;
@@ -90,7 +95,7 @@ Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone) con
     }
     if (!loaded.skip && !loaded.frame.scene.black && options_.frame.parts.empty()) {
       renderer_.check_side_files(frame);
-      read(loaded, before, alone);
+      read(loaded, before, alone, watch);
     }
   } catch (const InputError& error) {
     const std::string line = error.what();
@@ -99,39 +104,49 @@ Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone) con
   } catch (...) {
     loaded.error = std::current_exception();
   }
+  if (loaded.error && watch.give_up)
+    loaded.error = std::make_exception_ptr(preparation_failure(
+        substitute_frame(options_.frame.files.output, frame), loaded.frame.scene.render));
   return loaded;
 }
 
 /// Reads on another thread: one thread beside a frame that is being rendered, all of them `alone`.
-std::future<Batch::Loaded> Batch::load_aside(int frame, const SharedLoaded& before,
-                                             bool alone) const {
-  const auto task =
-      std::make_shared<std::packaged_task<Loaded()>>([this, frame, held = before, alone]() mutable {
+Batch::Reading Batch::load_aside(int frame, const SharedLoaded& before, bool alone) const {
+  const auto watch = std::make_shared<Watch>();
+  const auto task = std::make_shared<std::packaged_task<Loaded()>>(
+      [this, frame, held = before, alone, watch]() mutable {
         const SharedLoaded previous = std::move(held); // TBB may keep the task for some time
-        return load(frame, previous, alone);
+        return load(frame, previous, alone, *watch);
       });
-  std::future<Loaded> future = task->get_future();
+  Reading reading{task->get_future(), watch};
   // Of all threads one waits here, and has no part in reading.
   tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, alone ? 1 : 0);
   arena.enqueue([task] { (*task)(); });
-  return future;
+  return reading;
 }
 
-Batch::Loaded Batch::wait_for(std::future<Loaded>& future) const {
+/// Waits for a frame whose turn has come: from now on its time runs.
+Batch::Loaded Batch::wait_for(Reading& reading) const {
+  const Stopwatch stopwatch;
   std::optional<Heartbeat> heartbeat;
   if (!options_.frame.quiet && !is_smart_terminal(STDERR_FILENO))
     heartbeat.emplace("reading the next frame, still working");
-  while (future.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
+  while (reading.frame.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
     if (stop_requested()) {
       say("interrupted while a volume was read");
       leave_now(signal_exit_code());
     }
-  return future.get();
+    if (stopwatch.seconds() > reading.watch->limit)
+      reading.watch->give_up = true;
+  }
+  Loaded loaded = reading.frame.get();
+  loaded.frame.seconds_waited = stopwatch.seconds();
+  return loaded;
 }
 
 int Batch::run() {
   SharedLoaded loaded;
-  std::future<Loaded> next = load_aside(frames_[0], nullptr, true);
+  Reading next = load_aside(frames_[0], nullptr, true);
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     Loaded read_ahead = wait_for(next);
     if (read_ahead.deferred) {
@@ -139,7 +154,9 @@ int Batch::run() {
         loaded.reset();
       return_freed_memory(); // else it would count beside what is read now
       next = load_aside(frames_[i], loaded, true);
+      const double waited = read_ahead.frame.seconds_waited;
       read_ahead = wait_for(next);
+      read_ahead.frame.seconds_waited += waited;
     }
     loaded = std::make_shared<const Loaded>(std::move(read_ahead));
     if (i + 1 < frames_.size())
@@ -148,7 +165,8 @@ int Batch::run() {
     if (go_on && !stop_requested())
       continue;
     const int code = finish();
-    if (next.valid() && next.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    if (next.frame.valid() &&
+        next.frame.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
       leave_now(code);
     return code;
   }

@@ -3,8 +3,10 @@
 #include "batch/batch_summary.h"
 #include "batch/frame_renderer.h"
 
+#include <atomic>
 #include <exception>
 #include <future>
+#include <limits>
 
 namespace vdbeam::cli {
 
@@ -41,10 +43,21 @@ private:
   };
   using SharedLoaded = std::shared_ptr<const Loaded>;
 
-  Loaded load(int frame, const SharedLoaded& before, bool alone) const;
-  void read(Loaded& loaded, const SharedLoaded& before, bool alone) const;
-  std::future<Loaded> load_aside(int frame, const SharedLoaded& before, bool alone) const;
-  Loaded wait_for(std::future<Loaded>& future) const;
+  /// What the thread that waits for a frame and the one that reads it know of each other.
+  struct Watch {
+    std::atomic<bool> give_up = false;
+    std::atomic<double> limit = std::numeric_limits<double>::infinity(); ///< of the wait [seconds]
+  };
+  using SharedWatch = std::shared_ptr<Watch>;
+  struct Reading {
+    std::future<Loaded> frame;
+    SharedWatch watch;
+  };
+
+  Loaded load(int frame, const SharedLoaded& before, bool alone, Watch& watch) const;
+  void read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& watch) const;
+  Reading load_aside(int frame, const SharedLoaded& before, bool alone) const;
+  Loaded wait_for(Reading& reading) const;
   void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);
   void fail(std::size_t index, const std::exception& error, FrameOutcome& outcome);

@@ -33,78 +33,107 @@ fs::path behind_links(fs::path path) {
 
 } // namespace
 
-/// Files of a sequence share their folder. To list it once costs less than to ask for each of many.
-FileClaims::Folder& FileClaims::folder_of(const std::string& path) {
-  constexpr std::size_t often = 256;
-  const auto [found, is_new] = folders_.try_emplace(path);
-  Folder& folder = found->second;
-  std::error_code error;
-  if (is_new)
-    folder.real = fs::weakly_canonical(path.empty() ? "." : path, error).string();
-  if (++folder.asked == often)
-    for (fs::directory_iterator it(folder.real, error), end; !error && it != end;
-         it.increment(error))
-      folder.names.insert(lower_case(it->path().filename().string()));
-  if (error) // its files are asked for one by one
-    folder.asked = 1;
-  folder.listed = folder.asked >= often;
-  return folder;
-}
-
 std::string FileClaims::identity(const std::string& path) {
-  const fs::path given = path;
-  const Folder& folder = folder_of(given.parent_path().string());
-  const std::string name = lower_case(given.filename().string());
-  if (folder.listed && !folder.names.contains(name))
+  const SplitPath given(path);
+  const FolderNames::Folder& folder = folders_.of(given.folder);
+  const std::string name = lower_case(std::string(given.name));
+  if (!folder.may_hold(name))
     return folder.real + "/" + name;
   struct stat status {};
   if (stat(path.c_str(), &status) == 0)
     return fmt::format("{}:{}", status.st_dev, status.st_ino);
-  const fs::path file = behind_links(path);
-  return folder_of(file.parent_path().string()).real + "/" + lower_case(file.filename().string());
+  const std::string file = behind_links(path).string();
+  const SplitPath target(file);
+  return folders_.of(target.folder).real + "/" + lower_case(std::string(target.name));
+}
+
+std::string FileClaims::Claim::path() const {
+  return frame ? substitute_frame(*pattern, *frame) : *pattern;
+}
+
+const std::string* FileClaims::keep(const std::string& text) {
+  return &texts_.emplace_back(text);
+}
+
+/// More places than claims will need for some time.
+void FileClaims::make_slots() {
+  constexpr std::size_t fewest = 64;
+  slots_.assign(std::max(fewest, 4 * slots_.size()), 0);
+  for (std::size_t i = 0; i < hashes_.size(); ++i) {
+    std::size_t slot = hashes_[i] % slots_.size();
+    while (slots_[slot] != 0)
+      slot = (slot + 1) % slots_.size();
+    slots_[slot] = static_cast<std::uint32_t>(i + 1);
+  }
+}
+
+const FileClaims::Claim& FileClaims::first_claim(const std::string& identity, const Claim& claim) {
+  if (2 * (claims_.size() + 1) > slots_.size())
+    make_slots();
+  const std::size_t hash = std::hash<std::string>()(identity);
+  std::size_t slot = hash % slots_.size();
+  for (; slots_[slot] != 0; slot = (slot + 1) % slots_.size()) {
+    const std::size_t i = slots_[slot] - 1;
+    if (hashes_[i] == hash && identity_of(claims_[i]) == identity)
+      return claims_[i];
+  }
+  claims_.push_back(claim);
+  hashes_.push_back(hash);
+  slots_[slot] = static_cast<std::uint32_t>(claims_.size());
+  return claims_.back();
+}
+
+std::string FileClaims::identity_of(const Claim& claim) {
+  const std::string path = claim.path();
+  return claim.output && path == standard_output ? path : identity(path);
 }
 
 void FileClaims::claim(const Claim& claim) {
-  const bool to_stdout = claim.output && claim.path == standard_output;
-  const auto [found, is_new] =
-      claims_.try_emplace(to_stdout ? standard_output : identity(claim.path), claim);
-  const Claim& other = found->second;
-  if (is_new || (!claim.output && !other.output))
+  const std::size_t before = claims_.size();
+  const Claim other = first_claim(identity_of(claim), claim);
+  if (claims_.size() > before || (!claim.output && !other.output))
     return;
+  const bool to_stdout = claim.output && claim.path() == standard_output;
   if (to_stdout)
     throw InputError(fmt::format("{} -: {} is written to the standard output as well; give one of "
                                  "them a file",
-                                 claim.name, other.name));
+                                 *claim.name, *other.name));
   const Claim& output = claim.output ? claim : other;
   const Claim& rest = claim.output ? other : claim;
   throw InputError(one_line(fmt::format("{} {}: is the same file as {} {}; give another name",
-                                        output.name, output.path, rest.name, rest.path)));
+                                        *output.name, output.path(), *rest.name, rest.path())));
 }
 
 void FileClaims::input(const std::string& name, const std::string& path) {
   if (!path.empty())
-    claim({name, path, false});
+    claim({keep(name), keep(path), std::nullopt, false});
 }
 
 void FileClaims::output(const std::string& option, const std::string& path) {
   if (!path.empty())
-    claim({option, path, true});
+    claim({keep(option), keep(path), std::nullopt, true});
+}
+
+/// The path of each frame; a pattern without a frame's place is one path.
+void FileClaims::claim_all(const std::string& name, const std::string& pattern,
+                           const std::vector<int>& frames, bool output) {
+  if (pattern.empty())
+    return;
+  const std::string *kept_name = keep(name), *kept_pattern = keep(pattern);
+  if (!has_frame_pattern(pattern))
+    return claim({kept_name, kept_pattern, std::nullopt, output});
+  for (const int frame : frames)
+    claim({kept_name, kept_pattern, frame, output});
 }
 
 void FileClaims::inputs(const std::string& name, const std::string& pattern,
                         const std::vector<int>& frames) {
-  if (!has_frame_pattern(pattern))
-    return input(name, pattern);
-  for (const int frame : frames)
-    input(name, substitute_frame(pattern, frame));
+  claim_all(name, pattern, frames, false);
 }
 
 void FileClaims::outputs(const std::string& option, const std::string& pattern,
                          const std::vector<int>& frames) {
-  if (!has_frame_pattern(pattern))
-    return output(option, pattern);
-  for (const int frame : frames)
-    output(option, substitute_frame(pattern, frame));
+  claim_all(option, pattern, frames, true);
 }
 
 void FileClaims::scene(const SceneDocument& document, const std::string& path,

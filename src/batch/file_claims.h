@@ -1,10 +1,12 @@
 #pragma once
 
+#include "batch/folder_names.h"
 #include "report/frame_files.h"
 #include "scene/scene_document.h"
 
-#include <map>
-#include <set>
+#include <cstdint>
+#include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,25 +45,33 @@ public:
              const std::vector<int>& frames);
 
 private:
+  /// Of a million frames each file has one: texts are shared, and the path is put together again
+  /// where it is asked for.
   struct Claim {
-    std::string name, path;
-    bool output = false;
+    const std::string *name, *pattern; ///< of texts_
+    std::optional<int> frame;          ///< none: the pattern is the path
+    bool output;
+
+    std::string path() const;
   };
 
+  const std::string* keep(const std::string& text);
   void claim(const Claim& claim);
+  /// The claim of a file with this identity that came first; where there is none, the new one.
+  const Claim& first_claim(const std::string& identity, const Claim& claim);
+  void make_slots();
+  void claim_all(const std::string& name, const std::string& pattern,
+                 const std::vector<int>& frames, bool output);
   void scene_file(const SceneFile& file, const std::vector<int>& frames);
   std::string identity(const std::string& path);
+  std::string identity_of(const Claim& claim);
 
-  struct Folder {
-    std::string real;            ///< without links
-    std::size_t asked = 0;       ///< how often
-    bool listed = false;         ///< from then on, once that is often
-    std::set<std::string> names; ///< of its files, in small letters
-  };
-  Folder& folder_of(const std::string& path);
-
-  std::map<std::string, Claim> claims_; ///< by the file's identity
-  std::map<std::string, Folder> folders_;
+  std::deque<std::string> texts_; ///< which stay where they are
+  std::vector<Claim> claims_;
+  std::vector<std::size_t> hashes_; ///< of their identities
+  /// Their numbers and one more, each in the first free place from its hash on; 0: free.
+  std::vector<std::uint32_t> slots_;
+  FolderNames folders_;
 };
 
 } // namespace vdbeam::cli

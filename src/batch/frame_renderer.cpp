@@ -45,6 +45,9 @@ std::optional<Image> read_reference(const char* option, const std::string& path,
   for (const char* channel : {"R", "G", "B"})
     if (!reference.find(channel))
       throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
+  std::erase_if(reference.channels, [](const ImageChannel& channel) {
+    return channel.name != "R" && channel.name != "G" && channel.name != "B";
+  });
   convert_colors(reference, chromaticities_of(size.working_space));
   return reference;
 }
@@ -357,6 +360,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   frame.region = options_.region;
   if (options_.pass_range)
     frame.partial = output(loaded.frame());
+  frame.seconds_used = loaded.seconds_waited;
   frame.checkpoint = options_.checkpoint;
   frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
   frame.reference = reference ? &*reference : nullptr;

@@ -31,6 +31,7 @@ struct LoadedFrame {
   Scene scene;
   std::string hash; ///< of the scene
   PreparedScenePtr prepared;
+  double seconds_waited = 0; ///< for it to be read, once its turn had come
 
   int frame() const { return scene.frame.number; }
 };

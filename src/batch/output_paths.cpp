@@ -1,5 +1,6 @@
 #include "batch/output_paths.h"
 
+#include "batch/folder_names.h"
 #include "console/streams.h"
 #include "report/report.h"
 #include "text/frame_range.h"
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <unistd.h>
 
 namespace vdbeam::cli {
@@ -42,49 +44,80 @@ std::string without_token(const std::string& path, const std::string& token) {
   return result;
 }
 
-/// Names may have 255 bytes on most file systems, whole paths 4095 (of which the temporary file's
-/// name, at most 240 bytes long, takes its share).
-void check_length(const std::string& option, const std::string& path) {
-  const std::string folder = fs::path(path).parent_path().string();
-  const long most = ::pathconf(folder.empty() ? "." : folder.c_str(), _PC_NAME_MAX);
-  const std::size_t longest_name = most > 0 ? static_cast<std::size_t>(most) : NAME_MAX;
-  const std::size_t name = fs::path(path).filename().string().size();
-  if (name > longest_name)
-    throw InputError(fmt::format("{}: a name of {} bytes is too long, {} are possible here; choose "
-                                 "a shorter one",
-                                 option, name, longest_name));
-  constexpr std::size_t temporary_name = 240;
-  if (std::max(path.size(), folder.size() + temporary_name) >= PATH_MAX)
-    throw InputError(fmt::format("{}: a path of {} bytes is too long; choose a shorter one", option,
-                                 path.size()));
-}
-
 void check_replaceable(const std::string& option, const std::string& path) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
     fail(option, path, "is not a regular file");
 }
 
-void check_one(const std::string& option, const std::string& name) {
-  check_length(option, name);
-  std::error_code error;
-  const fs::path path(name);
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (path.filename().empty() || fs::is_directory(path, error))
-    fail(option, name, "is a folder; add a file's name");
-  if (!fs::exists(folder, error))
-    fail(option, name,
-         unexpanded_hint(folder.string()).empty()
-             ? fmt::format("there is no folder {0}; make it with: mkdir -p {0}", folder.string())
-             : fmt::format("there is no folder {}{}", folder.string(),
-                           unexpanded_hint(folder.string())));
-  if (!fs::is_directory(folder, error))
-    fail(option, name, fmt::format("{} is not a folder", folder.string()));
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-    fail(option, name,
-         fmt::format("no permission to write into {}; choose another folder", folder.string()));
-  check_replaceable(option, name);
-}
+/// Checks the paths of a sequence: what is true of a folder is asked for once.
+class PathCheck {
+public:
+  explicit PathCheck(std::string option) : option_(std::move(option)) {}
+
+  /// A path that is given to an option.
+  void check(const std::string& path) {
+    check_length(path);
+    const SplitPath split(path);
+    const FolderNames::Folder& folder = names_.of(split.folder);
+    const bool may_be_there = folder.may_hold(lower_case(std::string(split.name)));
+    std::error_code error;
+    if (split.name.empty() || (may_be_there && fs::is_directory(path, error)))
+      fail(option_, path, "is a folder; add a file's name");
+    check_folder(path, std::string(split.folder));
+    if (may_be_there)
+      check_replaceable(option_, path);
+  }
+  /// A path beside one that was checked.
+  void check_beside(const std::string& path) {
+    check_length(path);
+    const SplitPath split(path);
+    if (names_.of(split.folder).may_hold(lower_case(std::string(split.name))))
+      check_replaceable(option_, path);
+  }
+
+private:
+  /// Names may have 255 bytes on most file systems, whole paths 4095 (of which the temporary file's
+  /// name, at most 240 bytes long, takes its share).
+  void check_length(const std::string& path) {
+    const SplitPath split(path);
+    if (measured_ != split.folder) {
+      measured_ = split.folder;
+      const long most = ::pathconf(measured_->empty() ? "." : measured_->c_str(), _PC_NAME_MAX);
+      longest_name_ = most > 0 ? static_cast<std::size_t>(most) : NAME_MAX;
+    }
+    if (split.name.size() > longest_name_)
+      throw InputError(fmt::format("{}: a name of {} bytes is too long, {} are possible here; "
+                                   "choose a shorter one",
+                                   option_, split.name.size(), longest_name_));
+    constexpr std::size_t temporary_name = 240;
+    if (std::max(path.size(), split.folder.size() + temporary_name) >= PATH_MAX)
+      throw InputError(fmt::format("{}: a path of {} bytes is too long; choose a shorter one",
+                                   option_, path.size()));
+  }
+  void check_folder(const std::string& path, const std::string& name) {
+    if (sound_ == name)
+      return;
+    const std::string folder = name.empty() ? "." : name;
+    std::error_code error;
+    if (!fs::exists(folder, error))
+      fail(option_, path,
+           unexpanded_hint(folder).empty()
+               ? fmt::format("there is no folder {0}; make it with: mkdir -p {0}", folder)
+               : fmt::format("there is no folder {}{}", folder, unexpanded_hint(folder)));
+    if (!fs::is_directory(folder, error))
+      fail(option_, path, fmt::format("{} is not a folder", folder));
+    if (access(folder.c_str(), W_OK | X_OK) != 0)
+      fail(option_, path,
+           fmt::format("no permission to write into {}; choose another folder", folder));
+    sound_ = name;
+  }
+
+  std::string option_;
+  FolderNames names_;
+  std::optional<std::string> measured_, sound_; ///< the folders that were asked about last
+  std::size_t longest_name_ = 0;
+};
 
 } // namespace
 
@@ -100,8 +133,11 @@ void check_output_path(const std::string& option, const std::string& path,
     fail(
         option, path,
         fmt::format("{} frames would go to one file; write {}", frames.size(), with_pattern(path)));
+  PathCheck check(option);
+  if (!has_frame_pattern(path))
+    return check.check(path);
   for (const int frame : frames)
-    check_one(option, substitute_frame(path, frame));
+    check.check(substitute_frame(path, frame));
 }
 
 void check_output_paths(const FrameFiles& files, const std::vector<int>& frames) {
@@ -109,14 +145,14 @@ void check_output_paths(const FrameFiles& files, const std::vector<int>& frames)
     const std::string pattern = kind.pattern(files);
     if (pattern.empty() || (kind.is_text && is_stdout(pattern)))
       continue;
-    if (!kind.is_side_file())
-      check_output_path(kind.name, pattern,
-                        kind.of_all_frames ? std::vector{frames.front()} : frames);
-    else // beside a file that was checked
-      for (const int frame : frames) {
-        check_length(kind.name, output_path(files, kind.output, frame));
-        check_replaceable(kind.name, output_path(files, kind.output, frame));
-      }
+    const std::vector<int>& wanted = kind.of_all_frames ? std::vector{frames.front()} : frames;
+    if (!kind.is_side_file()) {
+      check_output_path(kind.name, pattern, wanted);
+      continue;
+    }
+    PathCheck check(kind.name); // beside a file that was checked
+    for (const int frame : wanted)
+      check.check_beside(substitute_frame(pattern, frame));
   }
 }
 

@@ -73,16 +73,23 @@ std::string job_name(const std::string& scene) {
   return name.empty() ? "vdbeam" : name;
 }
 
+/// Images that the tasks compare their passes with.
+int reference_count(const std::vector<std::string>& also) {
+  return static_cast<int>(std::count_if(also.begin(), also.end(), [](const std::string& option) {
+    return option.starts_with("--reference") || option.starts_with("--second-reference");
+  }));
+}
+
 /// Memory for the frame that needs most, of the first, the middle and the last one. What such a
 /// frame lacks is told when its turn comes, as `vdbeam render` does; only where all of them lack
 /// something is it an error now.
-void plan_memory(FarmJob& job, const SceneDocument& document) {
+void plan_memory(FarmJob& job, const SceneDocument& document, int references) {
   job.memory_mib = job.merge_memory_mib = 0;
   std::exception_ptr first_error;
-  for (const std::size_t i : {std::size_t{0}, job.frames.size() / 2, job.frames.size() - 1}) {
+  for (const int frame : frames_to_plan(job.frames, document.depends_on_frame())) {
     try {
-      const Scene scene = document.scene_at(job.frames[i]);
-      const MemoryPlan plan = plan_memory(scene);
+      const Scene scene = document.scene_at(frame);
+      const MemoryPlan plan = plan_memory(scene, references);
       job.memory_mib = std::max(job.memory_mib, task_memory_mib(plan));
       job.merge_memory_mib = std::max(job.merge_memory_mib, merge_memory_mib(plan));
     } catch (const Error&) {
@@ -219,7 +226,7 @@ FarmJob make_job(const FarmOptions& options) {
   job.memory_mib = job.merge_memory_mib = options.memory_mib;
   check_tasks(job, document, options.scene.words());
   if (options.memory_mib == 0)
-    plan_memory(job, document);
+    plan_memory(job, document, reference_count(options.also));
   if (const std::string note = still_note(document, options.scene.path(), job.frames);
       !note.empty())
     log("note: {}", note);

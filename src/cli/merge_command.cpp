@@ -28,12 +28,15 @@ int run_merge(const MergeOptions& options) {
   const FrameFiles files{.output = options.output, .preview = options.preview};
   check_output_paths(files, {1});
   output_format(options.output);
-  check_output_path("--partial", options.settings.partial, {1});
+  const std::string& partial = options.settings.partial;
+  check_output_path("--partial", partial, {1});
+  if (!partial.empty() && !output_format(partial).complete)
+    throw InputError(one_line("--partial " + partial + ": a partial image must be an .exr"));
   FileClaims claims;
-  for (const std::string& partial : options.partials)
-    claims.input("the partial image", partial);
+  for (const std::string& part : options.partials)
+    claims.input("the partial image", part);
   claims.outputs_of(files, {Output::image, Output::deep, Output::preview}, {1});
-  claims.output("--partial", options.settings.partial);
+  claims.output("--partial", partial);
   if (options.settings.passes && *options.settings.passes < 1)
     throw InputError(fmt::format("--passes {}: must be at least 1", *options.settings.passes));
   MergeSettings settings = options.settings;

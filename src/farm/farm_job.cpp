@@ -2,6 +2,7 @@
 
 #include "vdbeam/error.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -23,6 +24,16 @@ std::uint64_t with_margin(std::uint64_t bytes) {
 int task_count(const FarmJob& job) {
   const int frames = static_cast<int>(job.frames.size());
   return (frames + job.chunk - 1) / job.chunk;
+}
+
+std::vector<int> frames_to_plan(const std::vector<int>& frames, bool frames_differ) {
+  std::vector<int> planned{frames.front()};
+  if (!frames_differ)
+    return planned;
+  for (const int frame : {frames[frames.size() / 2], frames.back()})
+    if (std::find(planned.begin(), planned.end(), frame) == planned.end())
+      planned.push_back(frame);
+  return planned;
 }
 
 std::vector<std::string> pass_ranges(const FarmJob& job) {

@@ -33,6 +33,10 @@ struct FarmJob {
 /// Number of tasks that `frames` make in chunks.
 int task_count(const FarmJob& job);
 
+/// The frames whose planned memory stands for all: the first, the middle and the last one, each
+/// once, or the first alone where the scene is the same for all frames.
+std::vector<int> frames_to_plan(const std::vector<int>& frames, bool frames_differ);
+
 /// The passes of each part: "0-31", "32-63". As even as can be, the larger parts first; a single
 /// empty text where the frame is not split. Throws InputError for more parts than passes.
 std::vector<std::string> pass_ranges(const FarmJob& job);

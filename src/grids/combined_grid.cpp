@@ -29,7 +29,7 @@ Boxd extended(Boxd box, const Vec3d& by) {
 } // namespace
 
 DensityGrid sum_of_grids(std::vector<DensityGrid> grids, const std::string& label,
-                         std::uint64_t maximum_bytes) {
+                         const FieldLimits& limits) {
   const auto first = std::find_if(grids.begin(), grids.end(),
                                   [](const DensityGrid& grid) { return !grid.field.empty(); });
   if (first == grids.end())
@@ -58,7 +58,7 @@ DensityGrid sum_of_grids(std::vector<DensityGrid> grids, const std::string& labe
       total += grids[i].field.sample(Vec3f(to_other[i].point(local)));
     return total;
   };
-  sum.field = builder.build(value, maximum_bytes);
+  sum.field = builder.build(value, limits);
   for (const DensityGrid& grid : grids) {
     sum.active_voxels += grid.active_voxels;
     sum.notes.insert(sum.notes.end(), grid.notes.begin(), grid.notes.end());
@@ -67,7 +67,7 @@ DensityGrid sum_of_grids(std::vector<DensityGrid> grids, const std::string& labe
 }
 
 DensityGrid displaced_grid(const DensityGrid& grid, const NoiseSettings& noise,
-                           const std::string& label, std::uint64_t maximum_bytes) {
+                           const std::string& label, const FieldLimits& limits) {
   if (grid.field.empty() || !(noise.amplitude > 0))
     return grid;
   const Affine to_world = local_to_world(grid), from_world = to_world.inverse();
@@ -86,7 +86,7 @@ DensityGrid displaced_grid(const DensityGrid& grid, const NoiseSettings& noise,
             local + from_world.vector(noise_displacement(noise, to_world.point(local)));
         return grid.field.sample(Vec3f(moved));
       },
-      maximum_bytes);
+      limits);
   return displaced;
 }
 

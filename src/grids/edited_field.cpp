@@ -29,7 +29,7 @@ public:
     to_mask_ = back.after(edits.mask_to_world.inverse()).after(to_world_);
   }
 
-  DensityField edit() {
+  DensityField edit(const StopToken* stop) {
     number_cells();
     std::vector<float> bricks(brick_count_ * brick_size);
     const Vec3<int>& n = field_.cell_counts();
@@ -38,6 +38,8 @@ public:
         std::int32_t& entry = table_[field_.cell_offset(column / n.y, column % n.y, k)];
         if (entry < 0)
           continue;
+        if (stop)
+          stop->check();
         float* brick = bricks.data() + static_cast<std::size_t>(entry) * brick_size;
         if (!fill_brick(column / n.y, column % n.y, k, brick))
           entry = DensityField::empty_cell;
@@ -161,8 +163,9 @@ float remapped(const DensityRemap& remap, const Curve* curve, float value) {
   return x > 0 ? static_cast<float>(std::min(x, greatest_density)) : 0;
 }
 
-DensityField edited_field(const DensityField& field, const GridEdits& edits) {
-  return field.empty() || !edits.changes() ? field : Editor(field, edits).edit();
+DensityField edited_field(const DensityField& field, const GridEdits& edits,
+                          const StopToken* stop) {
+  return field.empty() || !edits.changes() ? field : Editor(field, edits).edit(stop);
 }
 
 } // namespace vdbeam

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/stop_token.h"
 #include "text/curve.h"
 #include "vdb/vdb_reader.h"
 #include "vdbeam/volume_edits.h"
@@ -27,7 +28,8 @@ float remapped(const DensityRemap& remap, float value);
 /// The same with its curve read already; null: it has none.
 float remapped(const DensityRemap& remap, const Curve* curve, float value);
 
-/// Applies the edits to a field with this origin.
-DensityField edited_field(const DensityField& field, const GridEdits& edits);
+/// Applies the edits to a field with this origin. Throws Stopped.
+DensityField edited_field(const DensityField& field, const GridEdits& edits,
+                          const StopToken* stop = nullptr);
 
 } // namespace vdbeam

@@ -55,7 +55,7 @@ private:
 
 EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& intensity,
                            const DensityGrid& temperature, const std::string& label,
-                           std::uint64_t maximum_bytes) {
+                           const FieldLimits& limits) {
   const bool intense = !settings.intensity.empty(), hot = !settings.temperature.empty();
   EmissionGrid result;
   for (const auto& [used, grid] : {std::pair(intense, &intensity), std::pair(hot, &temperature)})
@@ -69,11 +69,11 @@ EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& 
     return result;
   const bool uniform = !(intense && hot);
   if (const std::uint64_t bytes = EmissionField::bytes_of(shape.field, uniform);
-      bytes > maximum_bytes)
+      bytes > limits.bytes)
     throw FrameError(fmt::format("{}: its emission needs {:.2f} GiB as bricks, more than the limit "
                                  "of {:.2f} GiB",
                                  label, static_cast<double>(bytes) / (1 << 30),
-                                 static_cast<double>(maximum_bytes) / (1 << 30)));
+                                 static_cast<double>(limits.bytes) / (1 << 30)));
   EmissionField::Law law;
   const ColorLaw color(settings);
   if (!hot && color.has_ramp())
@@ -93,7 +93,7 @@ EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& 
       return color.at(degrees) * value;
     };
   }
-  auto field = std::make_shared<EmissionField>(shape.field, law, uniform);
+  auto field = std::make_shared<EmissionField>(shape.field, law, uniform, limits.stop);
   if (!field->empty())
     result.field = std::move(field);
   return result;

@@ -3,6 +3,7 @@
 #include "vdb/vdb_reader.h"
 #include "vdbeam/scene.h"
 #include "volume/emission_field.h"
+#include "volume/field_limits.h"
 
 #include <memory>
 
@@ -24,10 +25,10 @@ Rgb blackbody_emission(const EmissionSettings& settings, float value);
 
 /// Emission at the voxels of the intensity grid, or of the temperature grid where there is no
 /// other; a temperature on another lattice is interpolated there. The grids that the settings name
-/// must be given. Throws FrameError, opening with `label`, where the field would exceed
-/// `maximum_bytes`.
+/// must be given. Throws FrameError, opening with `label`, where the field would exceed the limit,
+/// and Stopped.
 EmissionGrid make_emission(const EmissionSettings& settings, const DensityGrid& intensity,
                            const DensityGrid& temperature, const std::string& label,
-                           std::uint64_t maximum_bytes);
+                           const FieldLimits& limits);
 
 } // namespace vdbeam

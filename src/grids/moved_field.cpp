@@ -87,17 +87,20 @@ public:
   FieldMover(const DensityField& field, const Displacement& motion)
       : field_(field), motion_(motion), stride_(motion.stride()) {}
 
-  DensityField move(const std::string& label, std::uint64_t maximum_bytes) {
+  DensityField move(const std::string& label, const FieldLimits& limits) {
     find_targets(label);
     drop_targets_of_nothing();
     number_bricks();
-    if (bricks_ * DensityField::brick_size * sizeof(float) > maximum_bytes)
+    if (bricks_ * DensityField::brick_size * sizeof(float) > limits.bytes)
       throw FrameError(label + ": moved by its velocity it needs more memory than there may be");
     std::vector<float> values(bricks_ * DensityField::brick_size);
     for_each_cell(range_.counts(), [&](int i, int j, int k) {
-      if (const std::int32_t brick = table_[offset(i, j, k)]; brick >= 0)
-        fill_brick(i, j, k,
-                   values.data() + static_cast<std::size_t>(brick) * DensityField::brick_size);
+      const std::int32_t brick = table_[offset(i, j, k)];
+      if (brick < 0)
+        return;
+      limits.check();
+      fill_brick(i, j, k,
+                 values.data() + static_cast<std::size_t>(brick) * DensityField::brick_size);
     });
     drop_empty_bricks(values);
     if (values.empty())
@@ -253,7 +256,7 @@ bool stands_still(const Motion& motion) {
 } // namespace
 
 DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
-                       std::uint64_t maximum_bytes) {
+                       const FieldLimits& limits) {
   DensityGrid moved;
   moved.index_to_world = grid.index_to_world;
   moved.repairs = grid.repairs;
@@ -263,7 +266,7 @@ DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std:
   if (grid.field.empty() || stands_still(motion))
     return moved;
   const Displacement displacement(grid, motion);
-  moved.field = FieldMover(grid.field, displacement).move(label, maximum_bytes);
+  moved.field = FieldMover(grid.field, displacement).move(label, limits);
   return moved;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdb/vector_reader.h"
+#include "volume/field_limits.h"
 
 #include <functional>
 
@@ -15,9 +16,9 @@ struct Motion {
 /// The grid as its velocity carries it in settings.time: every point p goes straight to
 /// p + time * v(p), taking its value along (semi-Lagrangian: the value at x is that of the p which
 /// comes to x, found by a fixed point). Voxels stay what they are, on the same lattice. Throws
-/// FrameError, opening with `label`, where the result would exceed `maximum_bytes`.
+/// FrameError, opening with `label`, where the result would exceed the limit, and Stopped.
 DensityGrid moved_grid(const DensityGrid& grid, const Motion& motion, const std::string& label,
-                       std::uint64_t maximum_bytes);
+                       const FieldLimits& limits);
 
 /// Bounds of the ways that a velocity carries points in settings.time [world of the file].
 Boxd ways_of(const Motion& motion);

@@ -39,23 +39,23 @@ float filtered(const float* source, int stride, int i) {
 
 class Refiner {
 public:
-  explicit Refiner(const DensityField& field) : field_(field) {
+  Refiner(const DensityField& field, const FieldLimits& limits) : field_(field), limits_(limits) {
     // A spline reaches one lattice point farther than linear interpolation.
     counts_ = field.cell_counts() * 2 + Vec3<int>(2);
     bricks_.resize(static_cast<std::size_t>(counts_.x) * counts_.y);
   }
 
-  DensityField refine(const std::string& label, std::uint64_t maximum_bytes) {
+  DensityField refine(const std::string& label) {
     tbb::parallel_for(0, counts_.x * counts_.y, [&](int column) { fill_column(column); });
     std::size_t values = 0;
     for (const Column& column : bricks_)
       values += column.values.size();
-    if (2 * values * sizeof(float) > maximum_bytes)
+    if (2 * values * sizeof(float) > limits_.bytes)
       throw FrameError(fmt::format("{}: with interpolation = \"cubic\" it needs {:.2f} GiB, more "
                                    "than the limit of {:.2f} GiB",
                                    label,
                                    static_cast<double>(2 * values * sizeof(float)) / (1 << 30),
-                                   static_cast<double>(maximum_bytes) / (1 << 30)));
+                                   static_cast<double>(limits_.bytes) / (1 << 30)));
     std::vector<std::int32_t> table;
     std::vector<float> bricks;
     bricks.reserve(values);
@@ -84,6 +84,7 @@ private:
     std::array<float, DensityField::brick_size> brick;
     for (int k = 0; k < counts_.z; ++k) {
       const Vec3<int> cell{index / counts_.y, index % counts_.y, k};
+      limits_.check();
       const bool there = gather(cell, block) && interpolate(block, brick);
       column.there.push_back(there);
       if (there)
@@ -147,6 +148,7 @@ private:
   }
 
   const DensityField& field_;
+  const FieldLimits& limits_;
   Vec3<int> counts_;
   std::vector<Column> bricks_;
   std::size_t next_brick_ = 0;
@@ -155,7 +157,7 @@ private:
 } // namespace
 
 DensityGrid refined_grid(const DensityGrid& grid, const std::string& label,
-                         std::uint64_t maximum_bytes) {
+                         const FieldLimits& limits) {
   DensityGrid result = grid;
   if (grid.field.empty())
     return result;
@@ -164,7 +166,7 @@ DensityGrid refined_grid(const DensityGrid& grid, const std::string& label,
     half.rows[static_cast<std::size_t>(a)] = half.rows[static_cast<std::size_t>(a)] * 0.5;
   result.index_to_world = grid.index_to_world.after(half);
   result.active_voxels = 8 * grid.active_voxels;
-  result.field = Refiner(grid.field).refine(label, maximum_bytes);
+  result.field = Refiner(grid.field, limits).refine(label);
   return_freed_memory();
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdb/vdb_reader.h"
+#include "volume/field_limits.h"
 
 namespace vdbeam {
 
@@ -8,8 +9,8 @@ namespace vdbeam {
 /// which no cube shows, as Cycles interpolates (Sigg and Hadwiger, GPU Gems 2, chapter 20). Its
 /// values are never negative nor greater than the grid's, and their sum is kept; in between it is
 /// linear, like every grid. Takes eight times the memory and more: FrameError, opening with
-/// `label`, where that is over the maximum.
+/// `label`, where that is over the limit. Throws Stopped.
 DensityGrid refined_grid(const DensityGrid& grid, const std::string& label,
-                         std::uint64_t maximum_bytes);
+                         const FieldLimits& limits);
 
 } // namespace vdbeam

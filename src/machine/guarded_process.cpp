@@ -169,8 +169,9 @@ public:
   Child& operator=(const Child&) = delete;
   ~Child() { end(); }
 
-  /// Waits for the message; nothing where the child died without one or the time is over.
-  std::optional<Message> wait(double seconds);
+  /// Waits for the message; nothing where the child died without one or the time is over. Throws
+  /// Stopped.
+  std::optional<Message> wait(const GuardLimits& limits);
   /// Kills the child if it still runs. Returns its wait status, or -1 where someone else took it.
   int end() {
     if (!reaped_)
@@ -207,12 +208,12 @@ std::optional<Message> Child::receive(int milliseconds) {
   return message;
 }
 
-std::optional<Message> Child::wait(double seconds) {
+std::optional<Message> Child::wait(const GuardLimits& limits) {
   // A queue that suspends the job (SIGSTOP) stops both processes, so a look at the clock that comes
   // late counts as one second: the child could not work meanwhile.
   constexpr double longest_step = 1;
   double used = 0, last = 0;
-  for (const Stopwatch watch; used < seconds;) {
+  for (const Stopwatch watch; used < limits.seconds;) {
     const double now = watch.seconds();
     used += std::min(now - last, longest_step);
     last = now;
@@ -223,6 +224,8 @@ std::optional<Message> Child::wait(double seconds) {
     reap(WNOHANG);
     if (reaped_)
       return receive(0);
+    if (limits.stop)
+      limits.stop->check();
   }
   return receive(0); // the answer may have come since the last look
 }
@@ -329,7 +332,7 @@ MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
   }
   write_end = Descriptor();
   Child child(id, std::move(read_end));
-  const std::optional<Message> message = child.wait(limits.seconds);
+  const std::optional<Message> message = child.wait(limits);
   const bool died = child.died();
   const int status = child.end();
   if (!message || message->outcome != Outcome::done)

@@ -36,7 +36,8 @@ void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t gr
            "picture");
 }
 
-std::optional<MemoryPlan> plan_large_frame(const Scene& scene, std::uint64_t granted) {
+std::optional<MemoryPlan> plan_large_frame(const Scene& scene, int references,
+                                           std::uint64_t granted) {
   // Bricks take 40 bytes for each byte of a file that holds nothing but leaves of one value; steps
   // of the preparation need a second field, and cubic interpolation one of eight times the size.
   constexpr double bytes_per_byte = 160, of_cubic = 10, bytes_per_pixel = 1000;
@@ -55,7 +56,7 @@ std::optional<MemoryPlan> plan_large_frame(const Scene& scene, std::uint64_t gra
   if (bound < 0.5 * static_cast<double>(granted) && scene.surfaces.empty() && !scene.image.deep)
     return std::nullopt;
   try {
-    return plan_memory(scene);
+    return plan_memory(scene, references);
   } catch (const Error&) {
     return std::nullopt; // reading the files says what is wrong with them
   }

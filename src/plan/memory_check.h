@@ -12,7 +12,8 @@ void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t gr
 
 /// What plan_memory finds; nothing where a bound by the sizes of the frame's files shows that it
 /// takes less than half of `granted`, or where its files cannot be read.
-std::optional<MemoryPlan> plan_large_frame(const Scene& scene, std::uint64_t granted);
+std::optional<MemoryPlan> plan_large_frame(const Scene& scene, int references,
+                                           std::uint64_t granted);
 
 /// Throws InputError, with what needs most and a remedy, where the planned peak is more than
 /// `granted` bytes.

@@ -94,7 +94,7 @@ public:
                 static_cast<std::uint64_t>(scene.image.raster_height())),
         hits_(share_of_hits(scene, volumes, true)) {}
 
-  MemoryPlan estimate() {
+  MemoryPlan estimate(int references) {
     result_.kept = volumes_.kept;
     result_.film = plan_.film_bytes + plan_.deep_bytes;
     const std::uint64_t program =
@@ -111,6 +111,7 @@ public:
     add_shadows();
     add_film();
     add_deep();
+    add_references(references);
     result_.program = program;
     return std::move(result_);
   }
@@ -218,6 +219,16 @@ private:
         kept + pieces * developed);
   }
 
+  /// Their colours and, where they are compared, two errors of each pixel, whose memory the
+  /// allocator keeps. For that the picture is developed after each pass.
+  void add_references(int count) {
+    const std::uint64_t bytes =
+        static_cast<std::uint64_t>(count) * pixels_ * (3 * sizeof(float) + 2 * sizeof(double));
+    const std::uint64_t developed = pixels_ * Film::developed_bytes_per_pixel(scene_.glows());
+    add("references", "--reference", "ask for a smaller picture, or for no comparison", 0,
+        count > 0 ? bytes + developed : 0, bytes);
+  }
+
   const Scene& scene_;
   const VolumesMemory& volumes_;
   const RenderPlan& plan_;
@@ -229,13 +240,13 @@ private:
 
 } // namespace
 
-MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan,
-                           const VolumesMemory& volumes) {
-  return MemoryModel(scene, volumes, plan).estimate();
+MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan, const VolumesMemory& volumes,
+                           int references) {
+  return MemoryModel(scene, volumes, plan).estimate(references);
 }
 
-MemoryPlan plan_memory(const Scene& scene) {
-  return estimate_memory(scene, make_plan(scene), estimate_volumes(scene));
+MemoryPlan plan_memory(const Scene& scene, int references) {
+  return estimate_memory(scene, make_plan(scene), estimate_volumes(scene), references);
 }
 
 } // namespace vdbeam

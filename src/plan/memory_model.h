@@ -29,8 +29,9 @@ struct VolumesMemory {
 /// Estimates it from the topology of the files' trees. Throws as read_density_grid.
 VolumesMemory estimate_volumes(const Scene& scene);
 
-/// The memory of a frame of this plan whose volumes take so much.
-MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan,
-                           const VolumesMemory& volumes);
+/// The memory of a frame of this plan whose volumes take so much, and that is compared with so many
+/// reference images.
+MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan, const VolumesMemory& volumes,
+                           int references);
 
 } // namespace vdbeam

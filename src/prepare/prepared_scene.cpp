@@ -6,10 +6,12 @@
 #include "machine/stopwatch.h"
 #include "prepare/read_volumes.h"
 #include "scene/working_space.h"
+#include "text/text.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -66,6 +68,18 @@ std::vector<VolumeSettings> moments_of(const Scene& scene, std::size_t volume) {
 
 } // namespace
 
+double preparation_limit(const RenderSettings& settings) {
+  constexpr double grace = 0.5;
+  return settings.time ? *settings.time + grace : std::numeric_limits<double>::infinity();
+}
+
+FrameError preparation_failure(const std::string& what, const RenderSettings& settings) {
+  return FrameError(fmt::format("{}: the time limit of {} ended the frame while its files were "
+                                "read and its volumes prepared, so there is no image; give it more "
+                                "time",
+                                what, format_duration(*settings.time)));
+}
+
 std::uint64_t photon_cache_capacity() {
   return std::min<std::uint64_t>(granted_memory() / 8, std::uint64_t{1} << 30);
 }
@@ -117,7 +131,8 @@ void note_axes(const Scene& scene, std::size_t i, const DensityGrid& grid,
 
 /// The same of a scene whose colours are in its working space.
 /// A frame whose world is that of the one before: only what is animated about its motion is read.
-void take_over(const Scene& scene, const PreparedScenePtr& previous, PreparedScene& prepared) {
+void take_over(const Scene& scene, const PreparedScenePtr& previous, const StopToken& stop,
+               PreparedScene& prepared) {
   prepared.world = previous->world;
   prepared.facts = previous->facts;
   prepared.facts.surfaces = {};
@@ -129,8 +144,8 @@ void take_over(const Scene& scene, const PreparedScenePtr& previous, PreparedSce
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     ReadVolume& read = prepared.volumes[i];
     read.sources.clear();
-    take_velocity(scene, i, previous, read);
-    keep_sources(scene.volumes[i], moments_of(scene, i), previous, read);
+    take_velocity(scene, i, previous, stop, read);
+    keep_sources(scene.volumes[i], moments_of(scene, i), previous, stop, read);
     prepared.grids_read += std::exchange(read.grids_read, 0);
   }
 }
@@ -146,7 +161,7 @@ struct ReadGrids {
 /// The density of a volume: that of an earlier volume of the scene which is read from the same file
 /// in the same way, or a grid of its own.
 void read_density(const VolumeSettings& volume, const PreparedScenePtr& previous, std::size_t index,
-                  ReadGrids& grids, ReadVolume& read) {
+                  const StopToken& stop, ReadGrids& grids, ReadVolume& read) {
   const std::string identity = volume.needs_density() ? density_identity(volume) : "";
   const auto same = grids.readers.find(identity);
   if (!identity.empty() && stands_still(volume, read) && same != grids.readers.end()) {
@@ -156,26 +171,26 @@ void read_density(const VolumeSettings& volume, const PreparedScenePtr& previous
     read.identity = identity;
     return;
   }
-  grids.density.push_back(take_grid(volume, previous, read));
-  take_colors(volume, previous, read, grids.density.back());
+  grids.density.push_back(take_grid(volume, previous, stop, read));
+  take_colors(volume, previous, stop, read, grids.density.back());
   if (!identity.empty() && stands_still(volume, read))
     grids.readers.try_emplace(identity, index);
 }
 
-ReadGrids read_grids(const Scene& scene, const PreparedScenePtr& previous,
+ReadGrids read_grids(const Scene& scene, const PreparedScenePtr& previous, const StopToken& stop,
                      PreparedScene& prepared) {
   ReadGrids grids;
   int kept = 0;
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const VolumeSettings& volume = scene.volumes[i];
     ReadVolume read;
-    take_velocity(scene, i, previous, read);
-    keep_sources(volume, moments_of(scene, i), previous, read);
-    read_density(volume, previous, i, grids, read);
+    take_velocity(scene, i, previous, stop, read);
+    keep_sources(volume, moments_of(scene, i), previous, stop, read);
+    read_density(volume, previous, i, stop, grids, read);
     const DensityGrid& grid = grids.density.back();
     note_axes(scene, i, grid, grids.axis_notes);
     keep_facts(grid, read);
-    grids.emission.push_back(take_emission(volume, previous, prepared.volumes, read));
+    grids.emission.push_back(take_emission(volume, previous, prepared.volumes, stop, read));
     read.emission = grids.emission.back();
     prepared.grids_read += std::exchange(read.grids_read, 0);
     // As build_world leaves volumes out.
@@ -188,20 +203,22 @@ ReadGrids read_grids(const Scene& scene, const PreparedScenePtr& previous,
   return grids;
 }
 
-PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
+PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous,
+                         const StopToken& stop) {
   Stopwatch watch;
   auto prepared = std::make_shared<PreparedScene>();
   prepared->world_settings =
       previous ? moved_world_settings(scene, *previous) : world_settings(scene);
   prepared->photon_settings = photon_settings(scene);
   if (previous && previous->world_settings == prepared->world_settings) {
-    take_over(scene, previous, *prepared);
+    take_over(scene, previous, stop, *prepared);
     note_velocities(scene, *prepared);
     prepared->seconds_read = prepared->grids_read > 0 ? watch.seconds() : 0;
     return prepared;
   }
-  ReadGrids grids = read_grids(scene, previous, *prepared);
+  ReadGrids grids = read_grids(scene, previous, stop, *prepared);
   return_freed_memory();
+  stop.check();
   prepared->seconds_read = watch.restart();
   prepared->world = std::make_shared<const World>(
       build_world(scene, std::move(grids.density), std::move(grids.emission), &prepared->facts,
@@ -220,10 +237,20 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous) {
 
 } // namespace
 
-PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous) {
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous,
+                               const StopToken& stop) {
   if (scene.image.working_space == ColorSpace::rec709)
-    return prepare(scene, previous);
-  return prepare(in_working_space(scene), previous);
+    return prepare(scene, previous, stop);
+  return prepare(in_working_space(scene), previous, stop);
+}
+
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous,
+                               const std::atomic<bool>* stop) {
+  try {
+    return prepare_scene(scene, previous, StopToken(stop));
+  } catch (const Stopped&) {
+    throw FrameError(scene.path + ": was stopped while its files were read and prepared");
+  }
 }
 
 } // namespace vdbeam

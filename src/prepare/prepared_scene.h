@@ -1,9 +1,11 @@
 #pragma once
 
+#include "math/stop_token.h"
 #include "photons/photon_cache.h"
 #include "prepare/source_grid.h"
 #include "transport/world.h"
 #include "vdb/vector_reader.h"
+#include "vdbeam/error.h"
 #include "vdbeam/render.h"
 
 #include <memory>
@@ -45,6 +47,16 @@ public:
   /// Bytes of the grids that are kept for the moments of the scene.
   std::uint64_t source_bytes() const;
 };
+
+/// As the public prepare_scene, but throws Stopped where the token ends it.
+PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous,
+                               const StopToken& stop);
+
+/// Seconds that preparing a scene may take: those of its stop rule, if any, and half a second, in
+/// which a small scene is ready for a quick look however short its time is.
+double preparation_limit(const RenderSettings& settings);
+/// Why there is no image where it took longer. `what`: the frame.
+FrameError preparation_failure(const std::string& what, const RenderSettings& settings);
 
 /// Bytes for photons that later frames may use: at most an eighth of the memory.
 std::uint64_t photon_cache_capacity();

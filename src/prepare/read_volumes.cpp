@@ -75,13 +75,13 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
 
 /// The colours of a volume, read, or taken from `previous`.
 Colors find_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                   const std::string& identity, ReadVolume& read) {
+                   const std::string& identity, const StopToken& stop, ReadVolume& read) {
   if (previous)
     for (const ReadVolume& known : previous->volumes)
       if (known.color_identity == identity)
         return known.colors;
   ++read.grids_read;
-  return read_colors(volume.file, volume.color_grid);
+  return read_colors(volume.file, volume.color_grid, {.stop = &stop});
 }
 
 /// A grid that the volume keeps, or one of `previous` does; null: there is none.
@@ -100,20 +100,22 @@ const DensityGrid* find_source(const std::string& identity, const std::optional<
 
 DensityGrid take_density_source(const VolumeSettings& volume,
                                 const std::optional<WantedBox>& wanted,
-                                const PreparedScenePtr& previous, ReadVolume& read) {
+                                const PreparedScenePtr& previous, const StopToken& stop,
+                                ReadVolume& read) {
   if (const DensityGrid* known =
           find_source(density_source_identity(volume), wanted, previous, read))
     return *known;
-  return read_density_source(volume, wanted, read.grids_read);
+  return read_density_source(volume, wanted, stop, read.grids_read);
 }
 
 DensityGrid take_emission_source(const VolumeSettings& volume, const std::string& name,
                                  const std::optional<WantedBox>& wanted,
-                                 const PreparedScenePtr& previous, ReadVolume& read) {
+                                 const PreparedScenePtr& previous, const StopToken& stop,
+                                 ReadVolume& read) {
   if (const DensityGrid* known =
           find_source(emission_source_identity(volume, name), wanted, previous, read))
     return *known;
-  return read_emission_source(volume, name, wanted, read.grids_read);
+  return read_emission_source(volume, name, wanted, stop, read.grids_read);
 }
 
 } // namespace
@@ -149,7 +151,7 @@ std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* 
 }
 
 void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings>& moments,
-                  const PreparedScenePtr& previous, ReadVolume& read) {
+                  const PreparedScenePtr& previous, const StopToken& stop, ReadVolume& read) {
   bool density = false, glows = false;
   std::optional<WantedBox> wanted = wanted_box(volume, nullptr);
   const std::string edits = density_text(volume), emission = emission_identity(volume);
@@ -165,16 +167,16 @@ void keep_sources(const VolumeSettings& volume, const std::vector<VolumeSettings
   }
   if (density && volume.needs_density())
     read.sources.push_back({density_source_identity(volume), wanted,
-                            take_density_source(volume, wanted, previous, read)});
+                            take_density_source(volume, wanted, previous, stop, read)});
   if (glows && volume.glows())
     for (const std::string& name : {volume.emission.intensity, volume.emission.temperature})
       if (!name.empty())
         read.sources.push_back({emission_source_identity(volume, name), wanted,
-                                take_emission_source(volume, name, wanted, previous, read)});
+                                take_emission_source(volume, name, wanted, previous, stop, read)});
 }
 
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                      ReadVolume& read) {
+                      const StopToken& stop, ReadVolume& read) {
   if (!volume.needs_density())
     return {};
   read.identity = density_identity(volume);
@@ -188,20 +190,21 @@ DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& prev
     if (!motion)
       return grid;
     read.identity.clear(); // other frames have no use for it
-    return moved_grid(grid, *motion, volume.file, granted_memory());
+    return moved_grid(grid, *motion, volume.file, {granted_memory(), &stop});
   }
-  DensityGrid grid =
-      take_density_source(volume, wanted_box(volume, motion ? &*motion : nullptr), previous, read);
+  DensityGrid grid = take_density_source(volume, wanted_box(volume, motion ? &*motion : nullptr),
+                                         previous, stop, read);
   if (motion) {
     read.identity.clear();
-    grid = moved_grid(grid, *motion, volume.file, granted_memory());
+    grid = moved_grid(grid, *motion, volume.file, {granted_memory(), &stop});
   }
-  grid.field = edited_field(grid.field, edits_of(volume, grid, true));
+  grid.field = edited_field(grid.field, edits_of(volume, grid, true), &stop);
   return grid;
 }
 
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
-                           const std::vector<ReadVolume>& earlier, ReadVolume& read) {
+                           const std::vector<ReadVolume>& earlier, const StopToken& stop,
+                           ReadVolume& read) {
   if (!volume.glows())
     return {};
   const auto motion = motion_of(volume, read);
@@ -220,22 +223,22 @@ EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr&
   }
   const std::optional<WantedBox> wanted = wanted_box(volume, motion ? &*motion : nullptr);
   const auto take = [&](const std::string& name) {
-    DensityGrid grid = take_emission_source(volume, name, wanted, previous, read);
+    DensityGrid grid = take_emission_source(volume, name, wanted, previous, stop, read);
     if (motion)
-      grid = moved_grid(grid, *motion, volume.file, granted_memory());
-    grid.field = edited_field(grid.field, edits_of(volume, grid, false));
+      grid = moved_grid(grid, *motion, volume.file, {granted_memory(), &stop});
+    grid.field = edited_field(grid.field, edits_of(volume, grid, false), &stop);
     return grid;
   };
   return make_emission(volume.emission, take(volume.emission.intensity),
-                       take(volume.emission.temperature), volume.file, granted_memory());
+                       take(volume.emission.temperature), volume.file, {granted_memory(), &stop});
 }
 
-void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous, ReadVolume& read,
-                 DensityGrid& grid) {
+void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
+                 const StopToken& stop, ReadVolume& read, DensityGrid& grid) {
   if (volume.color_grid.empty() || grid.field.empty() || grid.color)
     return;
   read.color_identity = file_identity(volume.file) + colors_text(volume);
-  read.colors = find_colors(volume, previous, read.color_identity, read);
+  read.colors = find_colors(volume, previous, read.color_identity, stop, read);
   if (!read.colors.field) {
     grid.notes.push_back(volume.file + ": has no grid of colours (color_grid = \"auto\")");
     return;
@@ -258,17 +261,20 @@ void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
   const bool converts = volume.emission.color_space != ColorSpace::rec709;
   const Affine to_colors = colors.index_to_world().inverse();
   const Vec3d origin(grid.field.origin());
-  grid.color = std::make_shared<const ColorField>(grid.field, [&](const Vec3d& local) {
-    Vec3d world = grid.index_to_world.point(source(local + origin));
-    if (volume.noise.amplitude > 0)
-      world += noise_displacement(volume.noise, world);
-    const Vec3d color = colors.sample(to_colors.point(world));
-    return converts ? Rgb(min(max(matrix.apply(color), Vec3d(0)), Vec3d(1))) : Rgb(color);
-  });
+  grid.color = std::make_shared<const ColorField>(
+      grid.field,
+      [&](const Vec3d& local) {
+        Vec3d world = grid.index_to_world.point(source(local + origin));
+        if (volume.noise.amplitude > 0)
+          world += noise_displacement(volume.noise, world);
+        const Vec3d color = colors.sample(to_colors.point(world));
+        return converts ? Rgb(min(max(matrix.apply(color), Vec3d(0)), Vec3d(1))) : Rgb(color);
+      },
+      &stop);
 }
 
 void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& previous,
-                   ReadVolume& read) {
+                   const StopToken& stop, ReadVolume& read) {
   const VolumeSettings& volume = scene.volumes[i];
   const bool wanted = !scene.moments.empty() || asks_for_layer(scene, "motion");
   if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
@@ -282,7 +288,7 @@ void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& pr
       previous->volumes[i].velocity_identity == identity) {
     read.velocity = previous->volumes[i].velocity;
   } else {
-    read.velocity = read_velocity(volume.file, volume.velocity);
+    read.velocity = read_velocity(volume.file, volume.velocity, {.stop = &stop});
     ++read.grids_read;
   }
   read.velocity_identity = identity;

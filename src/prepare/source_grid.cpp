@@ -27,15 +27,16 @@ std::vector<std::string> names_in(const std::string& text) {
 }
 
 DensityGrid masked_density(const VolumeSettings& volume, const std::optional<WantedBox>& wanted,
-                           DensityGrid grid, std::uint64_t& grids_read) {
+                           const StopToken& stop, DensityGrid grid, std::uint64_t& grids_read) {
   for (const std::string& name : names_in(volume.mask)) {
-    const DensityGrid mask = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
+    const DensityGrid mask =
+        read_density_grid(volume.file, name, {.stop = &stop}, Background::ignored, wanted);
     ++grids_read;
     GridEdits edits;
     edits.to_world = grid.index_to_world;
     edits.mask = &mask;
     edits.mask_to_world = mask.index_to_world;
-    grid.field = edited_field(grid.field, edits);
+    grid.field = edited_field(grid.field, edits, &stop);
   }
   return grid;
 }
@@ -66,21 +67,23 @@ std::string density_source_identity(const VolumeSettings& volume) {
 }
 
 DensityGrid read_density_source(const VolumeSettings& volume,
-                                const std::optional<WantedBox>& wanted, std::uint64_t& grids_read) {
+                                const std::optional<WantedBox>& wanted, const StopToken& stop,
+                                std::uint64_t& grids_read) {
   std::vector<DensityGrid> grids;
   std::vector<std::string> names = names_in(volume.add);
   names.insert(names.begin(), volume.density);
   for (const std::string& name : names) {
-    grids.push_back(read_density_grid(volume.file, name, {}, Background::refused, wanted));
+    grids.push_back(
+        read_density_grid(volume.file, name, {.stop = &stop}, Background::refused, wanted));
     ++grids_read;
     if (volume.interpolation == Interpolation::cubic)
-      grids.back() = refined_grid(grids.back(), volume.file, granted_memory());
+      grids.back() = refined_grid(grids.back(), volume.file, {granted_memory(), &stop});
   }
   DensityGrid grid = grids.size() == 1
                          ? std::move(grids.front())
-                         : sum_of_grids(std::move(grids), volume.file, granted_memory());
-  grid = masked_density(volume, wanted, std::move(grid), grids_read);
-  return displaced_grid(grid, volume.noise, volume.file, granted_memory());
+                         : sum_of_grids(std::move(grids), volume.file, {granted_memory(), &stop});
+  grid = masked_density(volume, wanted, stop, std::move(grid), grids_read);
+  return displaced_grid(grid, volume.noise, volume.file, {granted_memory(), &stop});
 }
 
 std::string emission_source_identity(const VolumeSettings& volume, const std::string& grid) {
@@ -89,15 +92,16 @@ std::string emission_source_identity(const VolumeSettings& volume, const std::st
 }
 
 DensityGrid read_emission_source(const VolumeSettings& volume, const std::string& name,
-                                 const std::optional<WantedBox>& wanted,
+                                 const std::optional<WantedBox>& wanted, const StopToken& stop,
                                  std::uint64_t& grids_read) {
   if (name.empty())
     return {};
-  DensityGrid grid = read_density_grid(volume.file, name, {}, Background::ignored, wanted);
+  DensityGrid grid =
+      read_density_grid(volume.file, name, {.stop = &stop}, Background::ignored, wanted);
   ++grids_read;
   if (volume.interpolation == Interpolation::cubic)
-    grid = refined_grid(grid, volume.file, granted_memory());
-  return displaced_grid(grid, volume.noise, volume.file, granted_memory());
+    grid = refined_grid(grid, volume.file, {granted_memory(), &stop});
+  return displaced_grid(grid, volume.noise, volume.file, {granted_memory(), &stop});
 }
 
 } // namespace vdbeam

@@ -21,14 +21,16 @@ struct SourceGrid {
 };
 
 std::string density_source_identity(const VolumeSettings& volume);
-/// Reads the source of a volume's density; adds to `grids_read`.
+/// Reads the source of a volume's density; adds to `grids_read`. Throws Stopped.
 DensityGrid read_density_source(const VolumeSettings& volume,
-                                const std::optional<WantedBox>& wanted, std::uint64_t& grids_read);
+                                const std::optional<WantedBox>& wanted, const StopToken& stop,
+                                std::uint64_t& grids_read);
 
 /// Likewise of a grid of its emission; empty where it has no name.
 std::string emission_source_identity(const VolumeSettings& volume, const std::string& grid);
 DensityGrid read_emission_source(const VolumeSettings& volume, const std::string& grid,
-                                 const std::optional<WantedBox>& wanted, std::uint64_t& grids_read);
+                                 const std::optional<WantedBox>& wanted, const StopToken& stop,
+                                 std::uint64_t& grids_read);
 
 /// The settings of a volume's noise, as text.
 std::string noise_text(const VolumeSettings& volume);

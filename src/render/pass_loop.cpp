@@ -86,16 +86,12 @@ void PassLoop::gather_deep(const DeepLayout& layout) {
 
 /// Rendering time [s] that the passes may take; infinite without a limit.
 double PassLoop::limit_seconds() const {
-  return scene_.render.time && !frame_.pass_range ? *scene_.render.time
+  return scene_.render.time && !frame_.pass_range ? *scene_.render.time - frame_.seconds_used
                                                   : std::numeric_limits<double>::infinity();
 }
 
 void PassLoop::set_deadline() {
-  const double left = limit_seconds() - earlier_seconds_;
-  constexpr double never = 1e8; // seconds; the clock could not hold infinity
-  if (left < never)
-    stop_.set_deadline(start_ + std::chrono::duration_cast<Clock::duration>(
-                                    std::chrono::duration<double>(std::max(0.0, left))));
+  stop_.set_deadline(start_, limit_seconds() - earlier_seconds_);
 }
 
 double PassLoop::seconds() const {
@@ -137,10 +133,23 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
                      result_.statistics.clamped_pixels));
 }
 
+/// What renders the next pass; nothing where its moment was being prepared when the frame was to
+/// end.
+std::optional<Shutter::Renderer> PassLoop::renderer_of_pass(Shutter& shutter) {
+  try {
+    return shutter.at(next_pass(), result_.statistics);
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
+}
+
 /// Adds the next pass to the film, or nothing where it was stopped.
 void PassLoop::render_pass(Shutter& shutter) {
   const Stopwatch watch;
-  const auto [passes, probe] = shutter.at(next_pass(), result_.statistics);
+  const std::optional<Shutter::Renderer> renderer = renderer_of_pass(shutter);
+  if (!renderer)
+    return;
+  const auto& [passes, probe] = *renderer;
   passes.render_pass(next_pass(), image_, result_.statistics);
   if (stop_.requested() || !is_finished(image_, window_))
     return;

@@ -58,6 +58,7 @@ private:
   bool time_is_over() const;
   void set_deadline();
   void render_pass(Shutter& shutter);
+  std::optional<Shutter::Renderer> renderer_of_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
   void take_picture(PassImage& image);
   void take_draft(const EstimatorInput& full);
@@ -75,11 +76,12 @@ private:
   PixelRegion window_;
   bool whole_;
   RenderResult& result_;
+  /// Seconds count from here, so that the film's memory and what an estimator tries out before its
+  /// first pass are in them.
+  Clock::time_point start_ = Clock::now();
   const DeepLayout* deep_layout_ = nullptr; ///< null without a deep picture
   Film film_;
   int first_pass_ = 0;
-  /// Seconds count from here, so that what an estimator tries out before its first pass is in them.
-  Clock::time_point start_ = Clock::now();
   StopToken stop_;
   double earlier_seconds_ = 0;   ///< of the passes that came from a checkpoint
   double shortest_pass_ = 0;     ///< [s] of those rendered here; 0: there is none

@@ -62,7 +62,22 @@ RenderResult render(const Scene& scene, const FrameSettings& frame, const Render
   validate_scene(scene);
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
-  return render(scene, prepare_scene(scene), frame, hooks);
+  const auto begin = StopToken::Clock::now();
+  const bool limited = scene.render.time && !frame.pass_range;
+  StopToken stop(hooks.stop);
+  if (limited)
+    stop.set_deadline(begin, preparation_limit(scene.render));
+  PreparedScenePtr prepared;
+  try {
+    prepared = prepare_scene(scene, nullptr, stop);
+  } catch (const Stopped&) {
+    if (limited && !stop.requested())
+      throw preparation_failure(scene.path, scene.render);
+    throw FrameError(scene.path + ": was stopped while its files were read and prepared");
+  }
+  FrameSettings rest = frame;
+  rest.seconds_used += std::chrono::duration<double>(StopToken::Clock::now() - begin).count();
+  return render(scene, prepared, rest, hooks);
 }
 
 namespace {
@@ -179,12 +194,15 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const Sight sight = look_through(setup.world(), setup.camera, window);
   for (const std::string& line : sight_notes(scene, setup.world(), setup.camera, sight))
     note(line);
-  // The pilot of the first pass does not count as part of it.
-  const PassRenderer& passes = shutter.at(loop.next_pass(), result.statistics).passes;
-  describe_choices(input, type, passes.choices(), result.plan);
-  if (scene.render.estimator == EstimatorType::gather && !passes.choices().gather)
-    note("render.estimator = \"gather\" gathers along camera rays here: " +
-         reason_of(final_gather_feature, result.plan));
+  try {
+    // The pilot of the first pass does not count as part of it.
+    const PassRenderer& passes = shutter.at(loop.next_pass(), result.statistics).passes;
+    describe_choices(input, type, passes.choices(), result.plan);
+    if (scene.render.estimator == EstimatorType::gather && !passes.choices().gather)
+      note("render.estimator = \"gather\" gathers along camera rays here: " +
+           reason_of(final_gather_feature, result.plan));
+  } catch (const Stopped&) { // the loop finds out why
+  }
   loop.run(shutter, path_input);
   if (result.quick_look || result.draft > 0 || frame.pass_range)
     return result;

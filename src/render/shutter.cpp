@@ -112,7 +112,9 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatist
   std::unique_ptr<MomentRenderer>& renderer = renderers_[key];
   if (!renderer) {
     const PreparedScenePtr prepared =
-        &moment == &scene_ ? prepared_ : prepare_scene(moment, prepared_);
+        &moment == &scene_
+            ? prepared_
+            : prepare_scene(moment, prepared_, input_.stop ? *input_.stop : StopToken());
     renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(scene_.camera, scene_.image, prepared->world->space), input_, path_plan_);
     if (&moment != &scene_)

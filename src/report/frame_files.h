@@ -10,6 +10,9 @@ namespace vdbeam {
 struct FrameFiles {
   std::string output{}, preview{}, report{}, reference{}, second_reference{};
   std::string summary{}; ///< of all frames
+
+  /// Images that passes are compared with.
+  int references() const { return !reference.empty() + !second_reference.empty(); }
 };
 
 /// A file that a render writes.

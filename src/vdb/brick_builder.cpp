@@ -22,8 +22,8 @@ constexpr std::int32_t tile_base = -2; ///< source table: -2 - n is tile n
 
 class Builder {
 public:
-  Builder(RawGrid& grid, std::string label, std::uint64_t maximum_bytes)
-      : grid_(grid), label_(std::move(label)), maximum_bytes_(maximum_bytes) {}
+  Builder(RawGrid& grid, std::string label, const FieldLimits& limits)
+      : grid_(grid), label_(std::move(label)), limits_(limits) {}
 
   BrickedGrid build();
 
@@ -58,7 +58,7 @@ private:
 
   RawGrid& grid_;
   std::string label_;
-  std::uint64_t maximum_bytes_;
+  FieldLimits limits_;
   std::vector<LeafRanges> ranges_;
   Vec3<std::int64_t> lower_, upper_; ///< cell coordinates, upper_ exclusive
   Vec3<int> counts_;
@@ -131,10 +131,10 @@ bool Builder::find_bounds() {
 void Builder::check_size(std::uint64_t cells, std::uint64_t bricks) const {
   const std::uint64_t bytes =
       bricks * sizeof(float) * DensityField::brick_size + cells * 3 * sizeof(std::int32_t);
-  if (bytes > maximum_bytes_)
+  if (bytes > limits_.bytes)
     throw FrameError(fmt::format(
         "{}: needs {:.2f} GiB as bricks, more than the limit of {:.2f} GiB", label_,
-        static_cast<double>(bytes) / (1 << 30), static_cast<double>(maximum_bytes_) / (1 << 30)));
+        static_cast<double>(bytes) / (1 << 30), static_cast<double>(limits_.bytes) / (1 << 30)));
 }
 
 void Builder::fill_tile(std::int32_t number) {
@@ -238,6 +238,7 @@ void Builder::fill_bricks() {
   std::size_t released = 0;
   for (std::size_t begin = 0; begin < brick_cells_.size(); begin += batch) {
     const std::size_t end = std::min(begin + batch, brick_cells_.size());
+    limits_.check();
     bricks_.resize(end * DensityField::brick_size);
     tbb::parallel_for(begin, end, [this](std::size_t brick) {
       fill_brick(brick_cells_[brick], bricks_.data() + brick * DensityField::brick_size);
@@ -254,6 +255,7 @@ BrickedGrid Builder::build() {
   result.repairs = mend();
   if (!find_bounds())
     return result;
+  limits_.check();
   fill_sources();
   classify();
   number_cells();
@@ -266,8 +268,8 @@ BrickedGrid Builder::build() {
 
 } // namespace
 
-BrickedGrid build_bricks(RawGrid& grid, const std::string& label, std::uint64_t maximum_bytes) {
-  return Builder(grid, label, maximum_bytes).build();
+BrickedGrid build_bricks(RawGrid& grid, const std::string& label, const FieldLimits& limits) {
+  return Builder(grid, label, limits).build();
 }
 
 } // namespace vdbeam

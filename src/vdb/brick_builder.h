@@ -3,6 +3,7 @@
 #include "vdb/raw_grid.h"
 #include "vdb/vdb_reader.h"
 #include "volume/density_field.h"
+#include "volume/field_limits.h"
 
 #include <string>
 
@@ -18,7 +19,7 @@ struct BrickedGrid {
 /// the number of threads. Peak memory on top of the leaves is the result's, and leaves are released
 /// as they are consumed.
 /// Throws FrameError, opening with `label`, where the index table would exceed 2^28 cells or the
-/// field `maximum_bytes`.
-BrickedGrid build_bricks(RawGrid& grid, const std::string& label, std::uint64_t maximum_bytes);
+/// field the limit, and Stopped.
+BrickedGrid build_bricks(RawGrid& grid, const std::string& label, const FieldLimits& limits);
 
 } // namespace vdbeam

@@ -43,6 +43,7 @@ GuardLimits guard_limits(std::uint64_t file_bytes, const ReadLimits& limits) {
   guard.seconds = limits.seconds + time_for(file_bytes);
   guard.cpu_seconds = std::min(guard.seconds, 10 + 1e-6 * static_cast<double>(file_bytes));
   guard.bytes = std::min(limits.bytes, (std::uint64_t(256) << 20) + 160 * file_bytes);
+  guard.stop = limits.stop;
   return guard;
 }
 
@@ -105,7 +106,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
   raw.release = [&file](std::size_t leaves) {
     file.release_front(RawGridHeader::values_offset + leaves * leaf_size * sizeof(float));
   };
-  BrickedGrid bricked = build_bricks(raw, label, limits.bytes);
+  BrickedGrid bricked = build_bricks(raw, label, {limits.bytes, limits.stop});
 
   DensityGrid grid;
   grid.field = std::move(bricked.field);

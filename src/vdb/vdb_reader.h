@@ -2,6 +2,7 @@
 
 #include "machine/memory.h"
 #include "math/affine.h"
+#include "math/stop_token.h"
 #include "vdb/wanted_box.h"
 #include "volume/color_field.h"
 #include "volume/density_field.h"
@@ -63,6 +64,7 @@ struct GridSummary {
 struct ReadLimits {
   double seconds = 120; ///< of wall-clock time, beside what its size takes (time_for)
   std::uint64_t bytes = free_memory(); ///< of memory
+  const StopToken* stop = nullptr;     ///< ends reading by throwing Stopped
 };
 
 /// What becomes of a grid whose value far outside is not 0: a density without end is refused; of

@@ -14,7 +14,7 @@ constexpr std::size_t brick_size = DensityField::brick_size;
 } // namespace
 
 ColorField::ColorField(const DensityField& shape,
-                       const std::function<Rgb(const Vec3d& local)>& color)
+                       const std::function<Rgb(const Vec3d& local)>& color, const StopToken* stop)
     : cell_counts_(shape.cell_counts()) {
   const Vec3<int>& n = cell_counts_;
   cells_.assign(static_cast<std::size_t>(n.x) * n.y * n.z, -1);
@@ -29,6 +29,8 @@ ColorField::ColorField(const DensityField& shape,
       const std::int32_t brick = cells_[shape.cell_offset(i, j, k)];
       if (brick < 0)
         continue;
+      if (stop)
+        stop->check();
       const Vec3d corner = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
       Rgb* out = bricks_.data() + static_cast<std::size_t>(brick) * brick_size;
       for (int x = 0; x < width; ++x)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/stop_token.h"
 #include "volume/density_field.h"
 
 #include <functional>
@@ -11,8 +12,9 @@ namespace vdbeam {
 class ColorField {
 public:
   /// `color` gives the colour at a lattice point, in local coordinates of the density `shape`; it
-  /// is called from several threads.
-  ColorField(const DensityField& shape, const std::function<Rgb(const Vec3d& local)>& color);
+  /// is called from several threads. Throws Stopped.
+  ColorField(const DensityField& shape, const std::function<Rgb(const Vec3d& local)>& color,
+             const StopToken* stop = nullptr);
 
   /// At local coordinates of the density; white in empty cells and outside.
   Rgb sample(const Vec3f& local) const;

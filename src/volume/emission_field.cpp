@@ -25,7 +25,8 @@ std::uint64_t EmissionField::bytes_of(const DensityField& shape, bool uniform) {
   return cells * sizeof(std::int32_t) + bricks * DensityField::brick_size * sizeof(Rgb);
 }
 
-EmissionField::EmissionField(const DensityField& shape, const Law& law, bool uniform)
+EmissionField::EmissionField(const DensityField& shape, const Law& law, bool uniform,
+                             const StopToken* stop)
     : origin_(shape.origin()), cell_counts_(shape.cell_counts()) {
   if (shape.empty())
     return;
@@ -36,6 +37,8 @@ EmissionField::EmissionField(const DensityField& shape, const Law& law, bool uni
         const std::int32_t entry = cell(i, j, k), source = shape.cell(i, j, k);
         if (entry < 0)
           continue;
+        if (stop)
+          stop->check();
         Rgb* brick = bricks_.data() + static_cast<std::size_t>(entry) * DensityField::brick_size;
         for (int x = 0; x < width; ++x)
           for (int y = 0; y < width; ++y)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/stop_token.h"
 #include "volume/density_field.h"
 
 #include <functional>
@@ -17,8 +18,9 @@ public:
   /// The cells of `shape` that are not empty, with `law` at their lattice points. `law` must be 0
   /// where the value is, and may be called from several threads. `uniform`: it does not depend on
   /// the place, so that uniform cells stay so. Cells that are darker than 1e-8 of the brightest
-  /// become empty.
-  EmissionField(const DensityField& shape, const Law& law, bool uniform);
+  /// become empty. Throws Stopped.
+  EmissionField(const DensityField& shape, const Law& law, bool uniform,
+                const StopToken* stop = nullptr);
 
   bool empty() const { return occupied_.empty(); }
   const Vec3<std::int64_t>& origin() const { return origin_; }

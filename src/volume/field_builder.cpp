@@ -53,12 +53,12 @@ void FieldBuilder::mark(const Boxd& box) {
 }
 
 DensityField FieldBuilder::build(const std::function<float(const Vec3d& local)>& value,
-                                 std::uint64_t maximum_bytes) {
+                                 const FieldLimits& limits) {
   std::size_t bricks = 0;
   for (std::int32_t& entry : table_)
     if (entry != DensityField::empty_cell)
       entry = static_cast<std::int32_t>(bricks++);
-  if (bricks * DensityField::brick_size * sizeof(float) > maximum_bytes)
+  if (bricks * DensityField::brick_size * sizeof(float) > limits.bytes)
     throw FrameError(label_ + ": its density, as it is put together, needs more memory than there "
                               "may be");
   std::vector<float> values(bricks * DensityField::brick_size);
@@ -68,6 +68,7 @@ DensityField FieldBuilder::build(const std::function<float(const Vec3d& local)>&
         const std::int32_t brick = table_[offset({i, j, k})];
         if (brick < 0)
           continue;
+        limits.check();
         const Vec3d corner = Vec3d(Vec3<std::int64_t>{i, j, k}) * double{cell_width};
         float* out = values.data() + static_cast<std::size_t>(brick) * DensityField::brick_size;
         for (int x = 0; x < brick_width; ++x)

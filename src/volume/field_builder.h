@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/density_field.h"
+#include "volume/field_limits.h"
 
 #include <functional>
 #include <string>
@@ -16,9 +17,9 @@ public:
 
   /// Lattice points in the box may have values other than 0.
   void mark(const Boxd& box);
-  /// Throws FrameError where the bricks would take more than `maximum_bytes`.
+  /// Throws FrameError where the bricks would take more than the limit, and Stopped.
   DensityField build(const std::function<float(const Vec3d& local)>& value,
-                     std::uint64_t maximum_bytes);
+                     const FieldLimits& limits);
 
 private:
   std::size_t offset(const Vec3<std::int64_t>& cell) const;

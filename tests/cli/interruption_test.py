@@ -70,6 +70,16 @@ class Interruption(unittest.TestCase):
         for estimator in ("beam", "path"):
             self.check_time_limit(*LONG_SAMPLES, "--estimator", estimator)
 
+    def test_time_limit_holds_while_volumes_are_prepared(self):
+        """Cubic interpolation and 12 octaves of noise: minutes of work before the first pass."""
+        slow = ["--set", "volume.0.interpolation=cubic", "--set", "volume.0.noise_amplitude=0.05", "--set",
+                "volume.0.noise_octaves=12", "--resolution", "16x16"]
+        result = subprocess.run(self.words("--time", "1", *slow), cwd=self.folder, capture_output=True,
+                                timeout=PATIENCE, check=False)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn(b"the time limit of 1.0s ended the frame while its files were read", result.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_signal_holds_among_shadow_rays(self):
         self.check_signal(*LONG_SAMPLES, "--estimator", "path")
 

@@ -31,6 +31,14 @@ TEST(FarmJob, ChunksCoverEveryFrame) {
   }
 }
 
+TEST(FarmJob, FramesThatArePlannedDiffer) {
+  using Frames = std::vector<int>;
+  EXPECT_EQ(frames_to_plan({1, 2, 3, 4, 5}, true), (Frames{1, 3, 5}));
+  EXPECT_EQ(frames_to_plan({1, 2}, true), (Frames{1, 2}));
+  EXPECT_EQ(frames_to_plan({7}, true), Frames{7});
+  EXPECT_EQ(frames_to_plan({1, 2, 3, 4, 5}, false), Frames{1});
+}
+
 TEST(FarmJob, PassRangesAreEvenAndComplete) {
   FarmJob job = make_job(1);
   EXPECT_EQ(pass_ranges(job), std::vector<std::string>{""});

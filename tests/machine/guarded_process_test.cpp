@@ -50,6 +50,14 @@ TEST(GuardedProcess, returns_what_was_written) {
   EXPECT_EQ(run_guarded("label", ample, [](int) {}).size(), 0u);
 }
 
+TEST(GuardedProcess, ends_when_it_is_told_to_stop) {
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  GuardLimits limits = ample;
+  limits.stop = &stop;
+  EXPECT_THROW(run_guarded("label", limits, [](int) { spin(); }), Stopped);
+}
+
 TEST(GuardedProcess, errors_arrive_as_they_are) {
   EXPECT_THROW(run_guarded("label", ample, [](int) { throw InputError("x.vdb: no"); }), InputError);
   EXPECT_EQ(failure(ample, [](int) { throw FrameError("x.vdb: broken"); }), "x.vdb: broken");

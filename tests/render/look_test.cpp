@@ -137,7 +137,7 @@ TEST_F(Look, TheBoxIsAllThatIsRead) {
         ReadVolume read;
         if (time != 0)
           read.velocity = read_velocity(wanted.file, wanted.velocity);
-        return take_grid(wanted, nullptr, read);
+        return take_grid(wanted, nullptr, StopToken(), read);
       };
       const DensityGrid found = take(volume);
       volume.box_lower = volume.box_upper = {};

@@ -26,8 +26,8 @@ class MemoryLimits(InTempFolder):
     def setUpClass(cls):
         cls.volumes = tempfile.TemporaryDirectory(prefix="vdbeam_volumes_")
         cls.addClassCleanup(cls.volumes.cleanup)
-        for size in (32, 400):
-            subprocess.run([str(TOOLS / "make_volumes"), "noise", f"{cls.volumes.name}/{size}.vdb", "--size", str(size)],
+        for size in (32, 256):
+            subprocess.run([str(TOOLS / "make_volumes"), "ramp", f"{cls.volumes.name}/{size}.vdb", "--size", str(size)],
                            check=True, capture_output=True)
 
     def make(self, sizes):
@@ -44,7 +44,7 @@ class MemoryLimits(InTempFolder):
         return run_measured(BINARY, "render", scene, "-o", self.file(output), "--resolution", "32x32", *options, env=env)
 
     def test_refused_in_one_line_and_the_others_go_on(self):
-        scene = self.make([32, 400, 32])
+        scene = self.make([32, 256, 32])
         code, text, peak = self.render(scene, "o.####.exr", "-f", "1-3", env=granting(100))
         self.assertEqual(code, 3, text)
         refused = [line for line in text.splitlines() if "grants" in line]
@@ -62,7 +62,7 @@ class MemoryLimits(InTempFolder):
         self.assertLess(peak, 200 * MIB)
 
     def test_next_frame_waits_where_two_do_not_fit(self):
-        scene = self.make([400, 400, 400])
+        scene = self.make([256, 256, 256])
         code, text, free = self.render(scene, "free.####.exr", "-f", "1-3")
         self.assertEqual(code, 0, text)
         code, text, single = self.render(scene, "single.exr", "-f", "1")

@@ -134,6 +134,10 @@ TEST(SumOfGrids, AddsGridsOfOtherLattices) {
 
 TEST(SumOfGrids, RefusesWhatTakesTooMuch) {
   EXPECT_THROW(sum_of_grids({cube(), cube(6)}, "cubes", 1000), FrameError);
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  EXPECT_THROW(sum_of_grids({cube(), cube(6)}, "cubes", {1 << 30, &stop}), Stopped);
+  EXPECT_THROW(displaced_grid(cube(), {0.1, 1, 1, 1}, "cube", {1 << 30, &stop}), Stopped);
   EXPECT_THROW(sum_of_grids({cube(), cube(1e7)}, "cubes", 1 << 30), FrameError);
   EXPECT_THROW(displaced_grid(cube(), {1e9, 1, 1, 1}, "cube", 1 << 30), FrameError);
 }

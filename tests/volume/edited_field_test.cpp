@@ -134,6 +134,11 @@ TEST(EditedField, MultipliesByAMask) {
 TEST(EditedField, NothingToDoKeepsTheField) {
   const DensityGrid source = grid();
   EXPECT_EQ(edited_field(source.field, {}).brick(0), source.field.brick(0)); // shared
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  GridEdits darker;
+  darker.remap.scale = 0.5;
+  EXPECT_THROW(edited_field(source.field, darker, &stop), Stopped);
   GridEdits nothing_left;
   nothing_left.to_world = source.index_to_world;
   nothing_left.box = Boxd{{100, 100, 100}, {101, 101, 101}};

@@ -266,6 +266,9 @@ TEST(MovedField, HasNoEmptyBricks) {
   settings.time = 1;
   const VectorField flow = velocities([](const Vec3d&) { return Vec3d(13, -9, 5); }, everywhere);
   const DensityGrid moved = moved_grid(grid, {flow, settings}, "ball", 1 << 30);
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  EXPECT_THROW(moved_grid(grid, {flow, settings}, "ball", {1 << 30, &stop}), Stopped);
   const DensityField& field = moved.field;
   for (std::size_t brick = 0; brick < field.brick_count(); ++brick) {
     const float* values = field.brick(static_cast<std::int32_t>(brick));

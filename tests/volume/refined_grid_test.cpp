@@ -92,6 +92,9 @@ TEST(RefinedGrid, KeepsTheMassAndIsSmooth) {
 
 TEST(RefinedGrid, RefusesMoreMemoryThanThereIs) {
   EXPECT_THROW(refined_grid(grid_of(noise), "a.vdb", 1000), FrameError);
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  EXPECT_THROW(refined_grid(grid_of(noise), "a.vdb", {plenty, &stop}), Stopped);
 }
 
 TEST(RefinedGrid, OfNothingIsNothing) {

@@ -1,11 +1,12 @@
 """Damage that keeps a file's checksums and structure, so that it reaches the code behind them: sizes and types in
-headers of PNG, HDR, EXR, PLY, glTF, GLB and JPEG. Unlike damage to bytes it lands on a field each time."""
+headers of PNG, HDR, EXR, PLY, glTF, GLB, JPEG, TIFF and VDB. Unlike damage to bytes it lands on a field each time."""
 import json
 import re
 import struct
 import zlib
 
 import damage
+import vdb_fields
 
 
 def png(data, rng):
@@ -172,8 +173,9 @@ def tiff(data, rng):
 
 # What keeps the structure of files whose names end so; text formats keep their tokens.
 BY_ENDING = {".png": png, ".hdr": hdr, ".exr": exr, ".ply": ply, ".gltf": gltf, ".glb": glb, ".jpg": jpeg,
-             ".jpeg": jpeg, ".tif": tiff, ".tiff": tiff, ".tx": tiff, ".obj": damage.text_of, ".mtl": damage.text_of,
-             ".chan": damage.text_of, ".txt": damage.text_of, ".toml": damage.text_of}
+             ".jpeg": jpeg, ".tif": tiff, ".tiff": tiff, ".tx": tiff, ".vdb": vdb_fields.vdb,
+             ".obj": damage.text_of, ".mtl": damage.text_of, ".chan": damage.text_of, ".txt": damage.text_of,
+             ".toml": damage.text_of}
 
 
 def damaged(name, data, rng):
