@@ -182,6 +182,8 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
             0, nullptr};
   if (!choices.trial || choices.trial->pixels.empty())
     return {type, "without a kernel pilot there is nothing to compare", 0, std::move(passes)};
+  if (!sees_directly(photon_input.world))
+    return {type, "path may miss light that mirrors or glass focus", 0, std::move(passes)};
   const double lead = lead_of_photons(photon_input, *passes, path_input);
   if (lead < 1 / safe_lead && !photon_input.stopped())
     return {

@@ -15,8 +15,10 @@ Rgb SurfaceLighting::reflected(const SurfaceVertex& vertex, const Vec3f& directi
   return by_paths(vertex, direction, rng) + by_photons(vertex, rng);
 }
 
-Rgb SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const {
-  return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false);
+Rgb SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
+                              Rgb* straight) const {
+  return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false,
+                              straight);
 }
 
 Rgb SurfaceLighting::by_photons(const SurfaceVertex& vertex, Rng& rng) const {

@@ -21,8 +21,9 @@ public:
   /// the surface itself emits.
   Rgb reflected(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
-  /// The two parts of it.
-  Rgb by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
+  /// The two parts of it; `straight`, unless it is null, gets what shadow rays find of the first.
+  Rgb by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
+               Rgb* straight = nullptr) const;
   Rgb by_photons(const SurfaceVertex& vertex, Rng& rng) const;
 
 private:

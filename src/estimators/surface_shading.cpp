@@ -16,6 +16,9 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
+/// Of a matt surface, whose light is fitted over pixels (SurfaceFit), and shadow rays that look for
+/// lights with an extent beside those of the paths: shadows are not fitted.
+constexpr int matt_paths = 2, more_shadow_rays = 6;
 /// Lamps are looked for behind rough glass by as many times more rays, which gather nothing else.
 constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
@@ -64,6 +67,13 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
   return way;
 }
 
+bool samples_extended_light(const World& world, const WalkTracer& tracer) {
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    if (tracer.samples_light(i) && !world.lights[i].is_delta())
+      return true;
+  return false;
+}
+
 } // namespace
 
 /// A camera ray that goes on from surface to surface.
@@ -104,6 +114,7 @@ SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& ph
                                const SurfaceLighting& surfaces, GatherAlong gather)
     : input_(input), world_(photons.world()), lights_of_matte_(input.lights_of_matte()),
       photons_(photons), gather_(std::move(gather)), surfaces_(surfaces),
+      more_shadow_rays_(samples_extended_light(world_, surfaces.tracer()) ? more_shadow_rays : 0),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
 
 SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
@@ -120,14 +131,37 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
-  Rgb sum, photons;
-  for (int i = 0; i < paths_per_ray; ++i) {
+  return matt(vertex, camera.ray().direction, path_rng);
+}
+
+/// What a surface shows that is no picture of its surroundings.
+template <class PathRng>
+SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direction,
+                                 const PathRng& path_rng) const {
+  Rgb beyond, straight, photons;
+  for (int i = 0; i < matt_paths; ++i) {
     Rng rng = path_rng(i);
-    sum += surfaces_.by_paths(vertex, camera.ray().direction, rng);
-    if (i == 0) // the same for all
-      photons = surfaces_.by_photons(vertex, rng);
+    Rgb by_shadow_rays;
+    beyond += surfaces_.by_paths(vertex, direction, rng, &by_shadow_rays) - by_shadow_rays;
+    straight += by_shadow_rays;
+    if (i > 0)
+      continue;
+    photons = surfaces_.by_photons(vertex, rng); // the same for all
+    for (int ray = 0; ray < more_shadow_rays_; ++ray)
+      straight += surfaces_.tracer().lights_at_surface(vertex, rng, true) * vertex.absorbed();
   }
-  return {sum / static_cast<float>(paths_per_ray) + photons + vertex.emitted(), 0, lamp_of(vertex)};
+  beyond *= 1.0f / matt_paths;
+  straight *= 1 / static_cast<float>(matt_paths + more_shadow_rays_);
+  constexpr float least_albedo = 1e-3f;
+  SeenSurface seen{beyond + straight + photons + vertex.emitted(), 0, lamp_of(vertex)};
+  seen.albedo = vertex.matt_albedo();
+  if (!(std::min(seen.albedo.x, std::min(seen.albedo.y, seen.albedo.z)) > least_albedo))
+    return seen;
+  seen.smooth = beyond / seen.albedo;
+  seen.position = Vec3f(vertex.hit().position);
+  seen.normal = vertex.hit().shading_normal * (vertex.front() ? 1.0f : -1.0f);
+  seen.surface = vertex.hit().surface;
+  return seen;
 }
 
 /// What the surface emits as a light with shadow rays into the medium.

@@ -43,6 +43,9 @@ private:
   Rgb lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
   Rgb scatter(const SurfaceVertex& vertex, Chain& chain) const;
   Rgb follow(Chain chain) const;
+  template <class PathRng>
+  SeenSurface matt(const SurfaceVertex& vertex, const Vec3f& direction,
+                   const PathRng& path_rng) const;
   Rgb lamp_of(const SurfaceVertex& vertex) const;
   Rgb left_of_lamps(const DepthProfile& profile) const;
   Rgb along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr, Chain& chain) const;
@@ -57,6 +60,7 @@ private:
   const PhotonPass& photons_;
   GatherAlong gather_;
   const SurfaceLighting& surfaces_;
+  int more_shadow_rays_; ///< from a matt surface
   float cutoff_;
 };
 

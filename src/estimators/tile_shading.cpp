@@ -1,5 +1,7 @@
 #include "estimators/tile_shading.h"
 
+#include "estimators/surface_fit.h"
+
 #include "machine/stopwatch.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
@@ -107,8 +109,8 @@ private:
 
 /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
 void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
-                  const SurfaceShading* surfaces, const RngKey& key, TileScratch& scratch,
-                  PassImage& image) {
+                  const SurfaceShading* surfaces, SurfaceFit* fit, const RngKey& key,
+                  TileScratch& scratch, PassImage& image) {
   const World& world = photons.world();
   const auto width = static_cast<std::size_t>(image.width);
   std::optional<TileMedium> medium;
@@ -130,6 +132,8 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
     if (!uneven[static_cast<std::size_t>(i)])
       continue;
     const std::size_t pixel = scratch.rays[i].pixel;
+    if (fit)
+      fit->clear(pixel);
     scratch.rays.refine(input.in(world), key, i);
     for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
       const SeenSurface surface =
@@ -183,9 +187,15 @@ SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& 
   return {input, photons.world(), on_surfaces ? &photons.surface_map() : nullptr};
 }
 
-void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass,
+void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass,
                  const TileGather& tiles, PassImage& image, RenderStatistics& statistics) {
   const World& world = photons.world(); // of the map: rays that gather share its medium
+  EstimatorInput input = task;
+  std::optional<SurfaceFit> fit;
+  if (world.surfaces) {
+    input.window = widened(wanted(task), SurfaceFit::reach, task.camera);
+    fit.emplace(input, pass);
+  }
   const Camera& camera = input.camera;
   image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep,
                input.object_count(), input.plane_count());
@@ -202,18 +212,23 @@ void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pas
     scratch.statistics.profile += watch.restart();
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
-        const SeenSurface surface =
-            surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
-                     : SeenSurface();
+        SeenSurface surface;
+        if (surfaces) {
+          surface = surfaces->seen(ray.camera, key, ray.stream, scratch.statistics);
+          fit->set(ray.pixel, surface, transmittance(world.medium, ray.profile));
+        }
         shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
       }
     if (tiles.refine)
-      refine_edges(input, photons, surfaces ? &*surfaces : nullptr, key, scratch, image);
+      refine_edges(input, photons, surfaces ? &*surfaces : nullptr, fit ? &*fit : nullptr, key,
+                   scratch, image);
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       tiles.gather(scratch, key);
     scratch.statistics.query += watch.seconds();
   });
+  if (fit && !input.stopped())
+    fit->apply(wanted(task), image);
   RenderStatistics sums;
   for (const TileScratch& scratch : scratches)
     sums += scratch.statistics;

@@ -31,6 +31,7 @@ public:
     const Vec3f wi{sine * std::cos(phi), sine * std::sin(phi), std::copysign(cosine, wo.z)};
     return {wi, albedo_, cosine / pi, 1};
   }
+  Rgb matt_albedo() const override { return albedo_; }
   bool is_black() const override { return max_component(albedo_) <= 0; }
 
 private:

@@ -60,6 +60,8 @@ public:
   virtual bool refracts() const { return false; }
   /// Photons that arrive tell what light it reflects.
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
+  /// Of a surface that reflects by Lambert's law and does nothing else; else 0.
+  virtual Rgb matt_albedo() const { return {}; }
   /// Nothing leaves it but what it emits.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back; to the back the same or nothing.

@@ -18,6 +18,9 @@ constexpr double default_neighbours = 500;
 constexpr double paths_per_hit = 4;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 4e6;
+/// What a camera ray that meets a surface alone counts: photons and camera rays balance, and paths
+/// from surfaces take time, too (docs/decisions.md).
+constexpr double share_of_surface = 0.5;
 /// By which factor there may be more of them for lights that shadow rays do not reach, and photons
 /// per camera ray that meets the medium up to which there are.
 constexpr double most_for_hidden_lights = 8;
@@ -71,18 +74,21 @@ int PhotonPlan::direct_samples_of(float depth) const {
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;
-  const bool on_surfaces = input.plan.needs(Stage::surface_photons);
+  // Caustics need photons where they lie; else a surface only takes the time of its paths.
+  const bool caustics =
+      input.plan.needs(Stage::surface_photons) && input.world.surfaces->throw_light();
+  const double of_surface = caustics ? 1 : share_of_surface;
   DepthProfile profile;
-  int hits = 0;
+  double hits = 0;
   for (int y = 0; y < samples && !input.stopped(); ++y)
     for (int x = 0; x < samples; ++x) {
       const CameraRay ray = camera_ray(
           input.world, camera,
           camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
       profile.build(input.world.medium, ray.segment, 0.5f);
-      hits += !profile.empty() || (ray.hit && on_surfaces);
+      hits += !profile.empty() ? 1 : ray.hit ? of_surface : 0;
     }
-  return static_cast<double>(hits) / (samples * samples) * camera.width() * camera.height();
+  return hits / (samples * samples) * camera.width() * camera.height();
 }
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {

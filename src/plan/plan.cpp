@@ -1,6 +1,7 @@
 #include "plan/plan.h"
 
 #include "estimators/gather/gather_pass.h"
+#include "estimators/surface_fit.h"
 #include "film/cryptomatte.h"
 #include "film/film.h"
 #include "layers/light_group_names.h"
@@ -220,6 +221,10 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(),
       light_group_names(scene).size(),
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
+  if (!scene.surfaces.empty() && estimator.shoots_photons())
+    plan.film_bytes += SurfaceFit::bytes_per_pixel() *
+                       static_cast<std::uint64_t>(scene.image.raster_width()) *
+                       static_cast<std::uint64_t>(scene.image.raster_height());
   if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
       scene.render.final_gather != FinalGathering::never)
     plan.film_bytes += GatherPass::bytes_per_pixel() *

@@ -13,6 +13,12 @@ struct SeenSurface {
   Rgb radiance = {}; ///< that leaves it against the ray
   float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
   Rgb lamp = {};     ///< the part of `radiance` that the surface emits, as a light with shadow rays
+  // Of a matt surface:
+  Rgb smooth = {};     ///< the part that comes by way of other surfaces and the medium, per albedo
+  Rgb albedo = {};     ///< of the surface
+  Vec3f position = {}; ///< render space
+  Vec3f normal = {};   ///< on the side that is seen
+  int surface = -1;    ///< -1: not matt
 };
 
 /// What a ray adds to PassImage::opacity and PassImage::depth.

@@ -196,16 +196,24 @@ Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedP
                                                                     : origin;
 }
 
-std::optional<Cone> cone_to_medium(const World& world, const Vec3d& point) {
-  const Vec3d way = Vec3d(world.region.center) - point;
-  const double distance = length(way), sine = static_cast<double>(world.region.radius) / distance;
-  if (!(sine < 1))
-    return std::nullopt;
-  return Cone{way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+TargetCones::TargetCones(const World& world, const Vec3d& point) {
+  for (const OccupiedRegion& target : world.targets) {
+    const Vec3d way = Vec3d(target.center) - point;
+    const double distance = length(way), sine = static_cast<double>(target.radius) / distance;
+    if (!(sine < 1))
+      return;
+    cones_.push_back({way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))});
+  }
 }
 
-CopiesToMedium copies_to_medium(const SurfaceVertex& vertex, const Cone& cone, float flux,
-                                Rng& rng) {
+std::size_t TargetCones::first_of(const Vec3f& direction) const {
+  std::size_t i = 0;
+  while (i < cones_.size() && !cones_[i].holds(direction))
+    ++i;
+  return i;
+}
+
+Copies copies_into(const Cone& cone, const SurfaceVertex& vertex, float flux, Rng& rng) {
   // About what goes that way, whatever the directions that are drawn: in a direction in which the
   // material sends nothing there may be parts of the cone in which it does.
   constexpr float least_value = 0.01f;
@@ -215,8 +223,7 @@ CopiesToMedium copies_to_medium(const SurfaceVertex& vertex, const Cone& cone, f
   const float wanted = flux * value * solid_angle;
   if (wanted < 1)
     return {rng.uniform() < wanted ? 1 : 0, solid_angle / wanted};
-  const float copies =
-      std::min(std::floor(wanted + 0.5f), static_cast<float>(CopiesToMedium::most));
+  const float copies = std::min(std::floor(wanted + 0.5f), static_cast<float>(Copies::most));
   return {static_cast<int>(copies), solid_angle / copies};
 }
 

@@ -20,12 +20,23 @@ bool counts_for_its_target(const World& world, const EmittedPhoton& photon);
 /// surface stands before that, at its light, or before everything if the light is far away.
 Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedPhoton& photon);
 
-/// The cone about the medium's sphere as seen from a point; none where the point lies in the
-/// sphere.
-std::optional<Cone> cone_to_medium(const World& world, const Vec3d& point);
+/// The cones about the spheres of the world's targets as seen from a point, from the medium's on;
+/// none for those in whose sphere the point lies.
+class TargetCones {
+public:
+  TargetCones(const World& world, const Vec3d& point);
 
-/// Copies of a light path that a surface sends into the cone of the medium.
-struct CopiesToMedium {
+  std::size_t size() const { return cones_.size(); }
+  const Cone& operator[](std::size_t i) const { return cones_[i]; }
+  /// The first that holds a direction; size() where none does.
+  std::size_t first_of(const Vec3f& direction) const;
+
+private:
+  std::vector<Cone> cones_;
+};
+
+/// Copies of a light path that a surface sends into a cone.
+struct Copies {
   static constexpr int most = 8;
 
   int count = 0;
@@ -35,8 +46,7 @@ struct CopiesToMedium {
 /// As many copies as give each about the flux that photons bring to the medium straight from their
 /// light; `flux`: of the path, in units of that. Where that is less than one copy, there is one by
 /// chance, which stands for the others.
-CopiesToMedium copies_to_medium(const SurfaceVertex& vertex, const Cone& cone, float flux,
-                                Rng& rng);
+Copies copies_into(const Cone& cone, const SurfaceVertex& vertex, float flux, Rng& rng);
 
 /// Adds the scene's lights, aimed at each of the world's targets. Throws as LightSet does.
 void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& up,

@@ -168,56 +168,56 @@ private:
       store_at(vertex, path);
     else if (!path.met_surface && path.bounces == 0)
       path.for_surfaces = vertex.material().throws_light() && lights_surfaces(path.light);
-    const std::optional<Cone> aimed = send_to_medium(path, vertex);
+    const std::optional<TargetCones> aimed = send_to_targets(path, vertex);
     const MaterialSample next = vertex.sample(Carried::power, path.rng);
     if (!absorption_roulette(next.weight, path.throughput, path.rng) ||
-        !path.surfaces.survive(path.throughput, path.rng) || (aimed && aimed->holds(next.wi)))
+        !path.surfaces.survive(path.throughput, path.rng) ||
+        (aimed && aimed->first_of(next.wi) < aimed->size()))
       return false;
     path.met_surface = true;
     begin_flight(path, vertex.hit().leave(next.wi), next.wi);
     return true;
   }
 
-  /// Sends copies of the path from a surface to the medium, and returns the cone of their
+  /// Sends copies of the path from a surface to the world's targets, and returns the cones of their
   /// directions, in which the path itself does not go on. Within the medium's sphere it is shared.
-  std::optional<Cone> send_to_medium(LightPath& path, const SurfaceVertex& vertex) {
+  std::optional<TargetCones> send_to_targets(LightPath& path, const SurfaceVertex& vertex) {
     const Material& material = vertex.material();
     if (!(path.fair_flux > 0) || material.is_specular() || material.refracts() ||
         world_.medium.empty())
       return std::nullopt;
-    const std::optional<Cone> cone = cone_to_medium(world_, vertex.hit().position);
-    if (!cone) {
+    TargetCones cones(world_, vertex.hit().position);
+    const float flux = max_component(path.throughput) / path.fair_flux;
+    for (std::size_t target = 0; target < cones.size(); ++target) {
+      const Copies copies = copies_into(cones[target], vertex, flux, path.rng);
+      for (int i = 0; i < copies.count; ++i) {
+        const float u = path.rng.uniform(), v = path.rng.uniform();
+        const Vec3f wi(cones[target].sample(static_cast<double>(u), static_cast<double>(v)));
+        if (cones.first_of(wi) == target)
+          send_copy(path, vertex, wi, vertex.evaluate(wi, Carried::power) * copies.solid_angle);
+      }
+    }
+    if (cones.size() == 0)
       share_flux(path, vertex);
-      return std::nullopt;
-    }
-    const CopiesToMedium copies =
-        copies_to_medium(vertex, *cone, max_component(path.throughput) / path.fair_flux, path.rng);
-    for (int i = 0; i < copies.count; ++i) {
-      const float u = path.rng.uniform(), v = path.rng.uniform();
-      const Vec3f wi(cone->sample(static_cast<double>(u), static_cast<double>(v)));
-      LightPath copy = copy_of(path);
-      copy.throughput *= vertex.evaluate(wi, Carried::power) * copies.solid_angle;
-      leave_surface(copy, vertex, wi);
-    }
-    return cone;
+    return cones;
   }
 
   /// The path goes on as one of several of equal flux.
   void share_flux(LightPath& path, const SurfaceVertex& vertex) {
-    constexpr auto most = static_cast<float>(CopiesToMedium::most);
+    constexpr auto most = static_cast<float>(Copies::most);
     const int paths =
         static_cast<int>(std::clamp(max_component(path.throughput) / path.fair_flux, 1.0f, most));
     path.throughput *= 1 / static_cast<float>(paths);
     for (int i = 1; i < paths; ++i) {
-      LightPath copy = copy_of(path);
-      const MaterialSample next = vertex.sample(Carried::power, copy.rng);
-      if (absorption_roulette(next.weight, copy.throughput, copy.rng))
-        leave_surface(copy, vertex, next.wi);
+      const MaterialSample next = vertex.sample(Carried::power, path.rng);
+      send_copy(path, vertex, next.wi, next.weight);
     }
   }
 
-  /// Puts a copy that has been scattered at a surface to those that wait for their turn.
-  void leave_surface(LightPath& copy, const SurfaceVertex& vertex, const Vec3f& wi) {
+  /// Puts a copy that a surface scatters to those that wait for their turn.
+  void send_copy(LightPath& path, const SurfaceVertex& vertex, const Vec3f& wi, const Rgb& weight) {
+    LightPath copy = copy_of(path);
+    copy.throughput *= weight;
     if (!(max_component(copy.throughput) > 0) || !copy.surfaces.survive(copy.throughput, copy.rng))
       return;
     copy.met_surface = true;

@@ -32,6 +32,12 @@ struct Surfaces {
                        [](const auto& material) { return material->shows_surroundings(); });
   }
 
+  /// Some surface sends light on in narrow lobes (Material::throws_light).
+  bool throw_light() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const auto& material) { return material->throws_light(); });
+  }
+
   /// How far from its beginning a flight that ends there meets the medium. Within a solid, whose
   /// surface is the next of a solid that the flight, or its continuation, meets, and from the back,
   /// there is none.
@@ -56,6 +62,7 @@ public:
   bool front() const { return wo_.z > 0; }
   /// Index of the light that the surface is, or -1.
   int light() const { return light_; }
+  Rgb matt_albedo() const { return material_.matt_albedo() * shown_; }
   Rgb emitted() const { return material_.emitted(front()) * shown_; }
   /// What absorption inside left of the light on its way from the path's last event to here.
   Rgb absorbed() const;

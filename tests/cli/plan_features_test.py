@@ -28,7 +28,8 @@ SCENES = [
     ("glass_in_fog", [], "beam", VIEW | {"boundary correction"}, ("shadow lattice", "no light has a single direction")),
     ("headlights", [], "beam", VIEW | {"forward peak", "boundary correction"},
      ("shadow lattice", "no light has a single direction")),
-    ("lighthouse", ["-f", "8"], "path", set(), ("shadow lattice", "the estimator shoots no photons")),
+    ("lighthouse", ["-f", "8"], "beam", VIEW | {"boundary correction"},
+     ("shadow lattice", "no light has a single direction")),
 ]
 
 

@@ -10,18 +10,6 @@ namespace vdbeam {
 
 namespace {
 
-/// What is wanted, and `reach` pixels around it.
-PixelRegion widened(const PixelRegion& window, int reach, const Camera& camera) {
-  return {std::max(0, window.x0 - reach), std::max(0, window.y0 - reach),
-          std::min(camera.width(), window.x1 + reach),
-          std::min(camera.height(), window.y1 + reach)};
-}
-
-PixelRegion wanted(const EstimatorInput& input) {
-  return input.window.empty() ? PixelRegion{0, 0, input.camera.width(), input.camera.height()}
-                              : input.window;
-}
-
 /// Spreads light over the pieces of a deep pixel as its opacity is spread.
 void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
   if (!image.deep_layout)

@@ -1,5 +1,7 @@
 #include "estimators/gather/regression.h"
 
+#include "math/plane_fit.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,10 +11,6 @@ namespace {
 
 /// Difference in depth at which a neighbour does not count, over half the width of what is shared.
 constexpr float deepest_over_width = 8;
-/// Steepness that is held against the fit, relative to its weights: where all pixels lie in a row,
-/// the plane across it would be undetermined.
-constexpr double ridge = 1e-3;
-
 int reach_of(float radius) {
   return radius > 0 ? static_cast<int>(std::ceil(radius)) : 0;
 }
@@ -21,27 +19,6 @@ float weight_at(float dx, float dy, float radius) {
   return std::max(0.0f, 1 - (dx * dx + dy * dy) / ((radius + 1) * (radius + 1)));
 }
 
-/// Weighted sums of 1, x, y and their products.
-struct Moments {
-  double one = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-
-  void add(double weight, double dx, double dy) {
-    one += weight;
-    x += weight * dx;
-    y += weight * dy;
-    xx += weight * dx * dx;
-    xy += weight * dx * dy;
-    yy += weight * dy * dy;
-  }
-  /// Of the normal equations' inverse, the row that gives the plane's value at (0, 0).
-  std::array<double, 3> first_row() const {
-    const double a = xx + ridge * one, c = yy + ridge * one;
-    const double minor = a * c - xy * xy, minor_x = x * c - xy * y, minor_y = x * xy - a * y;
-    const double determinant = one * minor - x * minor_x + y * minor_y;
-    return {minor / determinant, -minor_x / determinant, minor_y / determinant};
-  }
-};
-
 } // namespace
 
 PixelRegression::PixelRegression(const Camera& camera, double world_scale, float radius)
@@ -49,7 +26,7 @@ PixelRegression::PixelRegression(const Camera& camera, double world_scale, float
 
 double PixelRegression::blur(float radius) {
   const int reach = reach_of(radius);
-  Moments moments;
+  PlaneFit moments;
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx)
       moments.add(
@@ -81,7 +58,7 @@ std::span<const PixelRegression::Share> PixelRegression::shares(const SeenMedium
   if (!(deepest > 0)) // a medium at the lens itself
     return {shares.data(), 1};
   std::array<std::array<double, 2>, most_shares> offsets;
-  Moments moments;
+  PlaneFit moments;
   std::size_t count = 0;
   for (int py = std::max(0, y - reach_); py <= std::min(seen.height - 1, y + reach_); ++py)
     for (int px = std::max(0, x - reach_); px <= std::min(seen.width - 1, x + reach_); ++px) {
@@ -99,7 +76,7 @@ std::span<const PixelRegression::Share> PixelRegression::shares(const SeenMedium
       offsets[count] = {static_cast<double>(px - x), static_cast<double>(py - y)};
       shares[count++] = {pixel, weight};
     }
-  const std::array<double, 3> row = moments.first_row();
+  const std::array<double, 3> row = moments.row();
   for (std::size_t i = 0; i < count; ++i)
     shares[i].weight *=
         opacity * static_cast<float>(row[0] + row[1] * offsets[i][0] + row[2] * offsets[i][1]);

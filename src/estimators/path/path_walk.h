@@ -68,9 +68,10 @@ public:
   /// Radiance that leaves a surface against `direction`, along which a ray meets it.
   /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
   /// the medium, and they on to other surfaces, to which photons bring it.
-  /// `emits`: with what the surface itself emits.
+  /// `emits`: with what the surface itself emits. `straight`, unless it is null, gets the part that
+  /// shadow rays from the surface find.
   Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng, bool all_light = true,
-                   bool emits = true) const;
+                   bool emits = true, Rgb* straight = nullptr) const;
 
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
   /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of

@@ -8,7 +8,7 @@
 namespace vdbeam {
 
 Rgb WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                             bool all_light, bool emits) const {
+                             bool all_light, bool emits, Rgb* straight) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
@@ -20,7 +20,10 @@ Rgb WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng&
       goes_on = step(walk, branches);
     sum += walk.direct + walk.indirect;
   };
-  follow(first, bounce(first, vertex, true) && advance_flight(first, *this));
+  const bool leaves = bounce(first, vertex, true);
+  if (straight)
+    *straight = first.direct;
+  follow(first, leaves && advance_flight(first, *this));
   while (!branches.empty()) {
     PathWalk walk = std::move(branches.back());
     branches.pop_back();

@@ -1,0 +1,96 @@
+#include "estimators/surface_fit.h"
+
+#include "math/plane_fit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Normals at which a neighbour does not count: at 26 degrees; and how far it may lie off the plane
+/// of the surface, in widths of what is shared.
+constexpr float least_cosine = 0.9f, farthest_off_plane = 2;
+
+/// Pixels around over which a pass fits.
+float radius_of(int pass) {
+  constexpr std::array<std::pair<int, float>, 6> radii{
+      {{4, 2.8f}, {12, 2}, {32, 1.4f}, {80, 1}, {200, 0.7f}, {600, 0.5f}}};
+  for (const auto& [end, radius] : radii)
+    if (pass < end)
+      return radius;
+  return 0.25f;
+}
+
+} // namespace
+
+SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
+    : camera_(input.camera), width_(input.camera.width()), height_(input.camera.height()),
+      radius_(radius_of(pass)),
+      pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
+
+void SurfaceFit::set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr) {
+  pixels_[pixel] = {seen.smooth, seen.albedo * tr, seen.position, seen.normal, seen.surface};
+}
+
+Rgb SurfaceFit::fitted(int x, int y, float widest) const {
+  const auto at = [&](int px, int py) -> const Pixel& {
+    return pixels_[static_cast<std::size_t>(py) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(px)];
+  };
+  const Pixel& center = at(x, y);
+  constexpr std::size_t most = (2 * reach + 1) * (2 * reach + 1);
+  struct Share {
+    const Pixel* pixel;
+    double weight, dx, dy;
+  };
+  std::array<Share, most> shares;
+  std::size_t count = 0;
+  PlaneFit fit;
+  for (int py = std::max(0, y - reach); py <= std::min(height_ - 1, y + reach); ++py)
+    for (int px = std::max(0, x - reach); px <= std::min(width_ - 1, x + reach); ++px) {
+      const Pixel& other = at(px, py);
+      const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
+      const float near = 1 - (dx * dx + dy * dy) / ((radius_ + 1) * (radius_ + 1));
+      if (other.surface != center.surface || !(near > 0))
+        continue;
+      const float turned = (1 - dot(center.normal, other.normal)) / (1 - least_cosine);
+      const float off = dot(center.normal, other.position - center.position) / widest;
+      const float weight = near * std::max(0.0f, 1 - turned) * std::max(0.0f, 1 - off * off);
+      if (!(weight > 0))
+        continue;
+      fit.add(static_cast<double>(weight), px - x, py - y);
+      shares[count++] = {&other, static_cast<double>(weight), static_cast<double>(px - x),
+                         static_cast<double>(py - y)};
+    }
+  const std::array<double, 3> row = fit.row();
+  Vec3d sum;
+  for (std::size_t i = 0; i < count; ++i)
+    sum += Vec3d(shares[i].pixel->light) *
+           (shares[i].weight * (row[0] + row[1] * shares[i].dx + row[2] * shares[i].dy));
+  return Rgb(sum);
+}
+
+void SurfaceFit::apply(const PixelRegion& window, PassImage& image) const {
+  tbb::parallel_for(window.y0, window.y1, [&](int y) {
+    for (int x = window.x0; x < window.x1; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                            static_cast<std::size_t>(x);
+      const Pixel& pixel = pixels_[i];
+      if (pixel.surface < 0)
+        continue;
+      const Vec3d eye = camera_.ray(x + 0.5, y + 0.5).origin;
+      const double pixel_width =
+          camera_.pixel_width(x + 0.5, y + 0.5, length(Vec3d(pixel.position) - eye));
+      const auto widest = static_cast<float>(farthest_off_plane * pixel_width) * (radius_ + 0.5f);
+      if (widest > 0)
+        image.background[i] += (fitted(x, y, widest) - pixel.light) * pixel.factor;
+    }
+  });
+}
+
+} // namespace vdbeam

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "image/pass_image.h"
+#include "rays/estimator_input.h"
+#include "rays/profile_shading.h"
+
+#include <vector>
+
+namespace vdbeam {
+
+/// What matt surfaces reflect of light that has come by way of other surfaces and the medium has
+/// the noise of a few paths per pixel, but it changes slowly over a surface, per albedo. So each
+/// pixel takes it from a plane that is fitted to the pixels around it which show the same surface
+/// (PlaneFit), within fewer pixels from pass to pass: the bias vanishes as the noise does. Light
+/// straight from lights, with its shadows, stays as it is.
+class SurfaceFit {
+public:
+  /// Of a pass of a world with surfaces. `input` must outlive this.
+  SurfaceFit(const EstimatorInput& input, int pass);
+
+  /// By how many pixels it reaches to each side.
+  static constexpr int reach = 3;
+  /// What a pass takes.
+  static constexpr std::size_t bytes_per_pixel();
+
+  /// Of any thread, each pixel by one: a pixel shows a surface through the transmittance `tr`.
+  void set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr);
+  /// The pixel shows several.
+  void clear(std::size_t pixel) { pixels_[pixel].surface = -1; }
+
+  /// After all pixels: replaces their light by what is fitted, in the window.
+  void apply(const PixelRegion& window, PassImage& image) const;
+
+private:
+  struct Pixel {
+    Rgb light;      ///< smooth light per albedo
+    Rgb factor;     ///< albedo times transmittance
+    Vec3f position; ///< render space
+    Vec3f normal;
+    int surface = -1; ///< -1: none that is fitted
+  };
+  Rgb fitted(int x, int y, float widest) const;
+
+  const Camera& camera_;
+  int width_, height_;
+  float radius_; ///< [pixels]
+  std::vector<Pixel> pixels_;
+};
+
+constexpr std::size_t SurfaceFit::bytes_per_pixel() {
+  return sizeof(Pixel);
+}
+
+} // namespace vdbeam
