@@ -3,10 +3,12 @@
 namespace vdbeam {
 
 AimedLight::AimedLight(std::vector<Aim> aims) : aims_(std::move(aims)) {
-  // By which lights share the photons: what goes to the medium, and a part of the rest.
+  // By which lights share the photons: what goes to the medium, and about what the surfaces around
+  // it send there. What shines on a wide ground would leave no photons for a lamp.
+  constexpr float sent_on = 0.1f;
   power_ = light().power();
-  for (std::size_t i = 1; i < aims_.size(); ++i)
-    power_ += aims_[i].light->power() * static_cast<float>(aims_[i].share);
+  if (aims_.size() > 1)
+    power_ += aims_[1].light->power() * sent_on;
   flux_to_medium_ = max_component(light().power()) / static_cast<float>(aims_[0].share);
 }
 
