@@ -1,6 +1,7 @@
 #include "batch/frame_renderer.h"
 
 #include "batch/output_paths.h"
+#include "batch/reference_image.h"
 #include "console/progress.h"
 #include "console/signals.h"
 #include "film/film_file.h"
@@ -27,30 +28,6 @@
 
 namespace vdbeam::cli {
 namespace {
-
-/// The reference that an option names, which must have the picture's size, before any time goes
-/// into rendering; none where `path` is empty.
-std::optional<Image> read_reference(const char* option, const std::string& path,
-                                    const ImageSettings& size) {
-  if (path.empty())
-    return std::nullopt;
-  if (size.overscan > 0)
-    throw InputError(fmt::format("{}: excludes image.overscan", option));
-  Image reference = read_image(path);
-  if (reference.width != size.width || reference.height != size.height)
-    throw InputError(fmt::format("{} {}: is {}x{}, but the picture is {}x{}; use "
-                                 "--resolution {}x{}",
-                                 option, path, reference.width, reference.height, size.width,
-                                 size.height, reference.width, reference.height));
-  for (const char* channel : {"R", "G", "B"})
-    if (!reference.find(channel))
-      throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
-  std::erase_if(reference.channels, [](const ImageChannel& channel) {
-    return channel.name != "R" && channel.name != "G" && channel.name != "B";
-  });
-  convert_colors(reference, chromaticities_of(size.working_space));
-  return reference;
-}
 
 std::string start_text(const Scene& scene) {
   return fmt::format("{}, {}, {}x{}", scene.path, scene.render.estimator.name, scene.image.width,

@@ -83,6 +83,8 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
   const double of_photons = in_trial * trial.neighbours / (neighbours_of_gather * plan.neighbours);
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
+  if (input.world.surfaces)
+    gather.time_of_walks = GatherPlan::time_among_surfaces;
   if (forces_final_gather(kind, input.settings))
     return gather;
   for (int first = 0; first <= most_passes_before;

@@ -6,10 +6,6 @@ namespace vdbeam {
 
 namespace {
 
-/// Time that `most_walks` take over that of a pass that gathers along camera rays, measured on
-/// clouds of all depths (docs/decisions.md).
-constexpr double time_of_walks = 0.7;
-
 /// From each camera ray: the wider the fit, the fewer.
 int walks_of(float radius) {
   return radius >= 1.4f ? 6 : radius >= 0.7f ? 8 : GatherPlan::most_walks;

@@ -23,6 +23,12 @@ struct GatherPlan {
   double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
   RegressionTrial regression;
+  /// Time that `most_walks` take over that of a pass that gathers along camera rays.
+  double time_of_walks = time_in_the_open;
+
+  /// Measured on clouds of all depths, and where walks meet surfaces, from which paths go on
+  /// (docs/decisions.md).
+  static constexpr double time_in_the_open = 0.7, time_among_surfaces = 1.5;
 
   /// Mean square error of what photons bring to a picture, after the time of so many passes that
   /// gather along camera rays; with the best radius, or with one of the trial's.

@@ -1,0 +1,33 @@
+#include "batch/reference_image.h"
+
+#include "image/color_conversion.h"
+#include "vdbeam/error.h"
+#include "vdbeam/image_file.h"
+
+#include <fmt/format.h>
+
+namespace vdbeam::cli {
+
+std::optional<Image> read_reference(const char* option, const std::string& path,
+                                    const ImageSettings& size) {
+  if (path.empty())
+    return std::nullopt;
+  if (size.overscan > 0)
+    throw InputError(fmt::format("{}: excludes image.overscan", option));
+  Image reference = read_image(path);
+  if (reference.width != size.width || reference.height != size.height)
+    throw InputError(fmt::format("{} {}: is {}x{}, but the picture is {}x{}; use "
+                                 "--resolution {}x{}",
+                                 option, path, reference.width, reference.height, size.width,
+                                 size.height, reference.width, reference.height));
+  for (const char* channel : {"R", "G", "B"})
+    if (!reference.find(channel))
+      throw InputError(fmt::format("{} {}: has no channel {}", option, path, channel));
+  std::erase_if(reference.channels, [](const ImageChannel& channel) {
+    return channel.name != "R" && channel.name != "G" && channel.name != "B";
+  });
+  convert_colors(reference, chromaticities_of(size.working_space));
+  return reference;
+}
+
+} // namespace vdbeam::cli

@@ -1,0 +1,108 @@
+// What matt surfaces show of light that came by other ways than straight is fitted over pixels:
+// even light and light that changes steadily stay as they are, other surfaces do not count, noise
+// falls.
+#include "estimators/surface_fit.h"
+
+#include "support/render_passes.h"
+#include "support/surface_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+constexpr int width = 24;
+
+/// A scene whose camera looks straight at the plane z = 0 from a distance of 10.
+MemoryScene plane_scene() {
+  MemoryScene scene;
+  surfaces::add_surface(scene, SurfaceShape::quad, surfaces::scaled(20), surfaces::diffuse(0.5));
+  scene.add_light(LightType::environment);
+  scene.look({0, 0, 10}, {0, 0, 0}, 20, width, width);
+  return scene;
+}
+
+/// Sets light(x, y) on a plane that is cut in two surfaces at `cut`, and fits it.
+template <class Light>
+PassImage fit_of(const TestFrame& frame, int pass, int cut, const Light& light) {
+  const EstimatorInput input = frame.input();
+  SurfaceFit fit(input, pass);
+  PassImage image;
+  image.resize(width, width);
+  const double pixel =
+      frame.camera.pixel_width(width / 2.0, width / 2.0, 10 * frame.world.space.scale);
+  for (int y = 0; y < width; ++y)
+    for (int x = 0; x < width; ++x) {
+      SeenSurface seen;
+      seen.smooth = Rgb(static_cast<float>(light(x, y)));
+      seen.albedo = Rgb(0.5f);
+      seen.position = Vec3f(Vec3d{x * pixel, y * pixel, 0});
+      seen.normal = {0, 0, 1};
+      seen.surface = x < cut ? 0 : 1;
+      const auto i = static_cast<std::size_t>(y * width + x);
+      fit.set(i, seen, Rgb(0.8f));
+      image.background[i] = seen.smooth * 0.4f;
+    }
+  fit.apply({0, 0, width, width}, image);
+  return image;
+}
+
+TEST(SurfaceFit, KeepsWhatChangesSteadilyAndEdgesBetweenSurfaces) {
+  const MemoryScene scene = plane_scene();
+  const TestFrame frame(scene);
+  const auto light = [](int x, int y) { return (x < 10 ? 1 : 7) + 0.05 * x - 0.03 * y; };
+  for (const int pass : {0, 8, 50, 1000}) {
+    const PassImage image = fit_of(frame, pass, 10, light);
+    for (int y = 0; y < width; ++y)
+      for (int x = 0; x < width; ++x)
+        EXPECT_NEAR(image.background[static_cast<std::size_t>(y * width + x)].x, 0.4 * light(x, y),
+                    0.003)
+            << pass << ": " << x << ", " << y;
+  }
+}
+
+TEST(SurfaceFit, LessensNoiseLessFromPassToPass) {
+  const MemoryScene scene = plane_scene();
+  const TestFrame frame(scene);
+  const auto light = [](int x, int y) { return 1 + lattice_noise(x, y, 0) - 0.5; };
+  const auto spread = [&](int pass) {
+    const PassImage image = fit_of(frame, pass, 0, light);
+    double sum = 0;
+    for (const Rgb& value : image.background)
+      sum += (static_cast<double>(value.x) - 0.4) * (static_cast<double>(value.x) - 0.4);
+    return sum / (width * width);
+  };
+  const double whole = 0.16 / 12;
+  EXPECT_LT(spread(0), 0.12 * whole);
+  EXPECT_LT(spread(0), spread(20));
+  EXPECT_LT(spread(20), spread(100));
+  EXPECT_LT(spread(1000), 0.9 * whole);
+}
+
+/// A pixel of a region has the bits that it has in the whole picture.
+TEST(SurfaceFit, ARegionIsAPartOfThePicture) {
+  MemoryScene scene = plane_scene();
+  scene.add_box({-1, -1, 0.5}, {1, 1, 1.5}).extinction = 2;
+  scene.scene.render.photons = 2000;
+  for (const EstimatorType type : {EstimatorType::beam, EstimatorType::gather}) {
+    scene.scene.render.estimator = type;
+    const TestFrame frame(scene);
+    PassImage whole, part;
+    RenderStatistics uncounted;
+    make_pass_renderer(type, frame.input())->render_pass(0, whole, uncounted);
+    EstimatorInput input = frame.input();
+    input.window = {6, 9, 15, 14};
+    make_pass_renderer(type, input)->render_pass(0, part, uncounted);
+    for (int y = input.window.y0; y < input.window.y1; ++y)
+      for (int x = input.window.x0; x < input.window.x1; ++x) {
+        const auto i = static_cast<std::size_t>(y * width + x);
+        for (int c = 0; c < 3; ++c)
+          EXPECT_EQ(whole.total(i)[c], part.total(i)[c]) << x << ", " << y;
+      }
+  }
+}
+
+} // namespace
+} // namespace vdbeam
