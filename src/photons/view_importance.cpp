@@ -37,9 +37,11 @@ Rgb hidden_channels(const Medium& medium) {
 /// clearest channel that is not hidden, times `weight`.
 void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, float weight,
                 const Ray& ray, const DepthProfile& profile, std::vector<float>& table) {
+  GridTraversal walk = medium.volumes[volume].traverse({ray, profile.front(), profile.back()});
+  if (walk.done()) // as most of many small volumes are
+    return;
   const DensityField& field = medium.volumes[volume].field;
   ProfileCursor cursor(profile);
-  GridTraversal walk = medium.volumes[volume].traverse({ray, profile.front(), profile.back()});
   for (; !walk.done(); walk.advance()) {
     cursor.move_to(walk.t());
     Rgb tau = hidden;

@@ -69,19 +69,20 @@ TEST_P(AimedLights, BringWhatTheyBringWithoutAims) {
   expect_power(plain, 0.02 * plain.mean());
 }
 
-/// Over a ground a thousand times as wide as the medium the same light arrives, with no more noise
-/// than over one that is a few times as wide. What the far ground adds is less than a percent.
+/// Over a ground a thousand times as wide as the medium about the same light arrives, with little
+/// more noise than over one that is forty times as wide. What the far ground adds is what fills the
+/// last 3 degrees below the horizon.
 TEST_P(AimedLights, DoNotNoticeTheWidthOfTheGround) {
   const Samples narrow = power_of(scene_of(GetParam(), 20).world(), 100);
   const Samples wide = power_of(scene_of(GetParam(), 500).world(), 100);
-  expect_same_mean(narrow, wide, 0.01 * narrow.mean());
+  expect_same_mean(narrow, wide, 0.05 * narrow.mean());
   EXPECT_LT(wide.error(), 2 * narrow.error());
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, AimedLights,
                          ::testing::Values(LightType::distant, LightType::point, LightType::spot,
                                            LightType::environment, LightType::sky),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& light) { return std::string(light.param.name); });
 
 /// A lamp among the surfaces, aimed at the medium and at the rest.
 TEST(AimedLamp, BringsWhatItBringsWithoutAims) {
