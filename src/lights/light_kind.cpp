@@ -18,14 +18,13 @@ std::optional<KeyComplaint> direction_complaint(const LightSettings& settings) {
   return std::nullopt;
 }
 
-Rgb estimate_power(const Light& light) {
-  constexpr int count = 4096;
+Rgb estimate_power(const Light& light, int photons) {
   Vec3d sum;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < photons; ++i) {
     Rng rng({}, RngStage::light, static_cast<std::uint64_t>(i));
     sum += Vec3d(light.emit(rng).flux);
   }
-  return Rgb(sum / static_cast<double>(count));
+  return Rgb(sum / static_cast<double>(photons));
 }
 
 Vec3d unit_direction(const Vec3d& v, const char* key) {

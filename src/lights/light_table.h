@@ -43,7 +43,7 @@ extern const LightKind distant_light, point_light, spot_light, environment_light
 std::optional<KeyComplaint> direction_complaint(const LightSettings& settings);
 
 /// Mean flux of photons from a fixed stream, for lights whose power has no short formula.
-Rgb estimate_power(const Light& light);
+Rgb estimate_power(const Light& light, int photons = 4096);
 
 /// A unit vector; throws InputError, naming the key, where `v` has no direction.
 Vec3d unit_direction(const Vec3d& v, const char* key);

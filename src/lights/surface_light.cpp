@@ -36,8 +36,9 @@ SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surfa
   } else {
     power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) * sides));
   }
+  constexpr int enough = 256; // there may be thousands of lamps, and it only shares out photons
   if (target)
-    power_ = estimate_power(*this);
+    power_ = estimate_power(*this, enough);
 }
 
 SurfacePoint SurfaceLight::sample_area(double place, double u, double v) const {

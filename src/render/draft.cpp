@@ -28,6 +28,9 @@ Scene reduced(const Scene& scene, int reduction) {
   image.height = fewer(image.height);
   image.pixel_aspect *= shape * image.height / image.width;
   image.deep = image.cryptomatte = false;
+  if (small.render.photons) // as many per pixel
+    *small.render.photons /=
+        static_cast<std::uint64_t>(reduction) * static_cast<std::uint64_t>(reduction);
   small.layers.clear();
   small.moments.clear();
   for (LightSettings& light : small.lights)

@@ -16,7 +16,7 @@ constexpr double first_box = 1.5, next_box = 4;
 constexpr std::size_t most_boxes = 64;
 constexpr int most_targets = 8;
 /// Photons that find out how much of an aim's light counts.
-constexpr std::uint64_t trial_photons = 512;
+constexpr std::uint64_t trial_photons = 256;
 
 /// A flat box has no inside at which photons can be aimed.
 Parallelepiped thick_box(const Boxd& box) {

@@ -167,8 +167,9 @@ TEST_F(RenderCommand, StopRuleOfTheCommandLineReplacesTheFilesRule) {
 /// the program wait.
 TEST_F(RenderCommand, TimeLimitHoldsInsideTheFirstPass) {
   const std::vector<std::string> arguments{
-      "render", cloud, "--estimator", "path",  "--resolution", "960x2160", "--threads", "2",
-      "--time", "1s",  "-o",          "a.exr", "--preview",    "a.png",    "--report",  "r.json"};
+      "render",    cloud,   "--estimator", "beam",   "--resolution", "960x2160",
+      "--threads", "2",     "--time",      "4s",     "-o",           "a.exr",
+      "--preview", "a.png", "--report",    "r.json", "--set",        "render.photons=20000000"};
   const auto result = run(arguments);
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_NE(result.error.find("the picture is a draft"), std::string::npos) << result.error;
@@ -185,8 +186,8 @@ TEST_F(RenderCommand, TimeLimitHoldsInsideTheFirstPass) {
   const Json report = Json::parse(read("r.json"));
   EXPECT_EQ(report["stopped_by"], "time");
   EXPECT_EQ(report["quick_look"], false);
-  EXPECT_EQ(report["draft"], 8);
-  EXPECT_EQ(image.numbers.at("vdbeam:draft"), 8);
+  EXPECT_GT(report["draft"], 1);
+  EXPECT_EQ(image.numbers.at("vdbeam:draft"), report["draft"]);
   EXPECT_TRUE(report["passes"].empty());
 }
 
