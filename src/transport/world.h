@@ -2,8 +2,8 @@
 
 #include "camera/camera.h"
 #include "grids/emission_grid.h"
-#include "medium/emission_directions.h"
 #include "lights/light_set.h"
+#include "medium/emission_directions.h"
 #include "medium/medium.h"
 #include "transport/surfaces.h"
 #include "vdb/vdb_reader.h"
