@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// From so many questions on a folder is listed.
+/// Number of questions about a folder from which on it is listed.
 constexpr std::size_t often = 256;
 
 void list(FolderNames::Folder& folder) {

@@ -14,8 +14,8 @@ namespace {
 
 /// How far a pixel looks for others of its surface, in pixels of the draft.
 constexpr int farthest = 3;
-/// The light of a pixel is at most so many times that of the draft's pixels around it: where the
-/// draft has missed a wisp it has missed its light, too.
+/// Greatest factor of a pixel's light over that of the draft's pixels around it: where the draft
+/// has missed a wisp it has missed its light, too.
 constexpr float greatest_gain = 2;
 
 /// The same scene in fewer pixels, of the same shape together, and without what drafts leave out.
@@ -28,7 +28,7 @@ Scene reduced(const Scene& scene, int reduction) {
   image.height = fewer(image.height);
   image.pixel_aspect *= shape * image.height / image.width;
   image.deep = image.cryptomatte = false;
-  if (small.render.photons) // as many per pixel
+  if (small.render.photons) // the same number per pixel
     *small.render.photons /=
         static_cast<std::uint64_t>(reduction) * static_cast<std::uint64_t>(reduction);
   small.layers.clear();

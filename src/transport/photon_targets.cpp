@@ -12,7 +12,7 @@ namespace {
 /// Half the width of the first box about the medium in radii of the medium, and how much wider each
 /// further box is.
 constexpr double first_box = 1.5, next_box = 4;
-/// Boxes beyond so many are one.
+/// Greatest number of a target's boxes: more than these are merged into one.
 constexpr std::size_t most_boxes = 64;
 constexpr int most_targets = 8;
 /// Photons that find out how much of an aim's light counts.
