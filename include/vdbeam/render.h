@@ -30,8 +30,8 @@ struct RenderResult {
   PictureFacts picture;           ///< of a whole picture; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
   bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
-  /// Where the time limit left no time for a pass: the picture was rendered in 1 / so many of its
-  /// pixels each way, and enlarged; else 0.
+  /// Where the time limit left no time for a pass, the factor by which the picture was rendered in
+  /// fewer pixels each way, before it was enlarged; else 0.
   int draft = 0;
 };
 

@@ -77,8 +77,8 @@ public:
   }
 
 private:
-  /// Names may have 255 bytes on most file systems, whole paths 4095 (of which the temporary file's
-  /// name, at most 240 bytes long, takes its share).
+  /// On most file systems a name may have 255 bytes and a whole path 4095. The name of the
+  /// temporary file, at most 240 bytes long, is a part of the path.
   void check_length(const std::string& path) {
     const SplitPath split(path);
     if (measured_ != split.folder) {

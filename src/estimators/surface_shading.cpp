@@ -134,12 +134,17 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   return matt(vertex, camera.ray().direction, path_rng);
 }
 
-/// What a surface shows that is no picture of its surroundings.
+/// What a surface shows that is no mirror, glass or polished metal.
 template <class PathRng>
 SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direction,
                                  const PathRng& path_rng) const {
+  const Rgb albedo = vertex.matt_albedo();
+  // A channel that reflects nothing does not show what light there is.
+  constexpr float least_albedo = 1e-3f;
+  const bool fitted = std::min(albedo.x, std::min(albedo.y, albedo.z)) > least_albedo;
+  const int paths = fitted ? matt_paths : paths_per_ray;
   Rgb beyond, straight, photons;
-  for (int i = 0; i < matt_paths; ++i) {
+  for (int i = 0; i < paths; ++i) {
     Rng rng = path_rng(i);
     Rgb by_shadow_rays;
     beyond += surfaces_.by_paths(vertex, direction, rng, &by_shadow_rays) - by_shadow_rays;
@@ -150,14 +155,13 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
     for (int ray = 0; ray < more_shadow_rays_; ++ray)
       straight += surfaces_.tracer().lights_at_surface(vertex, rng, true) * vertex.absorbed();
   }
-  beyond *= 1.0f / matt_paths;
-  straight *= 1 / static_cast<float>(matt_paths + more_shadow_rays_);
-  constexpr float least_albedo = 1e-3f;
+  beyond *= 1 / static_cast<float>(paths);
+  straight *= 1 / static_cast<float>(paths + more_shadow_rays_);
   SeenSurface seen{beyond + straight + photons + vertex.emitted(), 0, lamp_of(vertex)};
-  seen.albedo = vertex.matt_albedo();
-  if (!(std::min(seen.albedo.x, std::min(seen.albedo.y, seen.albedo.z)) > least_albedo))
+  if (!fitted)
     return seen;
-  seen.smooth = beyond / seen.albedo;
+  seen.albedo = albedo;
+  seen.smooth = beyond / albedo;
   seen.position = Vec3f(vertex.hit().position);
   seen.normal = vertex.hit().shading_normal * (vertex.front() ? 1.0f : -1.0f);
   seen.surface = vertex.hit().surface;

@@ -21,7 +21,7 @@ public:
     int first_target, last_target; ///< that its photons count for
     double share;                  ///< of the photons, > 0; they add up to 1
   };
-  /// At least one aim, the first of which is at the medium.
+  /// Requires an aim; the first is at the medium.
   explicit AimedLight(std::vector<Aim> aims);
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override {

@@ -29,8 +29,8 @@ struct VolumesMemory {
 /// Estimates it from the topology of the files' trees. Throws as read_density_grid.
 VolumesMemory estimate_volumes(const Scene& scene);
 
-/// The memory of a frame of this plan whose volumes take so much, and that is compared with so many
-/// reference images.
+/// Estimates the memory that a frame of this plan takes. `references`: the number of reference
+/// images that it is compared with.
 MemoryPlan estimate_memory(const Scene& scene, const RenderPlan& plan, const VolumesMemory& volumes,
                            int references);
 

@@ -8,10 +8,10 @@
 
 namespace vdbeam {
 
-/// A whole picture in little time: passes of the scene in fewer pixels, enlarged. What the medium
-/// scatters is smooth per opacity, and what surfaces send out is smooth on each of them; opacity,
-/// depth and lights behind are those of every pixel of the picture. Layers, groups, deep and motion
-/// are left out.
+/// Renders a whole picture in little time: passes of the scene in fewer pixels, enlarged. The light
+/// of the medium changes slowly per opacity, and that of a surface changes slowly over it, so both
+/// are interpolated; opacity, depth and the lights behind are computed for every pixel of the
+/// picture. A draft leaves out layers, groups, deep samples and motion.
 class Draft {
 public:
   /// In 1 / `reduction` of the pixels each way. Runs the pilots. What is given must outlive this.
@@ -24,8 +24,8 @@ public:
   double pilot_seconds() const { return pilot_seconds_; }
   double pass_seconds() const { return pass_seconds_; } ///< of the last pass
 
-  /// The mean of the passes, of which there must be one, in the pixels of `full`, the same scene's
-  /// input. Pixels that are beyond its window stay empty.
+  /// The mean of the passes in the pixels of `full`, the same scene's input; requires a pass.
+  /// Pixels beyond its window stay empty.
   PassImage enlarged(const EstimatorInput& full) const;
 
 private:

@@ -81,6 +81,8 @@ OccupiedRegion region_within(const Boxd& box, const OccupiedRegion& medium,
 bool meets(const std::vector<Parallelepiped>& boxes, const Ray& ray) {
   for (const Parallelepiped& box : boxes) {
     const float volume = dot(box.edges[0], cross(box.edges[1], box.edges[2]));
+    if (!(std::abs(volume) > 0)) // EntrySampler leaves flat boxes out, too
+      continue;
     float enter = 0, leave = infinity;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3f dual = cross(box.edges[(i + 1) % 3], box.edges[(i + 2) % 3]) / volume;

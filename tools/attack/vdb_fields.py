@@ -21,7 +21,7 @@ LEVEL_BYTES = 2 * 32 ** 3 // 8  # of the two masks of a node of the upper level
 
 
 class Field:
-    """Bytes of a file, and what they may be replaced by."""
+    """A field holds a range of bytes in a file and the values that may replace them."""
 
     def __init__(self, place, size, name, values):
         self.place, self.size, self.name, self.values = place, size, name, values
