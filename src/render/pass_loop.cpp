@@ -55,12 +55,21 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
   set_deadline();
 }
 
+/// Of the window.
 Film PassLoop::make_film() const {
   std::optional<DeepFilm> deep;
   if (deep_layout_)
-    deep.emplace(cut_out(*deep_layout_, scene_.image.raster_width(), window_));
-  return {window_.width(),
-          window_.height(),
+    deep.emplace(window_layout());
+  return make_film(window_.width(), window_.height(), std::move(deep));
+}
+
+DeepLayout PassLoop::window_layout() const {
+  return cut_out(*deep_layout_, scene_.image.raster_width(), window_);
+}
+
+Film PassLoop::make_film(int width, int height, std::optional<DeepFilm> deep) const {
+  return {width,
+          height,
           scene_.glows(),
           light_group_names(scene_),
           std::move(deep),
@@ -118,7 +127,7 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
     develop();
   }
   const int times = shutter_times(scene_.camera);
-  if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() < times)
+  if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() > 0 && film_.passes() < times)
     note(fmt::format("the open shutter was seen at {} only, one in each pass: blur may show as "
                      "steps; render at least {} passes",
                      count_text(static_cast<std::uint64_t>(film_.passes()), "moment"), times));
@@ -323,8 +332,13 @@ void PassLoop::write_checkpoint() {
 
 void PassLoop::develop() {
   result_.image = develop_layers(film_, scene_.layers);
-  result_.image.primaries = chromaticities_of(scene_.image.working_space);
   result_.deep = film_.develop_deep();
+  finish_image();
+}
+
+/// Says what the colours are, and where the pixels lie.
+void PassLoop::finish_image() {
+  result_.image.primaries = chromaticities_of(scene_.image.working_space);
   if (!whole_ || scene_.image.overscan > 0)
     place(result_.image);
 }

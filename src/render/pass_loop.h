@@ -50,8 +50,11 @@ private:
   void attempt(const std::function<void()>& write);
   void write_checkpoint();
   Film make_film() const;
+  Film make_film(int width, int height, std::optional<DeepFilm> deep = std::nullopt) const;
+  DeepLayout window_layout() const;
   void replace_film();
   void develop();
+  void finish_image();
   void place(Image& image) const;
   FilmFileInfo file_info() const;
   int least_passes() const;
@@ -60,7 +63,8 @@ private:
   void render_pass(Shutter& shutter);
   std::optional<Shutter::Renderer> renderer_of_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
-  void take_picture(PassImage& image);
+  void take_picture(const std::function<PassImage(const PixelRegion&)>& image_of);
+  void take_enlarged(const EstimatorInput& full);
   void take_draft(const EstimatorInput& full);
   void show(const std::function<void()>& take);
   void take_early_picture(const EstimatorInput& quick_look);
