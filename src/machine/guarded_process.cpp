@@ -1,5 +1,6 @@
 #include "machine/guarded_process.h"
 
+#include "machine/stop_reading.h"
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 
@@ -226,6 +227,7 @@ std::optional<Message> Child::wait(const GuardLimits& limits) {
       return receive(0);
     if (limits.stop)
       limits.stop->check();
+    StopReading::check();
   }
   return receive(0); // the answer may have come since the last look
 }

@@ -82,10 +82,11 @@ bool PassLoop::may_draft() const {
 
 /// 1 where the first pass is likely to be finished in time.
 int PassLoop::affordable_reduction() const {
-  const double left = limit_seconds() - seconds(), pilot = draft_->pilot_seconds();
+  const double pilot = draft_->pilot_seconds();
   const double pass = draft_->pass_seconds() * draft_->reduction() * draft_->reduction();
-  if (pilot_over_draft * pilot + pass <= left)
+  if (pilot_over_draft * pilot + pass <= limit_seconds() - seconds())
     return 1;
+  const double left = limit_seconds(Packing::quick) - seconds();
   for (int reduction = least_reduction; reduction < draft_->reduction(); ++reduction)
     if (pilot_of_next_draft * pilot + pass / (reduction * reduction) + enlarging * pass <= left)
       return reduction;
@@ -99,16 +100,18 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   const auto reduction = static_cast<int>(std::lround(width / draft_width));
   if (!may_draft() || reduction < least_reduction || (!limited && !shown))
     return false;
+  set_deadline(Packing::quick);
   draft_ = std::make_unique<Draft>(scene_, prepared, window_,
                                    std::min(reduction, greatest_reduction), stop_);
   if (!draft_->add_pass()) {
     draft_.reset();
-    return false;
+    return false; // and there is no time for a pass
   }
   const int affordable = limited ? affordable_reduction() : 1;
   if (affordable == 1) {
     if (shown)
       show([&] { take_enlarged(full); });
+    set_deadline();
     return false;
   }
   if (affordable < draft_->reduction()) {
@@ -118,7 +121,7 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   }
   const double pass = draft_->pass_seconds();
   const double end = enlarging * pass * draft_->reduction() * draft_->reduction();
-  while (seconds() + pass + end <= limit_seconds() && draft_->add_pass())
+  while (seconds() + pass + end <= limit_seconds(Packing::quick) && draft_->add_pass())
     continue;
   stop(stop_.requested() ? "stop" : "time");
   take_draft(full);

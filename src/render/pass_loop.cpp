@@ -4,6 +4,7 @@
 #include "film/layers.h"
 #include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "machine/threads.h"
 #include "rays/make_deep_layout.h"
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"
@@ -93,14 +94,22 @@ void PassLoop::gather_deep(const DeepLayout& layout) {
         fmt::format("{}: holds other deep samples; delete it", frame_.checkpoint.path));
 }
 
-/// Rendering time [s] that the passes may take; infinite without a limit.
-double PassLoop::limit_seconds() const {
-  return scene_.render.time && !frame_.pass_range ? *scene_.render.time - frame_.seconds_used
-                                                  : std::numeric_limits<double>::infinity();
+/// Rendering time [s] after which the picture is to be developed and written, for its time counts
+/// too; infinite without a limit.
+double PassLoop::limit_seconds(Packing packing) const {
+  // Processor time [ns] per pixel and channel, measured: to take new memory, develop, make halves
+  // and pack them.
+  const double per_value = packing == Packing::thorough ? 60 : 15;
+  const double values = static_cast<double>(film_.values_per_pixel()) * window_.width() *
+                        static_cast<double>(window_.height());
+  return scene_.render.time && !frame_.pass_range
+             ? *scene_.render.time - frame_.seconds_used -
+                   1e-9 * per_value * values / thread_count(scene_.render)
+             : std::numeric_limits<double>::infinity();
 }
 
-void PassLoop::set_deadline() {
-  stop_.set_deadline(start_, limit_seconds() - earlier_seconds_);
+void PassLoop::set_deadline(Packing packing) {
+  stop_.set_deadline(start_, limit_seconds(packing) - earlier_seconds_);
 }
 
 double PassLoop::seconds() const {

@@ -59,7 +59,10 @@ private:
   FilmFileInfo file_info() const;
   int least_passes() const;
   bool time_is_over() const;
-  void set_deadline();
+  /// How well the picture is packed in the end: drafts and quick looks in little time.
+  enum class Packing { quick, thorough };
+  double limit_seconds(Packing packing = Packing::thorough) const;
+  void set_deadline(Packing packing = Packing::thorough);
   void render_pass(Shutter& shutter);
   std::optional<Shutter::Renderer> renderer_of_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
@@ -70,7 +73,6 @@ private:
   void take_early_picture(const EstimatorInput& quick_look);
   bool may_draft() const;
   int affordable_reduction() const;
-  double limit_seconds() const;
   void note(const std::string& line);
   double seconds() const;
 

@@ -390,10 +390,12 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
   std::uint64_t collisions = 0;
   for (const PathTracer& tracer : tracers)
     collisions += tracer.collisions;
-  pass.photons = joined(tracers, &PathTracer::photons);
-  pass.surface_photons = joined(tracers, &PathTracer::surface_photons);
   pass.mean_collisions =
       paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
+  if (settings.stop && settings.stop->stopped())
+    return pass; // what there is is of no use, and there may be much of it
+  pass.photons = joined(tracers, &PathTracer::photons);
+  pass.surface_photons = joined(tracers, &PathTracer::surface_photons);
   return pass;
 }
 
