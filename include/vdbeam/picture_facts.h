@@ -6,8 +6,9 @@ namespace vdbeam {
 struct PictureFacts {
   /// Of the medium, along the deepest of a grid of camera rays, in the channel with most.
   double optical_depth = 0;
-  double opacity = 0;  ///< mean over the pixels: of volumes, surfaces and caught shadows
-  double black = 0;    ///< share of the pixels without any light
+  double opacity = 0; ///< mean over the pixels: of volumes, surfaces and caught shadows; NaN: there
+                      ///< is no layer alpha
+  double black = 0;   ///< share of the pixels without any light
   double over_one = 0; ///< share of the pixels with a channel above 1
 };
 

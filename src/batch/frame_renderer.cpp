@@ -56,9 +56,10 @@ std::string estimators_text(const RenderResult& result) {
 std::string picture_text(const PictureFacts& facts) {
   if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
     return {}; // of a part of the passes
-  return fmt::format(
-      "; optical depth up to {:.2g}, opacity {:.2g}, {:.0f} % black, {:.0f} % above 1",
-      facts.optical_depth, facts.opacity, 100 * facts.black, 100 * facts.over_one);
+  const std::string opacity =
+      std::isnan(facts.opacity) ? "" : fmt::format(" opacity {:.2g},", facts.opacity);
+  return fmt::format("; optical depth up to {:.2g},{} {:.0f} % black, {:.0f} % above 1",
+                     facts.optical_depth, opacity, 100 * facts.black, 100 * facts.over_one);
 }
 
 std::string end_text(const RenderResult& result, const std::string& output) {
