@@ -134,6 +134,8 @@ void add_mesh(KeyTable& table) {
       .types({"file"});
   table.add("visible", &S::visible, "whether the camera sees it; it stops light in any case");
   table.add("name", &S::name, R"(its name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
+  table.add("group", &S::group,
+            "of an emissive mesh: lights of one group share the layer light_NAME");
   add_placement(table, &S::transform);
 
   using M = MaterialSettings;
@@ -205,7 +207,7 @@ void add_light(KeyTable& table) {
   table.add("rotation", &L::rotation, "turns the sky about the camera's up axis").unit("degrees");
   table.add("visible", &L::visible,
             "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
-  table.add("group", &L::group, "lights of one group share the layer light_NAME").keeps_world();
+  table.add("group", &L::group, "lights of one group share the layer light_NAME");
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
 }
 

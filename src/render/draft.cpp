@@ -1,8 +1,6 @@
 #include "render/draft.h"
 
 #include "choose/choose_estimator.h"
-#include "choose/group_passes.h"
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
 #include "machine/stopwatch.h"
 #include "rays/profile_shading.h"
@@ -98,8 +96,7 @@ std::unique_ptr<PassRenderer> make_renderer(const Scene& scene, const FrameSetup
   if (type == EstimatorType::automatic && why_photons_are_rare(setup.input))
     type = EstimatorType::path;
   const EstimatorInput input = type == EstimatorType::path ? setup.path_input() : setup.input;
-  return light_group_names(scene).empty() ? make_pass_renderer(type, input)
-                                          : make_group_passes(scene, type, input);
+  return make_pass_renderer(type, input);
 }
 
 } // namespace
@@ -234,6 +231,7 @@ void Draft::share_among_groups(const Place& place, std::size_t pixel, PassImage&
   Rgb sum;
   for (std::size_t g = 0; g < image.groups.size(); ++g) {
     Rgb& light = image.groups[g][pixel];
+    light = {};
     place.visit(window_, sum_.width, 1, [&](std::size_t other, double dx, double dy) {
       light += sum_.groups[g][other] * (Place::tent(dx) * Place::tent(dy));
     });
@@ -260,7 +258,7 @@ void Draft::enlarge(const EstimatorInput& full, const Place& place, CameraRay ra
     if (near.clear && !ray.hit)
       ray.segment.t_end = ray.segment.t_begin;
     profile.build(full.world.medium, ray.segment, static_cast<float>(full.settings.cutoff));
-    shade_profile(full, ray, profile, pixel, image, {mean.radiance});
+    shade_profile(full, ray, profile, pixel, image, {GroupedLight(mean.radiance, -1)});
     opacity = opacity_and_depth(full.world, ray, profile).opacity;
   }
   const float of_medium =
@@ -275,9 +273,9 @@ void Draft::enlarge(const EstimatorInput& full, const Place& place, CameraRay ra
 
 PassImage Draft::enlarged(const EstimatorInput& full, const PixelRegion& part) const {
   PassImage image;
-  image.resize(part.width(), part.height(), !full.world.medium.emitters.empty(), nullptr,
-               full.object_count(), full.plane_count());
-  image.groups.assign(sum_.groups.size(), std::vector<Rgb>(image.direct.size()));
+  image.resize(part.width(), part.height(), !full.world.medium.emitters.empty(),
+               static_cast<int>(sum_.groups.size()), nullptr, full.object_count(),
+               full.plane_count());
   const RasterMap map(picture_, scene_.image);
   tbb::parallel_for(part.y0, part.y1, [&](int y) {
     DepthProfile profile;
