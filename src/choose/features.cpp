@@ -9,10 +9,6 @@ namespace {
 
 using Facts = FeatureFacts;
 
-/// Distance of a lamp from the medium, in radii of the medium, from which on shadow rays to it are
-/// no noisier than others: its light within the medium changes by a factor of 25 at most.
-constexpr double nearest_lamp = 0.5;
-
 bool stores_scattered_flux(const Facts& facts) {
   return facts.input.settings.store == PhotonStore::scatter;
 }
@@ -49,31 +45,15 @@ bool has_light_that_walks_miss(const Facts& facts) {
   return false;
 }
 
-/// Whether a lamp stands in the medium or close to it.
-bool is_near_medium(const World& world, const Light& light) {
-  Boxd lamp;
-  if (light.surface() >= 0)
-    lamp = world.surfaces->set->bounds(static_cast<std::size_t>(light.surface()));
-  else if (light.position())
-    lamp.extend(*light.position());
-  else
-    return false;
-  const Boxf& medium = world.medium.bounds;
-  const Vec3d gap = max(lamp.lower - Vec3d(medium.upper), Vec3d(medium.lower) - lamp.upper);
-  const double distance = length(max(gap, Vec3d(0)));
-  return distance < nearest_lamp * static_cast<double>(world.region.radius);
-}
-
-/// Close to a lamp a shadow ray's value has no bound, and a small light is met by chance only: rare
-/// and bright values, which a pilot would miss.
+/// A small light without shadow rays is met by chance only: rare and bright values, which a pilot
+/// would miss.
 bool has_light_that_pilots_miss(const Facts& facts) {
   if (is_forced(facts))
     return false;
-  const World& world = facts.input.world;
+  const LightSet& lights = facts.input.world.lights;
   for (std::size_t l = 0; l < facts.input.plan.shadow_ray_lights.size(); ++l) {
-    const LightTraits& traits = world.lights.traits(l);
-    if (facts.sampled_lights[l] ? is_near_medium(world, world.lights[l])
-                                : !traits.surrounds || traits.wants_shadow_rays)
+    const LightTraits& traits = lights.traits(l);
+    if (!facts.sampled_lights[l] && (!traits.surrounds || traits.wants_shadow_rays))
       return true;
   }
   return false;
@@ -161,7 +141,7 @@ constexpr FeatureCondition final_gather_conditions[] = {
     {limits_bounces, by_bounces},
     {has_light_that_walks_miss, "photons alone bring a light of one point or direction"},
     {has_light_that_pilots_miss,
-     "a lamp in or near the medium, or a small light, makes walks too noisy to forecast"}};
+     "a small light without shadow rays makes walks too noisy to forecast"}};
 }
 const Feature final_gather_feature{
     .name = "final gathering",

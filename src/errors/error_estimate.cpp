@@ -214,6 +214,8 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
     const double expected = expected_rest * (noise + result.value);
     if (rest.error > 0 && expected > 0)
       result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));
+  } else if (!probed) { // nobody looks for it
+    result.error = std::hypot(result.error, expected_rest * (noise + result.value));
   }
   return result;
 }

@@ -6,6 +6,8 @@
 
 namespace vdbeam {
 
+class BlurProbe;
+
 /// What a thread keeps from tile to tile.
 struct TileScratch {
   TileRays rays;
@@ -37,7 +39,8 @@ struct TileGather {
   bool refine; ///< edges are seen by several rays (is_uneven)
   /// Adds what the photon map gives to image.indirect, and its counts to scratch.statistics.
   std::function<void(TileScratch& scratch, const RngKey& key)> gather;
-  GatherAlong gather_along; ///< the same for a ray that goes on behind a mirror or glass
+  GatherAlong gather_along;  ///< the same for a ray that goes on behind a mirror or glass
+  BlurProbe* blur = nullptr; ///< takes what the fit of surfaces blurs; null: nobody asks
 };
 
 /// The light of the surfaces in the world of a pass's photons.

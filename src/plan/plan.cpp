@@ -171,11 +171,13 @@ private:
 
   void add_bias() {
     const bool asked = scene_.render.bias_rays > 0;
-    add(Stage::bias, needs_.photons && asked && runs(Stage::bias) && !needs_.specular,
+    add(Stage::bias, needs_.photons && asked && runs(Stage::bias),
         first_reason(
             {{!needs_.photons, no_photons},
              {!asked, "render.bias_rays is 0"},
-             {needs_.specular, "path tracing may miss light that mirrors or glass focus"},
+             {needs_.specular,
+              "kernels blur: passes measure how much. No rays are followed by path "
+              "tracing, which may miss light that mirrors or glass focus"},
              {true, "kernels blur: some rays are followed by path tracing to tell how much"}}));
   }
 

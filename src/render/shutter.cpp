@@ -65,7 +65,8 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   if (!renderer.passes) {
     const Stopwatch watch;
     renderer.passes = ready_ ? std::move(ready_) : make_pass_renderer(type_, renderer.input);
-    if (renderer.input.plan.needs(Stage::bias))
+    const Surfaces* surfaces = renderer.input.world.surfaces.get();
+    if (renderer.input.plan.needs(Stage::bias) && !(surfaces && surfaces->focus_light()))
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
     return_freed_memory();

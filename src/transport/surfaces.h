@@ -32,6 +32,13 @@ struct Surfaces {
                        [](const auto& material) { return material->shows_surroundings(); });
   }
 
+  /// Some surface is a mirror or smooth glass: path tracing may miss light that it focuses.
+  bool focus_light() const {
+    return std::any_of(materials.begin(), materials.end(), [](const auto& material) {
+      return material->is_specular() && !material->is_black();
+    });
+  }
+
   /// Some surface sends light on in narrow lobes (Material::throws_light).
   bool throw_light() const {
     return std::any_of(materials.begin(), materials.end(),

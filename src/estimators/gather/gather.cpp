@@ -17,7 +17,8 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
               {true, gather,
                [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
                  return walks.gather_along(ray, profile, rng);
-               }},
+               },
+               &blur},
               image, statistics);
   walks.fit(blur, image);
   image.blur = blur.take();
