@@ -23,7 +23,7 @@ struct BatchSummary {
   std::vector<int> with_status(const std::string& status) const;
   /// "24 frames: 20 done, 3 skipped, 1 failed", and a line for each failure.
   std::string text() const;
-  /// docs/sequences.md. Throws FrameError.
+  /// docs/how-to/sequences.md. Throws FrameError.
   void write(const std::string& path) const;
 };
 

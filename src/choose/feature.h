@@ -52,7 +52,7 @@ extern const Feature view_importance_feature, path_guide_feature, kernel_pilot_f
     forward_peak_feature, final_gather_feature, shadow_lattice_feature, boundary_share_feature,
     hidden_lights_feature, edges_feature, branches_feature;
 
-/// Whether the scene has light gathered finally wherever that can be, whatever a pilot forecasts.
+/// Whether the scene demands final gathering wherever possible, whatever a pilot predicts.
 bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings);
 
 /// Why a feature cannot be used; empty where nothing excludes it.

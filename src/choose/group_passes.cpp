@@ -9,7 +9,7 @@
 namespace vdbeam {
 namespace {
 
-/// What is asked of a group: its photons are its own, also those that it follows.
+/// Task of one group of lights: it has its own choices and photons.
 EstimatorTask task_of(const EstimatorInput& of_all, std::size_t group) {
   EstimatorTask task = of_all;
   task.all_lights = &of_all.world.lights;

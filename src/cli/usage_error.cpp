@@ -167,7 +167,7 @@ std::string surplus_words(const Place& place, const std::vector<std::string>& wo
   if (option != surplus.end()) {
     const std::string name = option->substr(0, option->find('='));
     std::string meant = option_meant_by(name, *place.command);
-    // Of single letters every one is near to every other.
+    // A single letter is close to every other.
     if (const auto near = nearest_word(name, option_names(*place.command));
         near && name.size() > 2 && meant.empty())
       meant = *near;
@@ -205,7 +205,7 @@ std::string missing_word(const Place& place) {
 }
 
 /// A value that is missing or that its option does not take. CLI11's text names the option; what it
-/// could be is told as help tells it.
+/// could be is described as in the help.
 std::string value_error(const CLI::App& command, const CLI::ParseError& error) {
   const std::string text = error.what();
   const CLI::Option* option = nullptr;
@@ -250,7 +250,7 @@ std::string usage_error(const CLI::App& program, const std::vector<std::string>&
   if (std::any_of(surplus.begin(), surplus.end(), is_option))
     return one_line(surplus_words(place, words, surplus));
   if (const auto names = command_names(*place.command); !names.empty())
-    return fmt::format("{0}: which command? {1}; {0} --help tells what they do", place.name,
+    return fmt::format("{0}: which command? {1}; {0} --help describes them", place.name,
                        join_words(names, "or"));
   if (dynamic_cast<const CLI::RequiredError*>(&error))
     if (const std::string text = missing_word(place); !text.empty())

@@ -61,7 +61,7 @@ struct NumberRange {
 };
 
 /// One key of a scene file. This table drives reading, validation, suggestions, help, the scene's
-/// hash, the report's settings and the reference in docs/scene.md.
+/// hash, the report's settings and the reference in docs/reference/scene.md.
 struct SceneKey {
   SceneSection section;
   std::string name;
@@ -120,7 +120,7 @@ std::string key_path(const SceneKey& key, std::size_t index);
 /// How many times the section is there in a scene.
 std::size_t section_count(const Scene& scene, SceneSection section);
 
-/// The reference table of a section, as in docs/scene.md (Markdown).
+/// The reference table of a section, as in docs/reference/scene.md (Markdown).
 std::string key_table_markdown(SceneSection section);
 /// The same for a terminal, in lines of at most `width` columns.
 std::string key_table_text(SceneSection section, std::size_t width);

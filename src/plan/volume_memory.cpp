@@ -34,8 +34,8 @@ struct FieldMemory {
   CellSet set;
   std::uint64_t bytes = 0, peak = 0;
   Affine to_world; ///< of its cells
-  /// Of the grid itself, before it is refined and displaced: by its voxels it is known best what
-  /// the camera sees.
+  /// Cells of the grid before refinement and displacement: its voxels show best what the camera
+  /// sees.
   CellSet grid;
   Affine grid_to_world;
 };

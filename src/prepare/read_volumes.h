@@ -27,7 +27,7 @@ std::string emission_identity(const VolumeSettings& volume);
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       const StopToken& stop, ReadVolume& read);
 
-/// Likewise what glows; `earlier`: the volumes of this scene that were read before it.
+/// Reads the emission of volumes; `earlier`: the volumes of this scene that were read before it.
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
                            const std::vector<ReadVolume>& earlier, const StopToken& stop,
                            ReadVolume& read);

@@ -90,7 +90,7 @@ private:
   std::uint64_t photons_before_ = 0;
   Stopwatch since_attempt_; ///< to write a checkpoint
   int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;
-  /// Of the scene as it was asked for, before an estimator was chosen; empty where no film goes to
+  /// Hashes of the scene as given, before an estimator was chosen; empty if no film is written to
   /// disk.
   std::string pass_hash_, scene_hash_;
 };

@@ -49,7 +49,7 @@ void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
         add(hash, key.get(moment, i));
 }
 
-/// Of all that the picture depends on, or of what its passes do.
+/// Hash of everything that the image depends on, or that its passes depend on.
 std::string hash_scene(const Scene& scene, bool of_passes) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {
