@@ -41,7 +41,7 @@ struct ImageSettings {
   std::string time_code = {};                    ///< of frame 0, "hh:mm:ss:ff"; empty: all zero
   std::string attributes = {};                   ///< of the user's own, "name = text; name = text"
   ColorSpace working_space = ColorSpace::rec709; ///< in which light is rendered
-  std::string output_space = {}; ///< of the EXR; empty: the working space (docs/scene.md)
+  std::string output_space = {}; ///< of the EXR; empty: the working space (docs/reference/scene.md)
   bool cryptomatte = false;      ///< ids of volumes and meshes
   bool deep = false;             ///< a deep picture beside the flat one
   double deep_alpha = 0.05;      ///< most opacity that one of its samples adds
@@ -62,7 +62,7 @@ struct CameraSettings {
   double film_width = 36;             ///< mm
   double view_height = 0;             ///< orthographic: height of the picture [world]
   double shift_x = 0;                 ///< of the picture on the film, in widths, to the right
-  double shift_y = 0;                 ///< likewise in heights, upwards
+  double shift_y = 0;                 ///< lens shift up, in image heights
   double near = 0;                    ///< plane before which nothing is seen [world]
   std::optional<double> far;    ///< plane beyond which neither medium nor surface is seen [world]
   double lens_radius = 0;       ///< [world]; 0: everything is sharp

@@ -11,7 +11,7 @@ enum class EmissionLaw { planck, stefan_boltzmann, none };
 
 /// Light that a volume emits: j(x) = scale * color * intensity(x) * blackbody(x) [radiance /
 /// world], where intensity is 1 without an intensity grid and blackbody is 1 without a temperature
-/// grid (docs/physics.md).
+/// grid (docs/theory/transport.md).
 struct EmissionSettings {
   std::string intensity;   ///< grid name; empty: none
   std::string temperature; ///< grid name; empty: none

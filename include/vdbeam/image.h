@@ -25,7 +25,7 @@ struct Image {
   /// whole one's size (0: it is whole).
   int x = 0, y = 0;
   int full_width = 0, full_height = 0;
-  /// Of R, G and B in every layer; nullopt where they are not linear colours of known primaries.
+  /// Primaries of R, G and B in every layer; nullopt if they are not linear or unknown.
   std::optional<Chromaticities> primaries = Chromaticities();
   std::vector<ImageChannel> channels;
   /// String attributes; "timeCode" ("01:02:03:04") becomes one of OpenEXR's own type.

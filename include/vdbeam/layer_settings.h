@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// How the numbers of a layer are stored: as docs/output.md says, as halves where they can hold the
-/// values, or as floats.
+/// How the numbers of a layer are stored: as docs/reference/output.md says, as halves where they
+/// can hold the values, or as floats.
 enum class LayerPrecision { automatic, half, single };
 
 /// How an EXR is compressed.
@@ -15,14 +15,14 @@ enum class Compression { zip, zips, piz, rle, none, dwaa, dwab };
 /// Whether the layers of an EXR share one part, or have one each.
 enum class ImageParts { one, layers };
 
-/// After whose renderer the layers of an EXR are named (docs/output.md).
+/// After whose renderer the layers of an EXR are named (docs/reference/output.md).
 enum class LayerNames { vdbeam, arnold, cycles };
 
-/// A layer of the picture beside its colours (docs/output.md).
+/// A layer of the picture beside its colours (docs/reference/output.md).
 struct LayerSettings {
   std::string name;
   LayerPrecision precision = LayerPrecision::automatic;
-  /// Of its part, where layers have parts of their own; absent: that of the picture.
+  /// Compression of its part, if layers have parts of their own; absent: that of the image.
   std::optional<Compression> compression = std::nullopt;
 };
 

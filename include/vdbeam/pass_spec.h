@@ -16,7 +16,7 @@ struct PassSpec {
   float kernel_scale = 1; ///< radius of the kernels over that of the first pass
   double neighbours = 0;  ///< photons in an adaptive kernel
   std::uint64_t light_paths = 0;
-  int gather_walks = 0;        ///< from each camera ray, where light is gathered finally
+  int gather_walks = 0;        ///< from each camera ray, for final gathering
   float regression_radius = 0; ///< [pixels] over which the light that they find is fitted
 };
 

@@ -29,9 +29,9 @@ struct RenderResult {
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
   PictureFacts picture;           ///< of a whole picture; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
-  bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
-  /// Where the time limit left no time for a pass, the factor by which the picture was rendered in
-  /// fewer pixels each way, before it was enlarged; else 0.
+  bool quick_look = false;        ///< no pass was finished; the image is for viewing only
+  /// Drafts, for which the time limit left no time for a pass: the factor by which the resolution
+  /// was reduced each way before the image was enlarged. Else 0.
   int draft = 0;
 };
 
@@ -40,11 +40,11 @@ struct PassRange {
   int first = 0, last = 0;
 };
 
-/// A file from which a render that was ended goes on, bit for bit (docs/sequences.md).
+/// A file from which an interrupted render resumes, bit for bit (docs/how-to/sequences.md).
 struct CheckpointSettings {
   std::string path;   ///< empty: none is written
-  double seconds = 0; ///< written whenever so much time has gone by; 0: not by time
-  int passes = 0;     ///< written whenever so many passes are done; 0: not by passes
+  double seconds = 0; ///< interval between checkpoints [s]; 0: not by time
+  int passes = 0;     ///< interval between checkpoints in passes; 0: not by passes
   bool resume = true; ///< begin with what is in the file, if it is of this scene
 };
 
@@ -55,7 +55,7 @@ struct FrameSettings {
   std::string partial; ///< where the passes go as a partial image, for merge_partials
   /// Written at intervals and when stopped, removed by nobody but the caller.
   CheckpointSettings checkpoint;
-  /// Of the time that the scene's stop rule gives, what preparing the frame has taken already.
+  /// Part of the stop rule's time that preparing the frame has taken already [s].
   double seconds_used = 0;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
@@ -63,7 +63,7 @@ struct FrameSettings {
   const Image* second_reference = nullptr;
 };
 
-/// By which the caller follows a render and ends it; all optional. They are called on the rendering
+/// Callbacks and flags to observe and stop a render; all optional. They are called on the rendering
 /// thread.
 struct RenderHooks {
   /// After each pass.

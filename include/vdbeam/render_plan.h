@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What a render may consist of (docs/architecture.md).
+/// What a render may consist of (docs/developer/architecture.md).
 enum class Stage {
   read,
   majorants,
@@ -107,7 +107,7 @@ struct SurfaceFile {
 
 /// What is decided about a render before its first pass, as a value. Estimators follow it.
 struct RenderPlan {
-  /// Of the estimator that renders; "auto" where that is not known before the volumes are read.
+  /// Name of the estimator that renders; "auto" if it is not known before the volumes are read.
   std::string_view estimator;
   std::string choice;            ///< why it was chosen, one clause; empty where the scene names it
   std::vector<PlanStage> stages; ///< all of them, in the order of Stage
@@ -123,7 +123,7 @@ struct RenderPlan {
   bool unbiased = false;
   /// Estimates of these parts alone; all that a frame takes is in its MemoryPlan.
   std::uint64_t photon_bytes = 0, film_bytes = 0;
-  /// Of meshes while they are read, the most that they take, and of textures.
+  /// Peak memory of meshes while they are read, and of textures.
   std::uint64_t surface_bytes = 0;
   std::vector<SurfaceFile> surface_files; ///< each once; only make_plan looks for them
   std::uint64_t deep_bytes = 0; ///< of a deep picture's samples, a third of the most there can be

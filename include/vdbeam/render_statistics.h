@@ -22,7 +22,7 @@ struct RenderStatistics {
   std::uint64_t walk_collisions = 0;  ///< tentative collisions of these and of their shadow rays
   std::uint64_t gather_walks = 0;     ///< walks from camera rays to where photons are gathered
   std::uint64_t neighbourhoods = 0;   ///< photons whose radius follows their neighbours'
-  std::uint64_t bias_rays = 0;        ///< camera rays followed by path tracing to tell the bias
+  std::uint64_t bias_rays = 0;        ///< camera rays path traced to estimate the bias
   std::uint64_t directions = 0;       ///< photons stored with their direction
   std::uint64_t maps_reused = 0;      ///< passes whose photons were those of an earlier frame
   std::uint64_t pilot_paths = 0;      ///< light paths traced before the first pass, to plan photons

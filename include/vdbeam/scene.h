@@ -18,8 +18,9 @@
 
 namespace vdbeam {
 
-/// What the user asked for, as plain values in world units; docs/scene.md gives every key, its
-/// unit, range and default. `load_scene` fills it from a file, programs may fill it by hand.
+/// What the user asked for, as plain values in world units; docs/reference/scene.md gives every
+/// key, its unit, range and default. `load_scene` fills it from a file, programs may fill it by
+/// hand.
 
 struct VolumeSettings {
   std::string name;    ///< in Cryptomatte; empty: volume0, volume1, ...
@@ -75,17 +76,16 @@ struct LightSettings {
 };
 
 enum class PhotonStore { fluence, scatter };
-/// Which of a light path's collisions become photons: those that the camera sees, or all alike;
-/// automatic is the first, but for a scene file in which only the camera moves.
+/// Which collisions of a light path become photons: by importance for the camera, or all with the
+/// same probability; automatic: by view, unless only the camera moves in the scene file.
 enum class PhotonThinning { automatic, view, even };
-/// Whether the forward peak of the phase function is taken out of multiple scattering, by ever less
-/// from pass to pass (docs/physics.md, "Forward peaks").
+/// Whether multiple scattering uses delta-M truncation (docs/theory/beam.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
 /// Whether `beam` gathers photons where walks from the camera ray arrive, not along it; automatic:
-/// from the pass on from which a pilot tells that it pays (docs/physics.md, "Final gathering").
+/// from the pass on at which a pilot predicts a lower error (docs/theory/beam.md).
 enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
-/// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
+/// Whether the frames of a sequence use new random numbers or the same ones.
 enum class SeedPolicy { per_frame, correlated };
 enum class KernelShape { constant, epanechnikov, biweight };
 
@@ -111,7 +111,7 @@ struct RenderSettings {
   FinalGathering final_gather = FinalGathering::automatic; ///< walks from camera rays (beam)
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
-  double bias_rays = 1.0 / 128;   ///< fraction of the camera rays that tell the bias
+  double bias_rays = 1.0 / 128;   ///< fraction of the camera rays path traced to estimate the bias
   std::optional<double> clamp; ///< most that the medium may send to a pixel in one pass [radiance]
   double step = 1;             ///< march: step length in voxels
   std::uint64_t seed = 1;

@@ -7,8 +7,8 @@
 
 namespace vdbeam {
 
-/// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB. `overrides` are
-/// "key.path=value" strings, applied last. The number of `frame` replaces ####, %04d and $F4 in
+/// Reads a scene file (TOML; docs/reference/scene.md) or makes a scene from a bare VDB. `overrides`
+/// are "key.path=value" strings, applied last. The number of `frame` replaces ####, %04d and $F4 in
 /// paths; animated keys are evaluated at its time. Throws InputError "file:line: key ..." if this
 /// is not a valid scene.
 Scene load_scene(const std::string& path, const FrameTime& frame = {},

@@ -16,10 +16,10 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
-/// Of a matt surface, whose light is fitted over pixels (SurfaceFit), and shadow rays that look for
-/// lights with an extent beside those of the paths: shadows are not fitted.
+/// Paths of a matt surface, whose light is fitted over pixels (SurfaceFit), and additional shadow
+/// rays towards lights with an extent, since shadows are not fitted.
 constexpr int matt_paths = 2, more_shadow_rays = 6;
-/// Lamps are looked for behind rough glass by as many times more rays, which gather nothing else.
+/// Additional rays that look for lamps behind rough glass and gather nothing else, by this factor.
 constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
 constexpr int most_splits = 1;
@@ -31,8 +31,8 @@ bool go_both_ways(const SpecularBranches& ways) {
          max_component(ways.refracted.weight) > least_share;
 }
 
-/// Of the paths that go on from the first interface, how many take a way with this share of the
-/// light: at least one goes each way.
+/// Number of the paths from the first interface that take a branch with this share of the light; at
+/// least one takes each branch.
 int paths_by_share(const Rgb& share) {
   const long paths = std::lround(paths_per_ray * max_component(share));
   return std::clamp(static_cast<int>(paths), 1, paths_per_ray - 1);
@@ -89,7 +89,7 @@ struct SurfaceShading::Chain {
   bool lamps_found = false; ///< at the next surface, if it is rough glass or metal
   SurfaceRoulette length{};
 
-  /// Leaves a surface one of several ways, all of which are followed.
+  /// Follows one of several branches at a surface; the others are followed too.
   void take_share(const SurfaceVertex& vertex, const MaterialSample& way) {
     leave(vertex, way);
     scale *= max_component(way.weight);
@@ -209,7 +209,7 @@ Rgb SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng&
   Rgb sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
-    if (i == 0) // by a facet of which no path makes use
+    if (i == 0) // by a facet that no path uses
       reflected = paths_by_share(vertex.both_ways(Carried::radiance, rng).reflected.weight);
     Chain chain{rng, counts, vertex.absorbed()};
     sum += surfaces_.tracer().lights_at_surface(vertex, rng) * chain.throughput / paths_per_ray;

@@ -18,9 +18,9 @@ using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& 
 /// are gathered along each of its segments: light that glass throws into the medium is seen there
 /// too. At the first two interfaces of glass it goes both ways, reflected and refracted, from then
 /// on one of them at random: the faint reflection of a bright lamp is no matter of chance. At any
-/// other surface path tracing goes on (WalkTracer), which finds all of its light but what mirrors,
-/// glass or the medium, met first of all, send on from lights: caustics, the glow of fog about a
-/// lamp, and whatever becomes of them. Photons that lie on the surface bring these.
+/// other surface path tracing goes on (WalkTracer), which finds all light except paths whose first
+/// event after the light is specular, glossy or in the medium: caustics and light scattered by fog
+/// near lamps, after any number of further bounces. Photons on the surface carry these.
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.

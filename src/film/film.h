@@ -97,8 +97,8 @@ public:
   double mrse_estimate() const;
   /// The same, corrected for the bias of weighting each pixel by its own noisy mean, with the bias
   /// that probes show (`unbiased`: there is none) and an interval that takes the noise shared by
-  /// pixels into account (docs/physics.md). The corrections change only when a batch of passes is
-  /// complete.
+  /// pixels into account (docs/theory/error-estimate.md). The corrections change only when a batch
+  /// of passes is complete.
   ErrorEstimate error_estimate(bool unbiased) const;
 
 private:

@@ -44,7 +44,7 @@ void check_image(const Image& image, const std::string& path) {
                                    channel.name, channel.data.size(), pixels));
 }
 
-/// Whether halves tell the values as they are: over their range values would become infinite, and a
+/// Whether halves represent the values: over their range values would become infinite, and a
 /// channel that is dark everywhere would lose its digits, at last all of them. Under the least
 /// normal half digits get fewer; 16 times it leaves the brightest values all of theirs and values a
 /// thousand times darker some.

@@ -20,8 +20,8 @@ struct WriteOptions {
 struct OutputFormat {
   std::string_view extension;   ///< lower case, with its dot
   std::string_view description; ///< for --help
-  /// Every channel and attribute in full: such a file can hold a partial image, and tells what it
-  /// shows.
+  /// Every channel and attribute in full: such a file can hold a partial image, and
+  /// records scene and frame.
   bool complete = false;
   void (*write)(const Image& image, const std::string& path, const WriteOptions& options);
 };

@@ -24,7 +24,7 @@ struct PassImage {
   std::vector<Rgb> indirect;   ///< light that was scattered more often
   std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
   std::vector<Rgb> emission;   ///< the medium's own light, Tr * j; empty where nothing glows
-  /// All light of each group of lights (docs/scene.md); empty without groups.
+  /// All light of each group of lights (docs/reference/scene.md); empty without groups.
   std::vector<std::vector<Rgb>> groups;
   std::vector<float> opacity; ///< 1 - Tr of the whole ray (mean over channels)
   /// Opacity times the mean distance [world] at which light is extinguished: the integral of
@@ -78,8 +78,8 @@ struct PassImage {
     return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
            static_cast<std::size_t>(x / tile_width);
   }
-  /// Of the pixel's indirect light, `light` was scattered once only: no more than there is but for
-  /// rounding.
+  /// Moves `light`, which was scattered once only, from the pixel's indirect light to its direct
+  /// light; it exceeds the indirect light by rounding at most.
   void move_to_direct(std::size_t pixel, const Rgb& light) {
     direct[pixel] += light;
     for (int c = 0; c < 3; ++c) {

@@ -27,8 +27,9 @@ struct GuardLimits {
 /// carries on: every failure throws one line that opens with `label`, within the limits. An Error
 /// that the work throws arrives as it is, any other exception as a FrameError.
 ///
-/// The child has one thread, and the work must not start or use others: no TBB (docs/decisions.md
-/// says why). It ends without running destructors, also where an exception ends the work.
+/// The child has one thread, and the work must not start or use others: no TBB
+/// (research-log/decisions.md says why). It ends without running destructors, also where an
+/// exception ends the work.
 MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
                        const std::function<void(int)>& work);
 

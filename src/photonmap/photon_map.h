@@ -103,14 +103,14 @@ public:
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
   /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
   /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size())
-  /// and, unless it is null, likewise first_flight, to what of it comes straight from lights.
+  /// and, unless it is null, first_flight, its part that comes straight from lights.
   QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
                           const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                           Rgb* first_flight = nullptr) const;
   bool has_first_flights() const; ///< photons that come straight from a light
 
-  /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. Requires
-  /// photons with directions.
+  /// Visits the surface photons whose spheres contain `point`, in a fixed order. Requires photons
+  /// with directions.
   void visit_disc(const Vec3f& point, const std::function<void(const DiscPhoton&)>& visit) const;
 
 private:

@@ -47,7 +47,7 @@ struct Candidates {
   alignas(64) float inverse_radius[slots]; ///< rays with origins of their own
   alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
   alignas(64) float power[3][slots];
-  alignas(64) float signed_power[slots]; ///< where the map tells first flights apart
+  alignas(64) float signed_power[slots]; ///< where the map marks first flights
 };
 
 /// What is the same for all of a query.
@@ -111,7 +111,7 @@ private:
   alignas(64) std::int32_t order_[16];
 };
 
-/// A part of a block, as many photons as lanes.
+/// A part of a block, one photon per lane.
 struct BlockPart {
   const PhotonBlocks& blocks;
   std::size_t block, lane;

@@ -205,7 +205,7 @@ private:
   std::size_t hit_count_ = 0;
   BlockHit hits_[hit_capacity];
   Candidates candidates_;
-  Selection rest_, first_; ///< candidates by what they are, of which one sum each
+  Selection rest_, first_; ///< candidates by kind, one sum for each
   alignas(64) TileSums sums_ = {};
   alignas(64) TileSums first_sums_ = {}; ///< of photons on their first flight
 };

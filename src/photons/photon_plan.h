@@ -65,10 +65,10 @@ double automatic_paths(double hits, double stored_per_path);
 double paths_for_photons(double photons, double stored_per_path);
 
 /// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
-/// all that the medium shows of them comes from photons, few of which leave a lamp's housing.
+/// all that the medium shows of them comes from photons, and few photons leave a lamp's housing.
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
 
-/// Collisions of one path that are stored on average: more of them tell little that is new.
+/// Mean number of photons stored per path; more are nearly redundant.
 inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);

@@ -27,8 +27,8 @@ struct EstimatorTask {
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
-  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
-  /// each group of its lights, one after the other; null: it makes plans of its own.
+  /// For a motion sample: the choices of the scene itself, which it follows, or those of each group
+  /// of its lights in turn; null: it makes its own choices.
   const SceneChoices* of_scene = nullptr;
   /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
   /// belong to the matte, which groups do not change. Null: the world has them all.

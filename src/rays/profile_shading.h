@@ -11,9 +11,9 @@ namespace vdbeam {
 /// What a camera ray sees of the surface at which it ends.
 struct SeenSurface {
   Rgb radiance = {}; ///< that leaves it against the ray
-  float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+  float shadow = 0;  ///< on a shadow catcher; nothing else of it is visible (caught_shadow)
   Rgb lamp = {};     ///< the part of `radiance` that the surface emits, as a light with shadow rays
-  // Of a matt surface:
+  // For a matt surface:
   Rgb smooth = {};     ///< the part that comes by way of other surfaces and the medium, per albedo
   Rgb albedo = {};     ///< of the surface
   Vec3f position = {}; ///< render space

@@ -22,9 +22,9 @@ struct Surfaces {
   const Material& material(const SurfaceHit& hit) const {
     return *materials[static_cast<std::size_t>(hit.surface)];
   }
-  /// Of meshes, trees and textures.
+  /// Memory of meshes, trees and textures.
   std::size_t bytes() const;
-  std::vector<Boxd> solids; ///< bounds of the surfaces inside of which there is no medium
+  std::vector<Boxd> solids; ///< bounds of the surfaces that exclude the medium from their inside
 
   /// Some surface is a mirror, glass, or metal that is not very rough.
   bool show_surroundings() const {
@@ -81,9 +81,9 @@ public:
   }
   /// Where the path goes on; the direction is in render space.
   MaterialSample sample(Carried carried, Rng& rng) const;
-  /// Of glass: a way by reflection and one by refraction, in render space.
+  /// Glass: one branch by reflection and one by refraction, in render space.
   SpecularBranches both_ways(Carried carried, Rng& rng) const;
-  /// Of a specular material: all ways on, in render space.
+  /// Specular materials: all outgoing branches, in render space.
   SpecularBranches branches(Carried carried) const;
 
 private:

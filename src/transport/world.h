@@ -44,7 +44,7 @@ inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& dir
 Segment flight_segment(const World& world, const Vec3d& origin, const Vec3f& direction,
                        std::optional<SurfaceHit>& end);
 
-/// What the plan and the user are told about the volumes that a world was built from.
+/// Facts about the volumes of a world, for the plan and for notes.
 struct WorldFacts {
   struct Voxels {
     std::uint64_t density = 0;  ///< active voxels; 0: the volume is left out as empty

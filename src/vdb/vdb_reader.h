@@ -54,7 +54,7 @@ struct GridSummary {
   bool from_mantaflow = false; ///< written by Mantaflow, Blender's simulator, whose Z axis is up
   /// Where the grid holds something, for framing it: the bounding box is divided into outline_steps
   /// cells along each axis; for each column of cells along z (x fastest) the first and the last
-  /// cell that holds more than a hundredth of the maximum, or two numbers of which the first is
+  /// cell that holds more than a hundredth of the maximum, or two numbers where the first is
   /// larger.
   std::vector<int> outline;
   static constexpr int outline_steps = 32;
@@ -72,7 +72,7 @@ struct ReadLimits {
 enum class Background { refused, ignored };
 
 /// Reads one float or half grid and bricks it, in parallel; only the leaves and tiles that `wanted`
-/// needs where it is given, of which alone repairs and counts then tell. (Of a level set all, since
+/// needs, if given; repairs and counts then refer to those only. (All leaves of a level set, since
 /// its depth is found in all of it.)
 /// Throws InputError (missing file or grid, naming the grids there are; unsupported type, class or
 /// map) and FrameError (corrupt file, limits exceeded), each within `limits`.

@@ -13,7 +13,7 @@ namespace vdbeam {
 
 namespace {
 
-/// Walks end after so many scatterings at the latest, wherever they are: in very dense media
+/// Greatest number of scatterings of a walk: in very dense media
 /// kernels are far wider than walks could go in reasonable time.
 constexpr int most_scatterings = 8;
 /// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth

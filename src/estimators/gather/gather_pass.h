@@ -12,11 +12,11 @@ namespace vdbeam {
 
 class BlurProbe;
 
-/// The camera side of a pass that gathers finally: walks from the rays of all pixels, and then the
+/// The camera side of a pass of final gathering: walks from the rays of all pixels, and then the
 /// fit of what they found to the pixels around.
 class GatherPass {
 public:
-  /// The arguments must outlive this. The picture has as many pixels as the camera.
+  /// The arguments must outlive this. The image has the camera's size.
   GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec);
 
   /// The input, its window widened to the pixels to which those that are wanted are fitted.

@@ -42,7 +42,7 @@ public:
   static double blur(float radius);
 
 private:
-  /// A distance of a neighbour in depth at which it does not count [world]: so many times the
+  /// A distance of a neighbour in depth at which it does not count [world]: this many times the
   /// reach.
   float deepest(const SeenMedium& seen, int x, int y, float distance) const;
 

@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  /// What the volumes scatter of their extinction at a point, where the photons do not tell.
+  /// Scattering coefficient at a point, where photons do not contain it.
   void find_albedos(const Vec3f& point) {
     albedos_.clear();
     for (const Volume& volume : world_.medium.volumes)
@@ -145,8 +145,7 @@ constexpr std::string_view march_keys[] = {
 
 const EstimatorKind march_estimator{
     .name = "march",
-    .help =
-        "conventional photon mapping: the same photons, gathered step by step along camera rays",
+    .help = "conventional photon mapping: photons, gathered step by step along the camera ray",
     .unbiased = false,
     .stages = {Stage::surfaces, Stage::photons, Stage::surface_photons, Stage::map,
                Stage::neighbours, Stage::photon_directions, Stage::photon_color,

@@ -14,7 +14,7 @@ namespace vdbeam {
 /// each scattering a walk now and then sends a branch of its own in a direction drawn by the phase
 /// function about the light's direction instead of its own. With p the density of the walk's own
 /// direction and c q that of branches, both carry p/(p + c q), which leaves the mean as it is:
-/// flights at the light become many and faint (docs/physics.md, "The reference").
+/// flights at the light become many and faint (docs/theory/transport.md, "The reference").
 ///
 /// This is the idea of DXTRAN in neutron transport (X-5 Monte Carlo Team, *MCNP: A General Monte
 /// Carlo N-Particle Transport Code*, 2003), for directions in place of a region.

@@ -235,7 +235,7 @@ void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
 
 const EstimatorKind path_estimator{
     .name = "path",
-    .help = "volumetric path tracing, without bias: the reference",
+    .help = "unbiased volumetric path tracing, the reference",
     .unbiased = true,
     .stages = {Stage::surfaces, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
                Stage::spectral_tracking, Stage::paths},
