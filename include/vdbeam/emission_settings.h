@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// How the brightness of a black body follows its temperature.
+/// Dependence of a black body's brightness on its temperature.
 enum class EmissionLaw { planck, stefan_boltzmann, none };
 
 /// Light that a volume emits: j(x) = scale * color * intensity(x) * blackbody(x) [radiance /

@@ -27,7 +27,7 @@ struct RenderResult {
   RenderPlan plan;
   std::vector<std::string> notes; ///< for the user: repairs, empty grids, choices made
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
-  PictureFacts picture;           ///< of a whole picture; not of a quick look
+  PictureFacts picture;           ///< of a whole image; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
   bool quick_look = false;        ///< no pass was finished; the image is for viewing only
   /// Drafts, for which the time limit left no time for a pass: the factor by which the resolution
@@ -48,7 +48,7 @@ struct CheckpointSettings {
   bool resume = true; ///< begin with what is in the file, if it is of this scene
 };
 
-/// What of a frame is rendered, and the files that passes go to.
+/// The part of a frame to render, and the files that passes go to.
 struct FrameSettings {
   std::optional<PassRange> pass_range; ///< exactly these instead of those of the scene's stop rule
   std::optional<PixelRegion> region;   ///< only this part; its pixels are those of the whole image
@@ -59,7 +59,7 @@ struct FrameSettings {
   double seconds_used = 0;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
-  /// A second one, of noise that is independent of the first's: errors are then free of both.
+  /// A second, independent one: removes the noise of both from the errors.
   const Image* second_reference = nullptr;
 };
 
@@ -98,12 +98,12 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
 RenderResult render(const Scene& scene, const FrameSettings& frame = {},
                     const RenderHooks& hooks = {});
 
-/// How merge_partials joins.
+/// Settings of merge_partials.
 struct MergeSettings {
-  bool allow_gaps = false;   ///< join also where passes are missing
-  std::optional<int> passes; ///< passes 0 to passes - 1 must be there, and no others
-  std::string partial;       ///< write the joined passes as a partial image too; empty: no
-  std::string deep;          ///< write the deep picture too, where the parts hold one; empty: no
+  bool allow_gaps = false;   ///< merge although passes are missing
+  std::optional<int> passes; ///< require exactly the passes 0 to passes - 1
+  std::string partial;       ///< also write the merged passes as a partial image; empty: no
+  std::string deep;          ///< also write the deep image, if the parts hold one; empty: no
 };
 
 /// Joins partial images of one scene, frame and region into the image of all their passes, bit for

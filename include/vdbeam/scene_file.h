@@ -21,7 +21,7 @@ std::string scene_template(const std::string& vdb_path, const std::string& folde
 /// Checks ranges and consistency of a scene that a program has filled. Throws InputError.
 void validate_scene(const Scene& scene);
 
-/// 64-bit hash of everything that changes the picture, as 16 hex digits: all keys but
+/// 64-bit hash of everything that changes the image, as 16 hex digits: all keys except
 /// render.threads, and the contents, not the names, of the files. Throws InputError for a file that
 /// cannot be read.
 std::string scene_hash(const Scene& scene);

@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What a texture shows beyond its edges.
+/// Texture lookup beyond the edges of the image.
 enum class TextureWrap { repeat, mirror, clamp };
 
 struct MaterialSettings {
@@ -18,7 +18,7 @@ struct MaterialSettings {
   /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: 0.8,
   /// or 1 where there is a texture.
   std::optional<Rgb> albedo;
-  /// diffuse, shadow_catcher, emissive: a picture that albedo or radiance are multiplied by; ""
+  /// diffuse, shadow_catcher, emissive: image that multiplies albedo or radiance; "": none
   std::string texture;
   TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
