@@ -14,7 +14,7 @@ struct FrameOutcome {
   double seconds = 0; ///< wall clock, from when it was ready
 };
 
-/// What became of a batch; frames that were not come to are missing.
+/// Result of a batch, without frames that were not begun.
 struct BatchSummary {
   std::string scene;
   std::vector<int> frames; ///< all that were asked for

@@ -52,7 +52,7 @@ std::string estimators_text(const RenderResult& result) {
   return text;
 }
 
-/// What a picture shows, so that one that went wrong is noticed in the log.
+/// Description of an image for the log, so that a wrong one is noticed.
 std::string picture_text(const PictureFacts& facts) {
   if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
     return {}; // of a part of the passes

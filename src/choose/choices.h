@@ -15,7 +15,7 @@ struct Choices {
   PeakOrders peak;                  ///< of phase functions, which photons live without
   PhotonPlan photons;               ///< lights, light paths, photons and kernels
   std::optional<GatherPlan> gather; ///< of final gathering; empty: no such passes
-  /// What tried kernels found; null: none were tried.
+  /// Result of the kernel pilot; null without one.
   std::shared_ptr<const KernelTrialResult> trial;
 
   bool gathers_finally(int pass) const { return gather && pass >= gather->first; }

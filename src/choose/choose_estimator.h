@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What `estimator = "auto"` stands for in a scene.
+/// The estimator that `estimator = "auto"` chooses in a scene.
 struct EstimatorChoice {
   EstimatorType type = EstimatorType::beam; ///< of the first pass
   std::string reason;                       ///< one clause

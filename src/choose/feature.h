@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the conditions of features look at.
+/// Facts for the conditions of features.
 struct FeatureFacts {
   const EstimatorInput& input;
   const EstimatorKind& kind;
@@ -25,7 +25,7 @@ struct FeatureFacts {
   bool needs(Stage stage) const { return input.plan.needs(stage); }
 };
 
-/// What keeps a feature from being used, and where.
+/// A condition that excludes a feature, with its reason.
 struct FeatureCondition {
   bool (*excludes)(const FeatureFacts& facts);
   std::string_view clause; ///< why, as it ends "off: ..."

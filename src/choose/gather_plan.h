@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What regression over pixels (PixelRegression) does to a picture, by its radius.
+/// Effect of regression over pixels (PixelRegression) on an image, by its radius.
 struct RegressionTrial {
   static constexpr std::array<float, 10> radii = {0,    0.05f, 0.1f, 0.25f, 0.5f,
                                                   0.7f, 1,     1.4f, 2,     2.8f}; ///< [pixels]

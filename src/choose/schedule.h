@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What pass `pass` (from 0) of a frame is. A pure function.
+/// The specification of pass `pass` (from 0) of a frame. A pure function.
 PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pass);
 
 /// The specifications of those passes at which something may change, up to the last that is asked

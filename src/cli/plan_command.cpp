@@ -51,7 +51,7 @@ nlohmann::ordered_json memory_json(const MemoryPlan& memory) {
           {"peak", memory.peak()}};
 }
 
-/// What each part takes in each phase, and in all.
+/// Table of the memory of each part in each phase, and the sums.
 std::string memory_text(const MemoryPlan& plan) {
   const auto row = [](const std::string& name, std::uint64_t a, std::uint64_t b, std::uint64_t c) {
     const auto text = [](std::uint64_t n) {
@@ -82,7 +82,7 @@ std::string features_text(const RenderPlan& plan) {
   return text;
 }
 
-/// What the passes are, as a table; nothing where no pilot ran.
+/// Table of the passes; empty if no pilot ran.
 std::string schedule_text(const RenderPlan& plan) {
   if (plan.schedule.empty())
     return {};

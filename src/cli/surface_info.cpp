@@ -74,7 +74,7 @@ std::string values(std::size_t count) {
   return count == 1 ? "1 value" : fmt::format("{} values", count);
 }
 
-/// What its numbers are taken for.
+/// Interpretation of its numbers.
 std::string colors_text(const Image& image, const std::string& extension) {
   if (extension == ".png")
     return "sRGB, made linear: 8 or 16 bits per channel, Rec.709 primaries";

@@ -95,7 +95,7 @@ std::string sequence_of(const std::vector<std::string>& files) {
   return fmt::format("{} -f {}", pattern, format_frame_range(frames_on_disk(pattern)));
 }
 
-/// What sets the key that an unknown option means in other programs ("--samples"); empty where it
+/// Option for a key that an unknown option sets in other programs ("--samples"); empty if it
 /// means none, and for commands that take no scene.
 std::string option_meant_by(const std::string& option, const CLI::App& command) {
   if (!command.get_option_no_throw("--set"))
@@ -160,7 +160,7 @@ std::string spread_value(const Place& place, const std::vector<std::string>& wor
   return {};
 }
 
-/// What a command cannot use: an option that it does not have, or one file too many.
+/// Error for an unknown option, or one file too many.
 std::string surplus_words(const Place& place, const std::vector<std::string>& words,
                           const std::vector<std::string>& surplus) {
   const auto option = std::find_if(surplus.begin(), surplus.end(), is_option);

@@ -9,7 +9,7 @@
 
 namespace vdbeam::cli {
 
-/// What a farm engine parses on stdout.
+/// Progress lines on stdout for farm engines.
 enum class FarmFormat { plain, openjd, alf };
 
 /// Prints how far a whole batch is, in one engine's words, each line flushed:

@@ -158,7 +158,7 @@ std::pair<double, double> common_square(const std::vector<Batch>& batches,
   return {value, std::max(error, std::sqrt(all.squares) / all_weights)};
 }
 
-/// What the truncation of the forward peak adds to the square of the kernels' bias, and its
+/// Contribution of the truncation of the forward peak to the squared bias, and its
 /// standard error; NaN if unknown.
 std::pair<double, double> truncation_square(const PassHistory& passes) {
   const PassHistory history = passes.with_several_passes_per_batch();

@@ -16,7 +16,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
 /// that has all of a pixel's light would weigh as if the pixel were black.
 constexpr double least_mean = 0.4;
-/// What weights that are themselves estimated leave uncertain.
+/// Uncertainty because weights are estimated themselves.
 constexpr double least_spread = 0.03;
 /// Relative error of the squared bias estimated by narrower kernels, and the bias that they may
 /// miss altogether, as a fraction of the noise.

@@ -34,9 +34,9 @@ struct BiasStatistics {
   double mrse = unknown, mrse_error = unknown; ///< all of it, squared
   double bias = unknown, bias_error = unknown; ///< of the mean brightness, relative to it
   double blur = unknown, blur_error = unknown; ///< what of `mrse` comes from the width of kernels
-  /// What of `mrse` whole regions have in common and the width of kernels does not explain.
+  /// The part of `mrse` that whole regions share and the width of kernels does not explain.
   double hidden = unknown, hidden_error = unknown;
-  /// What the truncation of the forward peak adds to `blur`.
+  /// Contribution of the truncation of the forward peak to `blur`.
   double truncation = unknown, truncation_error = unknown;
 };
 

@@ -20,7 +20,7 @@ public:
 
   /// By how many pixels it reaches to each side.
   static constexpr int reach = 3;
-  /// What a pass takes.
+  /// Memory of a pass per pixel [bytes].
   static constexpr std::size_t bytes_per_pixel();
 
   /// The pixel shows a surface through the transmittance `tr`. Any thread may call it, one per

@@ -134,7 +134,7 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   return matt(vertex, camera.ray().direction, path_rng);
 }
 
-/// What a surface shows that is no mirror, glass or polished metal.
+/// Radiance of a surface other than mirror, glass or polished metal.
 template <class PathRng>
 SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direction,
                                  const PathRng& path_rng) const {
@@ -168,7 +168,7 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   return seen;
 }
 
-/// What the surface emits as a light with shadow rays into the medium.
+/// Emission of the surface as a light with shadow rays into the medium.
 Rgb SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
   const int light = vertex.light();
   const bool sampled =
@@ -176,8 +176,8 @@ Rgb SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
   return sampled ? vertex.emitted() : Rgb();
 }
 
-/// What the first surface shows of its surroundings: the mean over a few paths. Glass sends some of
-/// them either way.
+/// Reflected and refracted light of the first surface: the mean over a few paths. Glass sends some
+/// of them either way.
 template <class PathRng>
 Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
                              RenderStatistics& counts) const {
@@ -274,7 +274,7 @@ Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
   return light;
 }
 
-/// What the chain sees from its present segment on, times its throughput.
+/// Radiance of the chain from its present segment on, times its throughput.
 Rgb SurfaceShading::follow(Chain chain) const {
   Rgb sum;
   DepthProfile profile;
@@ -334,8 +334,8 @@ Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
   return left;
 }
 
-/// What leaves the surface at which the chain ends. `lamps`: transmittance on the way there for
-/// lights with shadow rays over that for others.
+/// Radiance that leaves the surface at which the chain ends. `lamps`: transmittance on the way
+/// there for lights with shadow rays over that for others.
 Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const {
   Rgb emitted(1);
   if (const int light = vertex.light(); light >= 0) {

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the photons of a pass scatter into a ray with this profile, which is not empty.
+/// Light that the photons of a pass scatter into a ray with this profile, which is not empty.
 using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& profile, Rng& rng)>;
 
 /// The surfaces that camera rays meet, for estimators that gather photons.
@@ -27,7 +27,7 @@ public:
   SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                  const SurfaceLighting& surfaces, GatherAlong gather);
 
-  /// What is seen of the surface at which the camera ray ends: the mean over a few random paths.
+  /// Radiance of the surface at which the camera ray ends: the mean over a few random paths.
   SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
                    RenderStatistics& counts) const;
 

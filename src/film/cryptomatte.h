@@ -20,7 +20,7 @@ float object_id(std::string_view name);
 template <class Coverage>
 void add_cryptomatte(const std::vector<std::string>& names, const Coverage& coverage, Image& image);
 
-/// What the template is made of: the layers' planes, and the attributes.
+/// The layers' planes and the attributes.
 class CryptomatteWriter {
 public:
   static constexpr int ranks = 6;

@@ -47,7 +47,7 @@ public:
   const std::vector<std::string>& plane_names() const { return plane_names_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
-  /// What a film takes for each pixel, beside its history.
+  /// Memory of a film per pixel [bytes], without its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 17 : 14) * CompensatedSums::bytes_per_value;
   }

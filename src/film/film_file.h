@@ -12,7 +12,7 @@ namespace vdbeam {
 /// the last one.
 inline constexpr int most_passes = 1'000'000;
 
-/// What a film on disk belongs to.
+/// Identity of a film on disk.
 struct FilmFileInfo {
   Image header;           ///< windows and attributes of the picture, without channels
   std::string pass_hash;  ///< of the scene (vdbeam::pass_hash)

@@ -156,7 +156,7 @@ Imf::Compression compression_named(const std::string& asked) {
   return Imf::ZIP_COMPRESSION;
 }
 
-/// What the scene asks for, kept as an attribute; empty where it does not.
+/// A setting of the scene that is stored as an attribute; empty if absent.
 std::string wish(const Image& image, const char* attribute) {
   const auto found = image.metadata.find(attribute);
   return found == image.metadata.end() ? std::string() : found->second;

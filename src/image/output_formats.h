@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What a writer may use besides the image.
+/// Options of a writer.
 struct WriteOptions {
   double exposure = 0;         ///< stops, for 8-bit formats
   std::string view = "filmic"; ///< view transform of 8-bit formats

@@ -16,7 +16,7 @@ struct PixelValue {
   Rgb radiance;
 };
 
-/// What one pass of an estimator gives: one value per pixel and output, row-major from the top
+/// Result of one pass of an estimator: one value per pixel and output, row-major from the top
 /// left.
 struct PassImage {
   int width = 0, height = 0;
@@ -34,7 +34,7 @@ struct PassImage {
   /// Per object of the scene, how much of each pixel it covers: what it adds to the opacity of the
   /// ray. Empty where nobody asks for it.
   std::vector<std::vector<float>> coverage;
-  /// What layers ask for beyond that, a plane each (layers/ray_layers.h).
+  /// Additional planes that layers need (layers/ray_layers.h).
   std::vector<std::vector<float>> planes;
   /// Where rays are cut for a deep picture; null where nobody asks for one.
   const DeepLayout* deep_layout = nullptr;
@@ -105,11 +105,11 @@ struct PassImage {
                      [&](float value) { return value * factor; });
     }
   }
-  /// What a pass takes.
+  /// Memory of a pass [bytes].
   static constexpr std::size_t bytes_per_pixel(bool glows) {
     return (glows ? 4 : 3) * sizeof(Rgb) + 2 * sizeof(float);
   }
-  /// What the pixel shows in all.
+  /// Total radiance of the pixel.
   Rgb total(std::size_t pixel) const {
     const Rgb sum = direct[pixel] + indirect[pixel] + background[pixel];
     return emission.empty() ? sum : sum + emission[pixel];

@@ -7,7 +7,7 @@
 namespace vdbeam {
 namespace {
 
-/// What values a key takes: its choices or its kind, range and unit.
+/// Values that a key takes: its choices, or its kind and range.
 std::string values_text(const SceneKey& key, const char* quote) {
   if (key.kind == KeyKind::choice) {
     std::string text;

@@ -25,7 +25,7 @@ enum class SceneSection {
   render
 };
 
-/// What a key's value is in the file.
+/// Type of a key's value in the file.
 enum class KeyKind {
   boolean,
   integer,
@@ -39,7 +39,7 @@ enum class KeyKind {
   matrix
 };
 
-/// What a key of the kind `file` names.
+/// Kind of file that a key of the kind `file` names.
 enum class InputKind { none, volume, picture, mesh, camera };
 
 /// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a

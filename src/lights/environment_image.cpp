@@ -20,7 +20,7 @@ double luminance(const Rgb& c) {
 constexpr float largest_half = 65504;
 constexpr float largest_float = std::numeric_limits<float>::max();
 
-/// What had to be changed in an image's values to make radiance of them.
+/// Corrections of an image's values to make them radiance.
 struct Mended {
   std::uint64_t infinite = 0, negative = 0, not_numbers = 0, too_bright = 0;
 

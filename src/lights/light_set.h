@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What is known of a light without asking it.
+/// Properties of a light, cached.
 struct LightTraits {
   bool visible = true;           ///< the camera sees it where its rays meet it
   bool surrounds = false;        ///< its light comes from all around, as a sky's does (LightKind)

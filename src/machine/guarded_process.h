@@ -14,7 +14,7 @@ constexpr double time_for(std::uint64_t file_bytes) {
   return 1e-7 * static_cast<double>(file_bytes);
 }
 
-/// What a guarded child process may use.
+/// Limits of a guarded child process.
 struct GuardLimits {
   double seconds = 120;     ///< of wall-clock time; time during which both were suspended is free
   double cpu_seconds = 120; ///< of processor time

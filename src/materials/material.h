@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What the light that is followed carries: radiance on paths from the camera, power on paths from
+/// Quantity that the followed light carries: radiance on paths from the camera, power on paths from
 /// lights. Refraction scales radiance by the square of the relative index, power not.
 enum class Carried { radiance, power };
 

@@ -53,7 +53,7 @@ struct Volume {
 /// A value for each 8^3 cell of each volume of a medium.
 using CellTables = std::vector<std::vector<float>>;
 
-/// What was taken out of a medium to make the one at hand (similar_medium).
+/// Delta-M truncation that made a medium from the scene's (similar_medium).
 struct PeakTakenOut {
   int order = 0;                       ///< M of the delta-M method
   std::vector<PhaseFunction> original; ///< per phase function: the scene's

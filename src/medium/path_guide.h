@@ -60,7 +60,7 @@ struct PathGuide {
   std::vector<double> light_shares;              ///< of the paths, per light; their sum is 1
   std::vector<std::vector<double>> distribution; ///< per light: cumulative, steps + 1 values
 
-  /// What a path of this flux, in its strongest channel, at a point is expected to bring, relative
+  /// Expected contribution of a path of this flux, in its strongest channel, at a point, relative
   /// to the mean of `paths` paths.
   float relative_value(float flux, const Vec3f& point, std::uint64_t paths) const {
     return static_cast<float>(static_cast<double>(flux) *

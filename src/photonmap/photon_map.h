@@ -75,7 +75,7 @@ public:
 
   std::size_t size() const;
   std::size_t bytes() const;
-  /// What building a map takes for each photon: the list, its order, and the map.
+  /// Memory for building a map, per photon [bytes]: the list, its order, and the map.
   static std::size_t build_bytes_per_photon(int channels, bool directions);
   int channels() const;
   bool has_directions() const;

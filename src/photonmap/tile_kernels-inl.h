@@ -50,7 +50,7 @@ struct Candidates {
   alignas(64) float signed_power[slots]; ///< where the map marks first flights
 };
 
-/// What is the same for all of a query.
+/// Constants of a query.
 struct TileQuery {
   const PhotonBlocks& blocks;
   KernelPolynomial kernel;
@@ -194,7 +194,7 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
   }
 }
 
-/// What the phase function needs of the hit photons.
+/// Data of the hit photons for the phase function.
 HWY_INLINE void write_phase(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
                             const LaneWriter& writer, Candidates& out) {
   const D16 d;

@@ -42,7 +42,7 @@ public:
   std::vector<PixelValue> take() { return std::move(values_); }
 
 private:
-  /// What the ray gathers in kernels of the other width.
+  /// Light gathered by the ray in kernels of the other width.
   Rgb compared(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const;
 
   const PhotonMap& map_;

@@ -18,7 +18,7 @@ constexpr double default_neighbours = 500;
 constexpr double paths_per_hit = 4;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 4e6;
-/// What a camera ray that meets a surface alone counts: photons and camera rays balance, and paths
+/// Weight of a camera ray that meets a surface alone: photons and camera rays balance, and paths
 /// from surfaces take time, too (research-log/decisions.md).
 constexpr double share_of_surface = 0.5;
 /// For lights that shadow rays do not reach there are more light paths: at most this factor, until

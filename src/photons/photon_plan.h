@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
+/// Plan of the photon passes of a frame: chosen once, before the first pass, as a pure
 /// function of the estimator's input (by counts, never by a clock).
 struct PhotonPlan {
   /// Per light: single scattering by shadow rays instead of photons.
@@ -47,7 +47,7 @@ struct PhotonPlan {
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
 };
 
-/// What needs no photons to be known: the settings and the render plan's decisions.
+/// The part of the plan that needs no pilot: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
 /// and chooses from the mean number of their collisions how many shadow rays to send and how many

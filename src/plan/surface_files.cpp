@@ -10,7 +10,7 @@
 namespace vdbeam {
 namespace {
 
-/// What assimp takes in the process that reads a file, and with it a fifth as much in the renderer,
+/// Memory of assimp in the process that reads a file, and with it a fifth as much in the renderer,
 /// as measured on ten million triangles: 3.7 GB with 5 million vertices.
 constexpr std::uint64_t bytes_per_vertex = 250, bytes_per_triangle = 250;
 /// Memory of the normals at the corners of a triangle.

@@ -150,7 +150,7 @@ void take_over(const Scene& scene, const PreparedScenePtr& previous, const StopT
   }
 }
 
-/// What is read of the volumes of a scene, one after the other.
+/// Data read for the volumes of a scene, in their order.
 struct ReadGrids {
   std::vector<DensityGrid> density;
   std::vector<EmissionGrid> emission;

@@ -39,7 +39,7 @@ std::string edits_text(const VolumeSettings& volume) {
                                           r.curve, static_cast<int>(volume.interpolation));
 }
 
-/// What decides the colours that multiply a volume's albedo.
+/// Settings that decide the colours which multiply a volume's albedo.
 std::string colors_text(const VolumeSettings& volume) {
   return volume.color_grid.empty() ? ""
                                    : fmt::format("|colors {} {}", volume.color_grid,

@@ -9,7 +9,7 @@ namespace vdbeam {
 
 // Functions that take a StopToken read files and make fields, and throw Stopped when it says so.
 
-/// What of a volume's file can come to be seen through its box; none: all of it. `motion`: what
+/// The part of a volume's file that can become visible in its box; none: all of it. `motion`: what
 /// moves it, or null.
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion);
 

@@ -14,7 +14,7 @@ namespace vdbeam {
 class PhotonCache;
 struct SceneChoices;
 
-/// What an estimator is given beyond the scene; what is pointed to must outlive it.
+/// Input of an estimator beyond the scene; objects pointed to must outlive it.
 struct EstimatorTask {
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
@@ -37,7 +37,7 @@ struct EstimatorTask {
   bool reaches_bounce_limit = true;
 };
 
-/// What every estimator is made from; the references must outlive it.
+/// Input of every estimator; the references must outlive it.
 struct EstimatorInput : EstimatorTask {
   EstimatorInput(const World& world_, const Camera& camera_, const RenderSettings& settings_,
                  const RenderPlan& plan_, const EstimatorTask& task = {})

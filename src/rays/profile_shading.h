@@ -8,7 +8,7 @@
 
 namespace vdbeam {
 
-/// What a camera ray sees of the surface at which it ends.
+/// Light of the surface at the end of a camera ray.
 struct SeenSurface {
   Rgb radiance = {}; ///< that leaves it against the ray
   float shadow = 0;  ///< on a shadow catcher; nothing else of it is visible (caught_shadow)
@@ -21,7 +21,7 @@ struct SeenSurface {
   int surface = -1;    ///< -1: not matt
 };
 
-/// What a ray adds to PassImage::opacity and PassImage::depth.
+/// Contribution of a ray to PassImage::opacity and PassImage::depth.
 struct OpacityAndDepth {
   float opacity = 0, depth = 0;
 };

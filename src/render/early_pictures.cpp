@@ -23,7 +23,7 @@ constexpr double draft_width = 120;
 constexpr int least_reduction = 2, greatest_reduction = 16;
 /// Pictures of fewer pixels have their first pass soon enough.
 constexpr double worth_drafting = 2e5;
-/// What a pass and its pilots take in units of a draft's, per pixel, and enlarging in units of a
+/// Time of a pass and its pilots in units of a draft's, per pixel, and of enlarging in units of a
 /// pass: guesses from drafts and passes of clouds (research-log/decisions.md). They are no part of
 /// any picture, but decide whether there is time for it.
 constexpr double pilot_over_draft = 2.5, pilot_of_next_draft = 1.5, enlarging = 0.08;
@@ -122,7 +122,7 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   return true;
 }
 
-/// What stands for a picture without any pass: the draft or, without one, a quick look.
+/// The image of a frame without any pass: the draft or, without one, a quick look.
 void PassLoop::take_early_picture(const EstimatorInput& quick_look) {
   if (draft_)
     return take_draft(quick_look);

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What the user should know of a scene at the ends of what the estimators resolve
+/// Notes about scenes at the limits of the estimators
 /// (docs/developer/extreme-scenes.md): lines for RenderResult::notes. Empty for ordinary scenes.
 std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& input);
 

@@ -133,8 +133,8 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
                      result_.statistics.clamped_pixels));
 }
 
-/// What renders the next pass; nothing where its moment was being prepared when the frame was to
-/// end.
+/// The renderer of the next pass; null if its motion sample was being prepared when the frame was
+/// to end.
 std::optional<Shutter::Renderer> PassLoop::renderer_of_pass(Shutter& shutter) {
   try {
     return shutter.at(next_pass(), result_.statistics);

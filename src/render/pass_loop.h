@@ -19,7 +19,7 @@ public:
   /// Before any pass: the film is to hold a deep picture too.
   void gather_deep(const DeepLayout& layout);
 
-  /// What the estimator's input is to have as its `stop`.
+  /// The `stop` of the estimator's input.
   const StopToken& stop_token() const { return stop_; }
   /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
   /// plan of the path estimator (plan_paths).

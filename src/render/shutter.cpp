@@ -30,7 +30,7 @@ std::uint64_t bytes_of(const World& world) {
   return bytes;
 }
 
-/// What is asked of a moment: all that is asked of the scene, with photons of its own.
+/// Input for a motion sample: that of the scene, with photons of its own.
 EstimatorTask task_of(const EstimatorTask& scene, const PreparedScene& moment) {
   EstimatorTask task = scene;
   task.photons = moment.photons.get();
@@ -93,8 +93,8 @@ void Shutter::follow(std::vector<SceneChoices> choices, RenderStatistics& statis
   }
 }
 
-/// What moments follow; empty where they choose for themselves. It depends on the scene alone,
-/// never on which moment came first.
+/// Choices that motion samples follow; empty if they choose for themselves. It depends on the scene
+/// alone, never on which moment came first.
 const std::vector<SceneChoices>& Shutter::scene_choices(RenderStatistics& statistics) {
   if (!input_.plan.needs(Stage::photon_importance) || !scene_choices_.empty())
     return scene_choices_;

@@ -19,7 +19,7 @@ namespace vdbeam {
 /// them: to find it out at each would take longer than a pass.
 class Shutter {
 public:
-  /// What renders a pass, until the next call of `at`.
+  /// The renderer of a pass, valid until the next call of `at`.
   struct Renderer {
     PassRenderer& passes;
     BiasProbe* probe; ///< measures the bias; null if the estimator has none or it is not asked for

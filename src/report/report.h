@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What a report says beside the result of the render.
+/// Content of a report beside the result of the render.
 struct ReportContext {
   std::string scene_hash;
   std::string output;           ///< path of the image

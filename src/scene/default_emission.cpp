@@ -20,7 +20,7 @@ constexpr double hottest_flame = 2200, mean_flame = 1700;
 /// A grid that reaches this is in kelvin; simulators also write 0 to 1 or 0 to about 4.
 constexpr double surely_kelvin = 600;
 
-/// What the deciding frames say of one grid.
+/// Summary of one grid over the deciding frames.
 struct GridExtent {
   std::string name;
   double maximum = 0;

@@ -86,7 +86,7 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
   return *grid;
 }
 
-/// What a grid's shape says about camera and extinction.
+/// Data of a grid's shape for camera and extinction.
 struct VolumeShape {
   std::string grid;
   std::vector<Vec3d> points; ///< a body around them holds all that is to be seen

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the user said about the picture of a bare VDB.
+/// Settings that the user gave for the image of a bare VDB.
 struct FramingWishes {
   std::optional<Vec3d> up; ///< unit
   std::optional<int> width, height;

@@ -64,7 +64,7 @@ std::optional<T> peek(const toml::table& root, const char* path) {
   return root.at_path(path).value<T>();
 }
 
-/// What the command line asks of the default scene before that scene is there.
+/// The settings of the default scene that the command line overrides.
 FramingWishes wishes_of(const std::vector<Override>& overrides) {
   toml::table root;
   root.insert("volume", toml::array{toml::table{}});

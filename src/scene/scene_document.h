@@ -34,7 +34,7 @@ public:
   /// Every file that the scene names by a key.
   std::vector<SceneFile> files() const;
 
-  /// What is in front of a line about a file of this frame's scene: "scene.toml:12: volume.0.file:
+  /// Prefix of a message about a file of this frame's scene: "scene.toml:12: volume.0.file:
   /// ", or the key that names the grid that the line is about. Empty for a bare VDB, which names
   /// itself, and for a line about anything else.
   std::string whose_file(const Scene& scene, const std::string& line) const;

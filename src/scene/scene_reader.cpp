@@ -55,7 +55,7 @@ std::string item_name(SceneSection section, std::size_t index) {
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
-/// What the user may have meant by an unknown key: what other programs call a key, a key of this
+/// Suggestion for an unknown key: what other programs call a key, a key of this
 /// table, or one of another table.
 std::string suggestion(SceneSection section, const std::string& name) {
   if (const std::string remedy = synonym_remedy(section, name); !remedy.empty())

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What photons are aimed at (AimedLight) in a scene with surfaces: the medium first, then the
+/// Targets of photons (AimedLight) in a scene with surfaces: the medium first, then the
 /// surfaces within boxes about it, each four times as wide as the one before, at last all of them.
 /// Only the latter where there is no medium.
 std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,

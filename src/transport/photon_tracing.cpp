@@ -116,7 +116,7 @@ public:
       split(path, phase, point);
     return paths > 0 && scatter(path, phase, point);
   }
-  /// What leaves the scene is lost. At a surface the path goes on by its material.
+  /// A path that leaves the scene ends. At a surface it continues by the material.
   bool leave(LightPath& path) { return path.end && reflect(path); }
 
   PhotonList photons, surface_photons;
@@ -310,7 +310,7 @@ private:
   bool single_scattering_; ///< photons may bring light that the medium has not scattered yet
 };
 
-/// What the tracers have in one array of theirs, `member` of `list`, one after the other.
+/// Concatenates the tracers' arrays `member` of `list`.
 template <class T>
 UnfilledArray<T> joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list,
                         UnfilledArray<T> PhotonList::*member) {

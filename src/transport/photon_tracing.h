@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What a photon pass needs to know.
+/// Settings of a photon pass.
 struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;

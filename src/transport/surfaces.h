@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What stands in a scene: surfaces in render space and what they are made of.
+/// Surfaces of a scene in render space, and their materials.
 struct Surfaces {
   std::shared_ptr<const SurfaceSet> set;
   std::vector<std::shared_ptr<const Material>> materials; ///< per surface
@@ -64,7 +64,7 @@ public:
   int light() const { return light_; }
   Rgb matt_albedo() const { return material_.matt_albedo() * shown_; }
   Rgb emitted() const { return material_.emitted(front()) * shown_; }
-  /// What absorption inside left of the light on its way from the path's last event to here.
+  /// Transmittance of absorption inside from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
   Rgb evaluate(const Vec3f& wi, Carried carried = Carried::radiance) const {

@@ -169,7 +169,7 @@ void add_volume_lights(World& world) {
       world.lights.add(std::make_unique<VolumeLight>(emitter), {.is_emission = true});
 }
 
-/// What a surface is, where lights can be drawn by solid angle: a sphere that is not stretched, or
+/// The shape of a surface if lights can be drawn by solid angle: a sphere that is not stretched, or
 /// a quad with perpendicular edges.
 SolidAngleShape solid_angle_shape(const SurfaceSettings& settings, const RenderSpace& space) {
   const Affine map = space.map().after(Affine::from_matrix(settings.transform));

@@ -50,7 +50,7 @@ struct WorldFacts {
     std::uint64_t density = 0;  ///< active voxels; 0: the volume is left out as empty
     std::uint64_t emission = 0; ///< active voxels of its emission grids; 0: it does not glow
   };
-  /// What had to be made for the surfaces, since the previous world did not have it.
+  /// Counts of what had to be made for the surfaces.
   struct SurfaceWork {
     int meshes_read = 0, textures_read = 0, trees_built = 0;
   };

@@ -15,7 +15,7 @@
 
 namespace vdbeam {
 
-/// What was found and mended while a grid was read.
+/// Findings and repairs while a grid was read.
 struct GridRepairs {
   std::uint64_t nan = 0;      ///< values replaced by 0
   std::uint64_t infinite = 0; ///< values replaced by 0
@@ -67,7 +67,7 @@ struct ReadLimits {
   const StopToken* stop = nullptr;     ///< ends reading by throwing Stopped
 };
 
-/// What becomes of a grid whose value far outside is not 0: a density without end is refused; of
+/// Treatment of a grid whose value far outside is not 0: a density without end is refused; of
 /// other grids values equal to it count as 0.
 enum class Background { refused, ignored };
 
@@ -81,7 +81,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
                               Background background = Background::refused,
                               const std::optional<WantedBox>& wanted = {});
 
-/// What a file's header says of a grid that read_density_grid would read: name, type, class, map,
+/// Header data of a grid that read_density_grid would read: name, type, class, map,
 /// active voxels and bounds. Takes milliseconds: voxels are read only where the file was written
 /// without statistics. Same errors.
 GridSummary read_grid_header(const std::string& path, const std::string& grid_name,

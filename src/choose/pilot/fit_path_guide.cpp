@@ -87,8 +87,8 @@ public:
 
   const MediumBlocks& blocks() const { return blocks_; }
 
-  /// What paths brought after they met a block, per unit of flux. Leaves in `brought`, by path and
-  /// 0 at first, what all of its photons bring.
+  /// Contribution of paths after they met a block, per unit of flux. Leaves in `brought`, by path
+  /// and 0 at first, what all of its photons bring.
   std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
     BlockSums sums(blocks_.counts());
     const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not

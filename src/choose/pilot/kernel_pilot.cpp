@@ -19,7 +19,7 @@ constexpr std::size_t pixels_between_samples = 48, fewest_samples = 64;
 /// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
 /// against all that they blur, less where they are as wide (measured, research-log/decisions.md).
 constexpr double bias_power = 0.5;
-/// What is best for the clouds that were looked at, and by how many factors of two it differs among
+/// Best value for the clouds that were measured, and by how many factors of two it differs among
 /// them (standard deviation): prior of a scene, before the trial.
 constexpr double usual_neighbours = 512, usual_octaves = 1;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it

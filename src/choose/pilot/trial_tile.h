@@ -21,7 +21,7 @@ struct TilePlace {
 /// Tiles spread over the picture, at which trials look; all of them where it is small.
 std::vector<TilePlace> choose_trial_tiles(const Camera& camera);
 
-/// What a tile's rays see of the maps of two trials.
+/// Values of a tile's rays from the maps of two trials.
 struct TrialTile {
   TilePlace place;
   /// By map, what the rays gather: one channel after another, in each the rays as in TileRays.

@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What the walks of a camera ray gather, the mean over the walks.
+/// Light gathered by the walks of a camera ray: the mean over the walks.
 struct GatheredLight {
   Rgb direct;   ///< scattered once, of lights for which there are no shadow rays
   Rgb indirect; ///< scattered more often

@@ -22,8 +22,8 @@ public:
     reach_ = scatter_photons_ ? 4 * photons.map().mean_radius() : 0;
   }
 
-  /// What the photons scatter into the ray, and in `straight` what of it comes straight from
-  /// lights.
+  /// Light that the photons scatter into the ray, and in `straight` the part that comes straight
+  /// from lights.
   Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
             RenderStatistics& counts, Rgb& straight, const RaySink& sink = {}) {
     const Medium& medium = world_.medium;

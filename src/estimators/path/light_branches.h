@@ -35,7 +35,7 @@ public:
   /// c q, the density of branches [1/sr], 0 for directions that are not about a light.
   float density(const PhaseFunction& phase, const Vec3f& direction) const;
 
-  /// What a flight in this direction is about to bring, in units of one far from narrow lights:
+  /// Expected contribution of a flight in this direction, in units of one far from narrow lights:
   /// roulette looks at it, or it would end the faint walks that branches are made for.
   float importance(const Vec3f& direction) const;
 
