@@ -26,7 +26,7 @@ void add_image_keys(KeyTable& table) {
   table.add("compression", &I::compression, "compression of the EXR; dwaa and dwab are lossy")
       .keeps_picture()
       .keeps_world();
-  table.add("parts", &I::parts, "EXR parts: one for all layers, or one for each layer")
+  table.add("parts", &I::parts, "parts of the EXR, one for all layers or one for each layer")
       .keeps_picture()
       .keeps_world();
   table.add_auto("tile", &I::tile, "tile width of the EXR; none: scan lines")
@@ -75,7 +75,7 @@ void add_image_keys(KeyTable& table) {
       .unit("pixels")
       .within(0, 16384)
       .keeps_world();
-  table.add("filter", &I::filter, "reconstruction filter: distribution of a pixel's rays")
+  table.add("filter", &I::filter, "reconstruction filter, the distribution of a pixel's rays")
       .keeps_world();
   table.add_auto("filter_width", &I::filter_width, "filter width; auto: 1 for a box, else 2")
       .unit("pixels")
