@@ -20,7 +20,7 @@ public:
   /// be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 
-  /// The choices; with groups of lights, those of the first.
+  /// What was chosen.
   virtual const Choices& choices() const = 0;
 };
 

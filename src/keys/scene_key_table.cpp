@@ -142,6 +142,8 @@ void add_mesh(KeyTable& table) {
       .types({"file"});
   table.add("visible", &S::visible, "visible to the camera; an invisible mesh still blocks light");
   table.add("name", &S::name, R"(name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
+  table.add("group", &S::group,
+            "light group of an emissive mesh; the lights of a group share the layer light_NAME");
   add_placement(table, &S::transform);
 
   using M = MaterialSettings;
@@ -211,8 +213,7 @@ void add_light(KeyTable& table) {
   table.add("rotation", &L::rotation, "rotation about the camera's up axis").unit("degrees");
   table.add("visible", &L::visible,
             "visible to the camera; a hidden light still lights the scene and leaves A at 0");
-  table.add("group", &L::group, "light group; the lights of a group share the layer light_NAME")
-      .keeps_world();
+  table.add("group", &L::group, "light group; the lights of a group share the layer light_NAME");
   table.add("direct", &L::direct, "method for single scattering, instead of render.direct");
 }
 
