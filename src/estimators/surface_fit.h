@@ -19,15 +19,16 @@ class BlurProbe;
 /// straight from lights, with its shadows, stays as it is.
 class SurfaceFit {
 public:
-  /// Of a pass of a world with surfaces. `input` must outlive this.
+  /// Fit for one pass of a world with surfaces. `input` must outlive this.
   SurfaceFit(const EstimatorInput& input, int pass);
 
   /// By how many pixels it reaches to each side.
   static constexpr int reach = 3;
-  /// What a pass takes.
+  /// Memory of a pass per pixel [bytes].
   static constexpr std::size_t bytes_per_pixel();
 
-  /// Of any thread, each pixel by one: a pixel shows a surface through the transmittance `tr`.
+  /// The pixel shows a surface through the transmittance `tr`. Any thread may call it, one per
+  /// pixel.
   void set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr);
   /// The pixel shows several.
   void clear(std::size_t pixel) { pixels_[pixel].surface = -1; }

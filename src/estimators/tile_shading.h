@@ -8,7 +8,7 @@ namespace vdbeam {
 
 class BlurProbe;
 
-/// What a thread keeps from tile to tile.
+/// Buffers that a thread keeps from tile to tile.
 struct TileScratch {
   TileRays rays;
   BeamTile tile;
@@ -34,7 +34,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
                const SeenSurface& surface = {}, int rays = 1);
 
-/// What an estimator does with the rays of a tile.
+/// Work of an estimator on the rays of a tile.
 struct TileGather {
   bool refine; ///< edges are seen by several rays (is_uneven)
   /// Adds what the photon map gives to image.indirect, and its counts to scratch.statistics.

@@ -35,8 +35,8 @@ constexpr std::array synonyms{
     KeySynonym{S::light, "elevation", "direction", aim},
     KeySynonym{S::light, "azimuth", "direction", aim},
     KeySynonym{S::light, "rotate", "direction rotation",
-               "direction = [x, y, z] is the way that a distant or spot light travels; rotation "
-               "turns an environment"},
+               "direction = [x, y, z] is the direction in which a distant or spot light travels; "
+               "rotation turns an environment"},
     KeySynonym{S::light, "target", "direction", aim},
     KeySynonym{S::light, "angle", "angular_radius cone_angle", ""},
     KeySynonym{S::light, "size", "angular_radius", ""},

@@ -132,7 +132,7 @@ constexpr std::string_view distant_keys[] = {"direction", "irradiance", "angular
 
 const LightKind distant_light{
     .name = "distant",
-    .help = "far away, like the sun",
+    .help = "a directional light with an angular radius, such as the sun",
     .keys = distant_keys,
     .colored = [](const LightSettings& light) { return !is_grey(light.irradiance); },
     .complaint = direction_complaint,

@@ -30,7 +30,7 @@ constexpr std::string_view point_keys[] = {"position", "intensity"};
 
 const LightKind point_light{
     .name = "point",
-    .help = "a point that shines in all directions",
+    .help = "a point that emits in all directions",
     .keys = point_keys,
     .colored = [](const LightSettings& light) { return !is_grey(light.intensity); },
     .make = make_point_light};

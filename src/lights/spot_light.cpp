@@ -70,7 +70,7 @@ constexpr std::string_view spot_keys[] = {"direction", "position", "intensity", 
 
 const LightKind spot_light{
     .name = "spot",
-    .help = "a point that shines into a cone",
+    .help = "a point that emits into a cone",
     .keys = spot_keys,
     .colored = [](const LightSettings& light) { return !is_grey(light.intensity); },
     .complaint = spot_complaint,

@@ -24,7 +24,7 @@ constexpr std::string_view keys[] = {"radiance", "two_sided", "texture", "textur
 
 const MaterialKind emissive_material{
     .name = "emissive",
-    .help = "a lamp, which shines with the same radiance in all directions and reflects nothing",
+    .help = "an area light of constant radiance; reflects nothing",
     .keys = keys,
     .colored =
         [](const MaterialSettings& settings) {

@@ -28,7 +28,7 @@ std::uint64_t bytes_of(const World& world) {
   return bytes;
 }
 
-/// What is asked of a moment: all that is asked of the scene, with photons of its own.
+/// Input for a motion sample: that of the scene, with photons of its own.
 EstimatorTask task_of(const EstimatorTask& scene, const PreparedScene& moment) {
   EstimatorTask task = scene;
   task.photons = moment.photons.get();

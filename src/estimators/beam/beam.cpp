@@ -116,7 +116,7 @@ constexpr std::string_view beam_keys[] = {"photons",      "store",       "direct
 
 const EstimatorKind beam_estimator{
     .name = "beam",
-    .help = "the beam radiance estimate: photons, gathered along whole camera rays",
+    .help = "the beam radiance estimate: photons, gathered along the camera ray",
     .unbiased = false,
     .stages = gather_stages,
     .keys = beam_keys,

@@ -36,8 +36,8 @@ constexpr std::string_view gather_keys[] = {
 
 const EstimatorKind gather_estimator{
     .name = "gather",
-    .help = "final gathering: photons, gathered where random walks from the camera ray arrive; "
-            "along camera rays where a limit of bounces excludes that",
+    .help =
+        "final gathering: photons, gathered at the end of short random walks from the camera ray",
     .unbiased = false,
     .stages = gather_stages,
     .keys = gather_keys,
