@@ -6,6 +6,7 @@
 #include "console/streams.h"
 #include "console/terminal.h"
 #include "machine/memory.h"
+#include "machine/stop_reading.h"
 #include "machine/stopwatch.h"
 #include "machine/threads.h"
 #include "plan/memory_check.h"
@@ -74,18 +75,20 @@ void Batch::read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& 
     loaded.bytes = (granted - beside) / 2;
   }
   const PreparedScenePtr previous = before ? before->frame.prepared : nullptr;
-  if (!options_.frame.pass_range)
-    watch.limit = preparation_limit(scene.render);
   loaded.frame.prepared =
-      loaded.deferred ? nullptr : prepare_scene(scene, previous, &watch.give_up);
+      loaded.deferred ? nullptr : prepare_scene(scene, previous, StopToken(&watch.give_up));
 }
 
 Batch::Loaded Batch::load(int frame, const SharedLoaded& before, bool alone, Watch& watch) const {
   Loaded loaded;
   if (before)
     loaded.frame.prepared = before->frame.prepared;
+  const StopToken stop(&watch.give_up);
+  const StopReading reading(stop);
   try {
     loaded.frame.scene = document_.scene_at(frame, options_.missing);
+    if (!options_.frame.pass_range)
+      watch.limit = preparation_limit(loaded.frame.scene.render);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                               static_cast<std::size_t>(thread_count(loaded.frame.scene.render)));
     loaded.frame.hash = scene_hash(loaded.frame.scene);
@@ -133,7 +136,7 @@ Batch::Loaded Batch::wait_for(Reading& reading) const {
     heartbeat.emplace("reading the next frame, still working");
   while (reading.frame.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
     if (stop_requested()) {
-      say("interrupted while a volume was read");
+      say("interrupted while files were read");
       leave_now(signal_exit_code());
     }
     if (stopwatch.seconds() > reading.watch->limit)

@@ -56,9 +56,10 @@ std::string estimators_text(const RenderResult& result) {
 std::string picture_text(const PictureFacts& facts) {
   if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
     return {}; // of a part of the passes
-  return fmt::format(
-      "; optical depth up to {:.2g}, opacity {:.2g}, {:.0f} % black, {:.0f} % above 1",
-      facts.optical_depth, facts.opacity, 100 * facts.black, 100 * facts.over_one);
+  const std::string opacity =
+      std::isnan(facts.opacity) ? "" : fmt::format(" opacity {:.2g},", facts.opacity);
+  return fmt::format("; optical depth up to {:.2g},{} {:.0f} % black, {:.0f} % above 1",
+                     facts.optical_depth, opacity, 100 * facts.black, 100 * facts.over_one);
 }
 
 std::string end_text(const RenderResult& result, const std::string& output) {
@@ -320,11 +321,12 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   const Scene& scene = loaded.scene;
   const RenderSettings settings = progress_settings(scene, options_.pass_range);
   Progress progress(title, settings, options_.quiet);
-  const auto read = [&](const char* option, const std::string& path) {
-    return read_reference(option, substitute_frame(path, loaded.frame()), scene.image);
-  };
-  const std::optional<Image> reference = read("--reference", options_.files.reference),
-                             second = read("--second-reference", options_.files.second_reference);
+  const std::optional<References> references =
+      read_references(options_.files, loaded.frame(), scene.image, StopToken(&stop_requested()));
+  if (!references) {
+    progress.finish("interrupted while a reference was read");
+    return false;
+  }
   progress.start(start_text(scene));
   const auto report_note = [&](const std::string& note) {
     if (notes_->add(note, loaded.frame()))
@@ -340,8 +342,8 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   frame.seconds_used = loaded.seconds_waited;
   frame.checkpoint = options_.checkpoint;
   frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
-  frame.reference = reference ? &*reference : nullptr;
-  frame.second_reference = second ? &*second : nullptr;
+  frame.reference = references->first ? &*references->first : nullptr;
+  frame.second_reference = references->second ? &*references->second : nullptr;
   RenderHooks hooks;
   hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
     progress.pass(record);

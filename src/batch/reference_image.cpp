@@ -1,6 +1,8 @@
 #include "batch/reference_image.h"
 
 #include "image/color_conversion.h"
+#include "machine/stop_reading.h"
+#include "text/frame_range.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
@@ -27,6 +29,20 @@ std::optional<Image> read_reference(const char* option, const std::string& path,
   });
   convert_colors(reference, chromaticities_of(size.working_space));
   return reference;
+}
+
+std::optional<References> read_references(const FrameFiles& files, int frame,
+                                          const ImageSettings& size, const StopToken& stop) {
+  const StopReading reading(stop);
+  const auto read = [&](const char* option, const std::string& path) {
+    return read_reference(option, substitute_frame(path, frame), size);
+  };
+  try {
+    return References{read("--reference", files.reference),
+                      read("--second-reference", files.second_reference)};
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
 }
 
 } // namespace vdbeam::cli

@@ -79,7 +79,7 @@ void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedP
   plan.stored_per_path = wanted_per_path();
   plan.view_reach = typical_radius(input, plan, pilot.photons);
   CellTables importance = view_importance(input.world, input.camera, plan.view_reach,
-                                          least_importance, plan.importance_rays);
+                                          least_importance, plan.importance_rays, input.stop);
   if (is_possible(path_guide_feature, {input, kind}))
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
@@ -122,7 +122,7 @@ void follow_scene(const EstimatorInput& input, const SceneChoices& scene, Choice
   if (plan.store_probability_by_cell)
     plan.store_probability_by_cell = std::make_shared<const CellTables>(
         store_by_view(view_importance(input.world, input.camera, plan.view_reach, least_importance,
-                                      plan.importance_rays),
+                                      plan.importance_rays, input.stop),
                       plan.view_factor));
 }
 

@@ -157,16 +157,20 @@ double collisions_of_light_paths(const EstimatorInput& input) {
 
 } // namespace
 
-EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
-                                 const EstimatorInput& path_input) {
+std::optional<std::string> why_photons_are_rare(const EstimatorInput& input) {
   // In such a medium the photons that are seen lie in a thin skin, and most paths end by chance.
   constexpr double most_collisions = 4096;
-  if (const double collisions = collisions_of_light_paths(photon_input);
-      collisions > most_collisions && !photon_input.stopped())
-    return {EstimatorType::path,
-            fmt::format("a light path has about {:.1g} collisions, too many to trace photons",
-                        collisions),
-            0, nullptr};
+  const double collisions = collisions_of_light_paths(input);
+  if (!(collisions > most_collisions) || input.stopped())
+    return std::nullopt;
+  return fmt::format("a light path has about {:.1g} collisions, too many to trace photons",
+                     collisions);
+}
+
+EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
+                                 const EstimatorInput& path_input) {
+  if (auto reason = why_photons_are_rare(photon_input))
+    return {EstimatorType::path, std::move(*reason), 0, nullptr};
   auto passes = std::make_unique<FramePasses>(EstimatorType::automatic, photon_input);
   const Choices& choices = passes->choices();
   const EstimatorType type =

@@ -2,6 +2,7 @@
 
 #include "choose/pass_renderer.h"
 
+#include <optional>
 #include <string>
 
 namespace vdbeam {
@@ -13,6 +14,11 @@ struct EstimatorChoice {
   double lead = 0; ///< forecast of how many times the error of photons `path` has; 0: none was made
   std::unique_ptr<FramePasses> photons; ///< ready to render, where photons were chosen
 };
+
+/// Why photons would be rare and bright however many there are, so that `auto` takes path without a
+/// trial; nothing where they are not. A light path of a few thousand collisions leaves its photons
+/// where nobody sees them. Asking takes a few light paths.
+std::optional<std::string> why_photons_are_rare(const EstimatorInput& input);
 
 /// Chooses between the estimators that gather photons and `path`: the one with the smaller error
 /// for the same work, by a short trial: the kernel pilot's forecast of noise and bias against the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "image/pass_image.h"
+#include "math/zeroed_array.h"
 
 #include <cstdint>
 #include <vector>
@@ -60,8 +61,8 @@ public:
   PassHistory with_several_passes_per_batch() const;
 
   /// Everything above, for storing: both as long as a multiple of the film's pixels.
-  std::vector<float>& values() { return values_; }
-  std::vector<std::uint32_t>& counts() { return counts_; }
+  ZeroedArray<float>& values() { return values_; }
+  ZeroedArray<std::uint32_t>& counts() { return counts_; }
 
 private:
   std::size_t stride() const { return 14 * pixels_.size() + 2; }
@@ -75,8 +76,8 @@ private:
   int width_;
   double share_;
   std::vector<std::size_t> pixels_;
-  std::vector<float> values_;
-  std::vector<std::uint32_t> counts_; ///< passes of each batch
+  ZeroedArray<float> values_;
+  ZeroedArray<std::uint32_t> counts_; ///< passes of each batch
 };
 
 } // namespace vdbeam

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "math/zeroed_array.h"
+
 #include <bit>
 #include <cstdint>
-#include <vector>
 
 namespace vdbeam {
 
@@ -25,8 +26,8 @@ public:
   float* low_data() { return low_.data(); }
 
 private:
-  std::vector<double> high_;
-  std::vector<float> low_;
+  ZeroedArray<double> high_;
+  ZeroedArray<float> low_;
 };
 
 /// a + b exactly, as a rounded sum and its error: Knuth, The Art of Computer Programming 2, section

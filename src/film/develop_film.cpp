@@ -18,11 +18,14 @@ Image Film::develop() const {
   for (const char* name : {"R", "G", "B", "A", "volume.R", "volume.G", "volume.B", "volume.A",
                            "volume_direct.R", "volume_direct.G", "volume_direct.B",
                            "volume_indirect.R", "volume_indirect.G", "volume_indirect.B"})
-    image.channels.push_back({name, std::vector<float>(pixels())});
-  image.channels.push_back({"depth.Z", std::vector<float>(pixels()), false});
+    image.channels.push_back({name, {}});
+  image.channels.push_back({"depth.Z", {}, false});
   if (glows_)
     for (const char* name : {"volume_emission.R", "volume_emission.G", "volume_emission.B"})
-      image.channels.push_back({name, std::vector<float>(pixels())});
+      image.channels.push_back({name, {}});
+  // New memory costs more time than what is done with it, so all threads share that.
+  tbb::parallel_for(std::size_t{0}, image.channels.size(),
+                    [&](std::size_t c) { image.channels[c].data.resize(pixels()); });
 
   enum : std::size_t {
     rgb = 0,

@@ -35,6 +35,15 @@ void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size
     sums.merge(i, other);
 }
 
+/// So many of `size` sums each. Copies of one would touch all of their memory.
+std::vector<CompensatedSums> make_sums(std::size_t count, std::size_t size) {
+  std::vector<CompensatedSums> sums;
+  sums.reserve(count);
+  for (std::size_t i = 0; i < count; ++i)
+    sums.emplace_back(size);
+  return sums;
+}
+
 } // namespace
 
 Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
@@ -43,10 +52,10 @@ Film::Film(int width, int height, bool glows, std::vector<std::string> groups,
     : width_(width), height_(height), glows_(glows), direct_(3 * pixels()), indirect_(3 * pixels()),
       background_(3 * pixels()), emission_(glows ? 3 * pixels() : 0), opacity_(pixels()),
       depth_(pixels()), group_names_(std::move(groups)),
-      groups_(group_names_.size(), CompensatedSums(3 * pixels())),
-      object_names_(std::move(objects)), coverage_(object_names_.size(), CompensatedSums(pixels())),
-      plane_names_(std::move(planes)), planes_(plane_names_.size(), CompensatedSums(pixels())),
-      squares_(3 * pixels()), deep_(std::move(deep)), history_(width, height) {}
+      groups_(make_sums(group_names_.size(), 3 * pixels())), object_names_(std::move(objects)),
+      coverage_(make_sums(object_names_.size(), pixels())), plane_names_(std::move(planes)),
+      planes_(make_sums(plane_names_.size(), pixels())), squares_(3 * pixels()),
+      deep_(std::move(deep)), history_(width, height) {}
 
 void Film::check_size(int width, int height) const {
   if (width != width_ || height != height_)

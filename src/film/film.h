@@ -47,6 +47,12 @@ public:
   const std::vector<std::string>& plane_names() const { return plane_names_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
+  /// About how many values develop() gives for each pixel.
+  std::size_t values_per_pixel() const {
+    constexpr std::size_t of_cryptomatte = 12;
+    return (glows_ ? 18 : 15) + 3 * groups_.size() + planes_.size() +
+           (coverage_.empty() ? 0 : of_cryptomatte);
+  }
   /// Memory of a film per pixel [bytes], without its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 17 : 14) * CompensatedSums::bytes_per_value;

@@ -1,5 +1,6 @@
 #include "geometry/shape_tree.h"
 
+#include "machine/stop_reading.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>
@@ -92,6 +93,21 @@ void check(const DevicePtr& device) {
     throw FrameError("Embree cannot build its trees over the surfaces");
 }
 
+void commit(RTCScene scene, const DevicePtr& device) {
+  const StopToken* stop = StopReading::token();
+  if (stop)
+    rtcSetSceneProgressMonitorFunction(
+        scene, [](void* token, double) { return !static_cast<const StopToken*>(token)->stopped(); },
+        const_cast<StopToken*>(stop));
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  if (stop && stop->stopped()) {
+    (void)rtcGetDeviceError(device.get()); // is known, and no concern of later frames
+    throw Stopped();
+  }
+  check(device);
+}
+
 ShapeTree::ShapeTree(DevicePtr device, std::shared_ptr<const Shape> shape, double margin)
     : shape_(std::move(shape)), margin_(margin), device_(std::move(device)) {
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
@@ -106,8 +122,7 @@ ShapeTree::ShapeTree(DevicePtr device, std::shared_ptr<const Shape> shape, doubl
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcAttachGeometry(scene_.get(), geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_.get());
-  check(device_);
+  commit(scene_.get(), device_);
 }
 
 } // namespace vdbeam

@@ -23,6 +23,10 @@ int devices_made();
 /// Throws FrameError for what the device could not do.
 void check(const DevicePtr& device);
 
+/// Builds the scene's tree. Throws FrameError for what the device cannot do, and Stopped
+/// (StopReading).
+void commit(RTCScene scene, const DevicePtr& device);
+
 /// Embree's tree over a shape in its own space: instances share it, and so do the surfaces of other
 /// frames and moments in which the shape is the same, wherever it stands. Immutable.
 class ShapeTree {

@@ -112,8 +112,7 @@ void SurfaceSet::Data::build_scene() {
     rtcAttachGeometryByID(scene.get(), instance, static_cast<unsigned>(i));
     rtcReleaseGeometry(instance);
   }
-  rtcCommitScene(scene.get());
-  check(device);
+  commit(scene.get(), device);
 }
 
 void SurfaceSet::Data::run(Query& query) const {

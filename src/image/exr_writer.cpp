@@ -1,3 +1,4 @@
+#include "image/exr_scanlines.h"
 #include "image/exr_stream.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -11,7 +12,6 @@
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfMultiPartOutputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
@@ -119,30 +119,28 @@ Imf::Header exr_header(const Image& image, const std::string& path) {
 
 namespace {
 
-/// A channel as the file stores it. `halves` stays empty for a float channel.
+/// A channel as the file stores it.
 struct StoredChannel {
   const ImageChannel* source = nullptr;
-  std::vector<half> halves;
+  bool half = false;
 };
 
-StoredChannel store_channel(const ImageChannel& channel) {
-  StoredChannel stored{&channel, {}};
-  if (!channel.half || !fits_half(channel))
-    return stored;
-  stored.halves.resize(channel.data.size());
-  for (std::size_t i = 0; i < channel.data.size(); ++i)
-    stored.halves[i] = half(channel.data[i]);
-  return stored;
-}
-
-Imf::Slice make_slice(const StoredChannel& channel, const Imath::Box2i& window) {
+/// Where the file finds the rows of a channel in a band, a part of the whole window. `halves` holds
+/// them, if the file holds halves.
+Imf::Slice make_slice(const StoredChannel& channel, const Imath::Box2i& whole,
+                      const Imath::Box2i& band, std::vector<Imath::half>& halves) {
+  const auto width = static_cast<std::size_t>(whole.max.x - whole.min.x + 1);
+  const auto rows = static_cast<std::size_t>(band.max.y - band.min.y + 1);
+  const float* values =
+      channel.source->data.data() + static_cast<std::size_t>(band.min.y - whole.min.y) * width;
   // OpenEXR only reads from the slices of an output file, yet asks for char*.
-  const bool is_half = !channel.halves.empty();
-  const void* data = is_half ? static_cast<const void*>(channel.halves.data())
-                             : static_cast<const void*>(channel.source->data.data());
-  const std::size_t size = is_half ? sizeof(half) : sizeof(float);
-  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
-  return Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, data, window, size, size * width);
+  if (!channel.half)
+    return Imf::Slice::Make(Imf::FLOAT, values, band, sizeof(float), sizeof(float) * width);
+  halves.resize(rows * width);
+  std::transform(values, values + halves.size(), halves.begin(),
+                 [](float value) { return Imath::half(value); });
+  return Imf::Slice::Make(Imf::HALF, halves.data(), band, sizeof(Imath::half),
+                          sizeof(Imath::half) * width);
 }
 
 Imf::Compression compression_named(const std::string& asked) {
@@ -180,7 +178,7 @@ std::vector<Part> split_in_parts(const Image& image) {
                              [&](const Part& known) { return known.name == layer; });
     if (part == parts.end())
       part = parts.insert(parts.end(), {layer, {}});
-    part->channels.push_back({&channel, {}});
+    part->channels.push_back({&channel});
   }
   std::erase_if(parts, [](const Part& part) { return part.channels.empty(); });
   return parts;
@@ -201,56 +199,74 @@ unsigned tile_width_of(const Image& image) {
   return found == image.numbers.end() ? 0 : static_cast<unsigned>(found->second);
 }
 
-/// Fills in what the header says of the part, and where its pixels are.
-Imf::FrameBuffer fill_header(const Part& part, Imf::Header& header) {
+/// Where the file finds the channels of a band.
+Imf::FrameBuffer band_pixels(const Part& part, const Imath::Box2i& whole, const Imath::Box2i& band,
+                             BandHalves& halves) {
+  halves.resize(part.channels.size());
   Imf::FrameBuffer pixels;
-  for (const StoredChannel& channel : part.channels) {
-    const Imf::Slice slice = make_slice(channel, header.dataWindow());
-    header.channels().insert(channel.source->name, Imf::Channel(slice.type));
-    pixels.insert(channel.source->name, slice);
-  }
+  for (std::size_t i = 0; i < part.channels.size(); ++i)
+    pixels.insert(part.channels[i].source->name,
+                  make_slice(part.channels[i], whole, band, halves[i]));
   return pixels;
+}
+
+Imf::Header header_of(const Image& image, Part& part, bool one_of_several,
+                      const std::string& path) {
+  Imf::Header header = exr_header(image, path);
+  header.compression() = compression_of(image, part.name);
+  tbb::parallel_for(std::size_t{0}, part.channels.size(), [&](std::size_t i) {
+    StoredChannel& channel = part.channels[i];
+    channel.half = channel.source->half && fits_half(*channel.source);
+  });
+  for (const StoredChannel& channel : part.channels)
+    header.channels().insert(channel.source->name,
+                             Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
+  const unsigned tile = tile_width_of(image);
+  if (tile > 0)
+    header.setTileDescription(Imf::TileDescription(tile, tile, Imf::ONE_LEVEL));
+  if (one_of_several)
+    header.setName(part.name);
+  if (one_of_several || tile > 0)
+    header.setType(tile > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  return header;
+}
+
+/// A file of several parts, or of tiles.
+void write_parts(const Image& image, const std::vector<Part>& parts,
+                 const std::vector<Imf::Header>& headers, AtomicFile& file) {
+  AtomicStream stream(file);
+  Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()), false,
+                                  0);
+  const Imath::Box2i whole = headers[0].dataWindow();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    BandHalves halves;
+    const Imf::FrameBuffer pixels = band_pixels(parts[i], whole, whole, halves);
+    if (tile_width_of(image) > 0) {
+      Imf::TiledOutputPart part(output, static_cast<int>(i));
+      part.setFrameBuffer(pixels);
+      part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
+    } else {
+      Imf::OutputPart part(output, static_cast<int>(i));
+      part.setFrameBuffer(pixels);
+      part.writePixels(image.height);
+    }
+  }
 }
 
 void write_channels(const Image& image, AtomicFile& file) {
   std::vector<Part> parts = split_in_parts(image);
-  const unsigned tile = tile_width_of(image);
   std::vector<Imf::Header> headers;
-  std::vector<Imf::FrameBuffer> pixels;
-  for (Part& part : parts) {
-    tbb::parallel_for(std::size_t{0}, part.channels.size(), [&](std::size_t i) {
-      part.channels[i] = store_channel(*part.channels[i].source);
-    });
-    Imf::Header& header = headers.emplace_back(exr_header(image, file.path()));
-    header.compression() = compression_of(image, part.name);
-    if (tile > 0)
-      header.setTileDescription(Imf::TileDescription(tile, tile, Imf::ONE_LEVEL));
-    pixels.push_back(fill_header(part, header));
-    if (parts.size() > 1)
-      header.setName(part.name);
-    if (parts.size() > 1 || tile > 0)
-      header.setType(tile > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
-  }
-  AtomicStream stream(file);
-  if (parts.size() == 1 && tile == 0) {
-    Imf::OutputFile output(stream, headers[0], 0);
-    output.setFrameBuffer(pixels[0]);
-    output.writePixels(image.height);
-    return;
-  }
-  Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()), false,
-                                  0);
-  for (int i = 0; i < static_cast<int>(headers.size()); ++i) {
-    if (tile > 0) {
-      Imf::TiledOutputPart part(output, i);
-      part.setFrameBuffer(pixels[static_cast<std::size_t>(i)]);
-      part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
-    } else {
-      Imf::OutputPart part(output, i);
-      part.setFrameBuffer(pixels[static_cast<std::size_t>(i)]);
-      part.writePixels(image.height);
-    }
-  }
+  for (Part& part : parts)
+    headers.push_back(header_of(image, part, parts.size() > 1, file.path()));
+  if (parts.size() > 1 || tile_width_of(image) > 0)
+    return write_parts(image, parts, headers, file);
+  const Imath::Box2i whole = headers[0].dataWindow();
+  write_scanlines(
+      headers[0],
+      [&](const Imath::Box2i& band, BandHalves& halves) {
+        return band_pixels(parts[0], whole, band, halves);
+      },
+      file);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "image/plane_file.h"
 
 #include "image/exr_chunks.h"
+#include "image/exr_scanlines.h"
 #include "image/exr_stream.h"
 #include "vdbeam/error.h"
 
@@ -8,7 +9,6 @@
 #include <ImfFrameBuffer.h>
 #include <ImfInputFile.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfOutputFile.h>
 
 #include <bit>
 
@@ -59,10 +59,8 @@ void write_file(const Image& picture, const std::vector<ImagePlane>& planes, Ato
     add(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.data.data(), window));
   for (const ImagePlane& plane : planes)
     visit_slices(plane, window, add);
-  AtomicStream stream(file);
-  Imf::OutputFile output(stream, header);
-  output.setFrameBuffer(pixels);
-  output.writePixels(picture.height);
+  write_scanlines(
+      header, [&](const Imath::Box2i&, BandHalves&) { return pixels; }, file);
 }
 
 } // namespace

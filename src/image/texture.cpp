@@ -1,6 +1,7 @@
 #include "image/texture.h"
 
 #include "image/color_conversion.h"
+#include "machine/stop_reading.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
@@ -93,9 +94,11 @@ Rgb Texture::at(const Uv& uv) const {
 Texture read_texture(const MaterialSettings& material, bool shines,
                      std::vector<std::string>& notes) {
   Image image = read_image(material.texture);
+  StopReading::check();
   add_note(notes, material.texture, make_finite(image),
            "that are infinite, taken for 65504, or no numbers, taken for 0");
   convert_colors(image, chromaticities_of(material.color_space));
+  StopReading::check();
   return {image, material.texture_wrap, shines ? largest_radiance : 1, material.texture, notes};
 }
 

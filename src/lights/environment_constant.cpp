@@ -2,6 +2,7 @@
 #include "lights/entry_sampler.h"
 #include "lights/environment_image.h"
 #include "lights/light_table.h"
+#include "machine/stop_reading.h"
 #include "math/color.h"
 #include "math/sampling.h"
 #include "vdbeam/image_file.h"
@@ -43,7 +44,9 @@ std::unique_ptr<Light> make_environment_light(const LightSettings& settings,
   if (settings.image.empty())
     return std::make_unique<ConstantEnvironment>(settings.radiance, context.region);
   Image image = read_image(settings.image);
+  StopReading::check();
   convert_colors(image, chromaticities_of(settings.color_space));
+  StopReading::check();
   return make_environment_image(image, settings.image, settings, context);
 }
 

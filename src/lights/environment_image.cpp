@@ -2,6 +2,7 @@
 
 #include "lights/distant_emission.h"
 #include "lights/sphere_table.h"
+#include "machine/stop_reading.h"
 #include "math/affine.h"
 #include "vdbeam/error.h"
 
@@ -68,9 +69,13 @@ public:
             fmt::format("light.image {} must hold the channels R, G, B or Y; it lacks some", name));
     }
     pixels_.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
+    const auto row = static_cast<std::size_t>(width_);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % row == 0)
+        StopReading::check();
       for (int c = 0; c < 3; ++c)
         pixels_[i][c] = mended_.radiance(channels[c]->data[i], factor[c]);
+    }
   }
 
   const Mended& mended() const { return mended_; }
@@ -92,11 +97,14 @@ public:
   /// 1/8 each way, so it is positive wherever the interpolant is not 0 throughout.
   std::vector<double> pixel_integrals() const {
     std::vector<double> along(pixels_.size()), result(pixels_.size());
-    for (int y = 0; y < height_; ++y)
+    for (int y = 0; y < height_; ++y) {
+      StopReading::check();
       for (int x = 0; x < width_; ++x)
         along[offset(x, y)] = luminance(pixel(x - 1, y)) / 8 + luminance(pixel(x, y)) * 0.75 +
                               luminance(pixel(x + 1, y)) / 8;
+    }
     for (int y = 0; y < height_; ++y) {
+      StopReading::check();
       const double band =
           std::cos(std::numbers::pi * y / height_) - std::cos(std::numbers::pi * (y + 1) / height_);
       for (int x = 0; x < width_; ++x)

@@ -1,5 +1,6 @@
 #include "machine/guarded_process.h"
 
+#include "machine/stop_reading.h"
 #include "machine/stopwatch.h"
 #include "vdbeam/error.h"
 
@@ -208,6 +209,13 @@ std::optional<Message> Child::receive(int milliseconds) {
   return message;
 }
 
+/// Throws Stopped where reading is to end.
+void check_stop(const GuardLimits& limits) {
+  if (limits.stop)
+    limits.stop->check();
+  StopReading::check();
+}
+
 std::optional<Message> Child::wait(const GuardLimits& limits) {
   // A queue that suspends the job (SIGSTOP) stops both processes, so a look at the clock that comes
   // late counts as one second: the child could not work meanwhile.
@@ -224,8 +232,7 @@ std::optional<Message> Child::wait(const GuardLimits& limits) {
     reap(WNOHANG);
     if (reaped_)
       return receive(0);
-    if (limits.stop)
-      limits.stop->check();
+    check_stop(limits);
   }
   return receive(0); // the answer may have come since the last look
 }
@@ -312,6 +319,7 @@ const char* remedy_for(int error) {
 
 MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
                        const std::function<void(int)>& work) {
+  check_stop(limits); // a small file would be read before anybody asks
   const Descriptor output = create_memory_file();
   if (output.get() < 0)
     fail_to_start(label, "no file in memory");

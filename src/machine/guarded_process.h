@@ -19,7 +19,7 @@ struct GuardLimits {
   double seconds = 120;     ///< of wall-clock time; time during which both were suspended is free
   double cpu_seconds = 120; ///< of processor time
   std::uint64_t bytes = 0;  ///< of memory on top of what the parent has, and of output
-  const StopToken* stop = nullptr; ///< ends the child and throws Stopped
+  const StopToken* stop = nullptr; ///< ends the child and throws Stopped, as StopReading does
 };
 
 /// Runs `work(descriptor)` in a forked child process and returns what it wrote to the descriptor (a

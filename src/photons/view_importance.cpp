@@ -150,7 +150,7 @@ Vec3f falls_per_cell(const Volume& volume, float reach) {
 } // namespace
 
 CellTables view_importance(const World& world, const Camera& camera, float reach, float floor,
-                           std::uint64_t& rays) {
+                           std::uint64_t& rays, const StopToken* stop) {
   const Medium& medium = world.medium;
   CellTables tables;
   for (const Volume& volume : medium.volumes) {
@@ -165,7 +165,7 @@ CellTables view_importance(const World& world, const Camera& camera, float reach
   tbb::enumerable_thread_specific<DepthProfile> profiles;
   tbb::parallel_for(0, rows, [&](int row) {
     DepthProfile& profile = profiles.local();
-    for (int column = 0; column < columns; ++column) {
+    for (int column = 0; column < columns && !(stop && stop->stopped()); ++column) {
       const EyeRay eye = camera.ray((column + 0.5) * camera.width() / columns,
                                     (row + 0.5) * camera.height() / rows);
       marker.mark(camera_ray(world, camera, eye),

@@ -3,6 +3,7 @@
 #include "geometry/gltf_files.h"
 #include "keys/scene_keys.h"
 #include "machine/memory.h"
+#include "machine/stop_reading.h"
 #include "machine/stopwatch.h"
 #include "prepare/read_volumes.h"
 #include "scene/working_space.h"
@@ -239,6 +240,7 @@ PreparedScenePtr prepare(const Scene& scene, const PreparedScenePtr& previous,
 
 PreparedScenePtr prepare_scene(const Scene& scene, const PreparedScenePtr& previous,
                                const StopToken& stop) {
+  const StopReading reading(stop);
   if (scene.image.working_space == ColorSpace::rec709)
     return prepare(scene, previous, stop);
   return prepare(in_working_space(scene), previous, stop);

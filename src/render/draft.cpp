@@ -1,5 +1,7 @@
 #include "render/draft.h"
 
+#include "choose/choose_estimator.h"
+#include "layers/plane_layers.h"
 #include "machine/stopwatch.h"
 #include "rays/profile_shading.h"
 
@@ -26,6 +28,7 @@ Scene reduced(const Scene& scene, int reduction) {
   const double shape = static_cast<double>(image.width) / image.height;
   image.width = fewer(image.width);
   image.height = fewer(image.height);
+  image.overscan = fewer(image.overscan);
   image.pixel_aspect *= shape * image.height / image.width;
   image.deep = image.cryptomatte = false;
   if (small.render.photons) // the same number per pixel
@@ -33,11 +36,38 @@ Scene reduced(const Scene& scene, int reduction) {
         static_cast<std::uint64_t>(reduction) * static_cast<std::uint64_t>(reduction);
   small.layers.clear();
   small.moments.clear();
-  for (LightSettings& light : small.lights)
-    light.group.clear();
-  for (SurfaceSettings& surface : small.surfaces)
-    surface.group.clear();
   return small;
+}
+
+/// Where pixels of the raster lie in that of the draft, in units of its pixels, whose middles lie
+/// at whole numbers.
+struct RasterMap {
+  double step_x, step_y;
+  int overscan, overscan_of_draft;
+
+  RasterMap(const ImageSettings& full, const ImageSettings& draft)
+      : step_x(static_cast<double>(draft.width) / full.width),
+        step_y(static_cast<double>(draft.height) / full.height), overscan(full.overscan),
+        overscan_of_draft(draft.overscan) {}
+
+  /// Of the place `x` in pixels from the left edge.
+  double x(double x) const { return (x - overscan) * step_x + overscan_of_draft - 0.5; }
+  double y(double y) const { return (y - overscan) * step_y + overscan_of_draft - 0.5; }
+};
+
+/// The pixels of the draft from which those of the window are made.
+PixelRegion window_of_draft(const ImageSettings& full, const ImageSettings& draft,
+                            const PixelRegion& window) {
+  constexpr int margin = 1 + farthest;
+  const RasterMap map(full, draft);
+  const auto from = [&](double place) {
+    return std::max(0, static_cast<int>(std::floor(place)) - margin);
+  };
+  const auto to = [&](double place, int size) {
+    return std::min(size, static_cast<int>(std::ceil(place)) + margin);
+  };
+  return {from(map.x(window.x0)), from(map.y(window.y0)),
+          to(map.x(window.x1), draft.raster_width()), to(map.y(window.y1), draft.raster_height())};
 }
 
 /// The ray through the middle of a pixel, and its profile.
@@ -56,6 +86,17 @@ void add(const PassImage& image, PassImage& sum) {
   add_all(image.background, sum.background);
   add_all(image.emission, sum.emission);
   add_all(image.opacity, sum.opacity);
+  for (std::size_t g = 0; g < sum.groups.size(); ++g)
+    add_all(image.groups[g], sum.groups[g]);
+}
+
+/// What renders the draft's passes. As `auto` does, it leaves photons where they are rare.
+std::unique_ptr<PassRenderer> make_renderer(const Scene& scene, const FrameSetup& setup) {
+  EstimatorType type = scene.render.estimator;
+  if (type == EstimatorType::automatic && why_photons_are_rare(setup.input))
+    type = EstimatorType::path;
+  const EstimatorInput input = type == EstimatorType::path ? setup.path_input() : setup.input;
+  return make_pass_renderer(type, input);
 }
 
 } // namespace
@@ -68,19 +109,25 @@ struct Draft::Seen {
   Rgb radiance;     ///< of that surface
 };
 
-Draft::Draft(const Scene& scene, const PreparedScenePtr& prepared, int reduction,
-             const StopToken& stop)
-    : scene_(reduced(scene, reduction)), reduction_(reduction) {
+bool Draft::can_show(const Scene& scene) {
+  for (const std::string& layer : volume_layer_names(scene))
+    if (asks_for_layer(scene, "volumes") || asks_for_layer(scene, layer))
+      return false;
+  return !scene.image.deep;
+}
+
+Draft::Draft(const Scene& scene, const PreparedScenePtr& prepared, const PixelRegion& window,
+             int reduction, const StopToken& stop)
+    : picture_(scene.image), scene_(reduced(scene, reduction)), reduction_(reduction),
+      window_(window_of_draft(scene.image, scene_.image, window)) {
   const Stopwatch watch;
-  setup_ = std::make_unique<FrameSetup>(
-      scene_, prepared,
-      PixelRegion{0, 0, scene_.image.raster_width(), scene_.image.raster_height()});
+  setup_ = std::make_unique<FrameSetup>(scene_, prepared, window_);
   setup_->input.stop = &stop;
-  const bool path = scene.render.estimator == EstimatorType::path;
-  renderer_ = std::make_unique<FramePasses>(scene.render.estimator,
-                                            path ? setup_->path_input() : setup_->input);
+  renderer_ = make_renderer(scene_, *setup_);
   pilot_seconds_ = watch.seconds();
 }
+
+Draft::~Draft() = default;
 
 bool Draft::add_pass() {
   const Stopwatch watch;
@@ -99,17 +146,17 @@ bool Draft::add_pass() {
   return true;
 }
 
-/// Pixels of the draft.
-std::vector<Draft::Seen> Draft::look_through() const {
+/// Sets the pixels of the draft.
+void Draft::look_through() {
   const EstimatorInput& input = setup_->input;
-  std::vector<Seen> pixels(sum_.direct.size());
+  seen_.assign(sum_.direct.size(), {});
   const float share = 1 / static_cast<float>(passes_);
-  tbb::parallel_for(0, sum_.height, [&](int y) {
+  tbb::parallel_for(window_.y0, window_.y1, [&](int y) {
     DepthProfile profile;
-    for (int x = 0; x < sum_.width; ++x) {
+    for (int x = window_.x0; x < window_.x1; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(sum_.width) +
                             static_cast<std::size_t>(x);
-      Seen& seen = pixels[i];
+      Seen& seen = seen_[i];
       const CameraRay ray = middle_ray(input, x, y, profile);
       const OpacityAndDepth medium = opacity_and_depth(input.world, ray, profile);
       // The opacity of its own rays, unless a surface has made them opaque.
@@ -126,8 +173,27 @@ std::vector<Draft::Seen> Draft::look_through() const {
       }
     }
   });
-  return pixels;
 }
+
+/// A place in the draft, from which pixels as far as `reach` are in its window.
+struct Draft::Place {
+  double x, y;
+
+  /// Calls visit(pixel, dx, dy) for the pixels around, at their distances.
+  template <class Visit>
+  void visit(const PixelRegion& window, int width, int reach, const Visit& visit) const {
+    const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+    for (int j = std::max(window.y0, top - reach + 1); j <= std::min(window.y1 - 1, top + reach);
+         ++j)
+      for (int i = std::max(window.x0, left - reach + 1);
+           i <= std::min(window.x1 - 1, left + reach); ++i)
+        visit(static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(i),
+              std::abs(i - x), std::abs(j - y));
+  }
+
+  static float tent(double d) { return static_cast<float>(std::max(0.0, 1 - d)); }
+};
 
 /// The draft's pixels around a place of the picture, weighted.
 struct Draft::Around {
@@ -136,44 +202,57 @@ struct Draft::Around {
   bool clear = true;  ///< of the medium
 };
 
-Draft::Around Draft::around(const std::vector<Seen>& seen, double x, double y, int surface) const {
+Draft::Around Draft::around(const Place& place, int surface) const {
   Around around;
   float of_surface = 0;
   const int reach = surface >= 0 ? farthest : 1;
-  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-  const auto tent = [](double d) { return static_cast<float>(std::max(0.0, 1 - d)); };
-  for (int j = std::max(0, top - reach + 1); j <= std::min(sum_.height - 1, top + reach); ++j)
-    for (int i = std::max(0, left - reach + 1); i <= std::min(sum_.width - 1, left + reach); ++i) {
-      const Seen& other = seen[static_cast<std::size_t>(j) * static_cast<std::size_t>(sum_.width) +
-                               static_cast<std::size_t>(i)];
-      const double dx = std::abs(i - x), dy = std::abs(j - y);
-      const float near = tent(dx) * tent(dy);
-      around.opaque = around.opaque && other.opacity > 0.999f;
-      around.clear = around.clear && other.opacity == 0;
-      around.mean.opacity += near * other.opacity;
-      around.mean.depth += near * other.depth;
-      around.mean.direct += other.direct * near;
-      around.mean.indirect += other.indirect * near;
-      around.mean.emission += other.emission * near;
-      if (surface >= 0 && other.surface == surface) {
-        const float far = near + 1e-3f * tent(std::max(dx, dy) / (farthest + 1));
-        around.mean.radiance += other.radiance * far;
-        of_surface += far;
-      }
+  place.visit(window_, sum_.width, reach, [&](std::size_t pixel, double dx, double dy) {
+    const Seen& other = seen_[pixel];
+    const float near = Place::tent(dx) * Place::tent(dy);
+    around.opaque = around.opaque && other.opacity > 0.999f;
+    around.clear = around.clear && other.opacity == 0;
+    around.mean.opacity += near * other.opacity;
+    around.mean.depth += near * other.depth;
+    around.mean.direct += other.direct * near;
+    around.mean.indirect += other.indirect * near;
+    around.mean.emission += other.emission * near;
+    if (surface >= 0 && other.surface == surface) {
+      const float far = near + 1e-3f * Place::tent(std::max(dx, dy) / (farthest + 1));
+      around.mean.radiance += other.radiance * far;
+      of_surface += far;
     }
+  });
   if (of_surface > 0)
     around.mean.radiance *= 1 / of_surface;
   return around;
 }
 
-/// One pixel of the picture, where the draft is at (x, y).
-void Draft::enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, double x, double y,
-                    CameraRay ray, std::size_t pixel, DepthProfile& profile,
-                    PassImage& image) const {
-  const Around near = around(seen, x, y, ray.hit ? ray.hit->surface : -1);
+/// Divides the light of a pixel among the groups as the draft's pixels around do.
+void Draft::share_among_groups(const Place& place, std::size_t pixel, PassImage& image) const {
+  Rgb sum;
+  for (std::size_t g = 0; g < image.groups.size(); ++g) {
+    Rgb& light = image.groups[g][pixel];
+    light = {};
+    place.visit(window_, sum_.width, 1, [&](std::size_t other, double dx, double dy) {
+      light += sum_.groups[g][other] * (Place::tent(dx) * Place::tent(dy));
+    });
+    sum += light;
+  }
+  const Rgb total = image.total(pixel);
+  const auto groups = static_cast<float>(image.groups.size());
+  for (std::vector<Rgb>& group : image.groups)
+    for (int c = 0; c < 3; ++c)
+      group[pixel][c] = total[c] * (sum[c] > 0 ? group[pixel][c] / sum[c] : 1 / groups);
+}
+
+/// One pixel of the picture, where the draft is at `place`.
+void Draft::enlarge(const EstimatorInput& full, const Place& place, CameraRay ray,
+                    std::size_t pixel, DepthProfile& profile, PassImage& image) const {
+  const Around near = around(place, ray.hit ? ray.hit->surface : -1);
   const Seen& mean = near.mean;
+  const bool plain = image.coverage.empty() && image.planes.empty();
   float opacity = 1;
-  if (near.opaque) { // there is nothing to be seen behind, and no edge
+  if (near.opaque && plain) { // there is nothing to be seen behind, and no edge
     image.opacity[pixel] = 1;
     image.depth[pixel] = mean.depth / mean.opacity;
   } else {
@@ -189,24 +268,24 @@ void Draft::enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, d
   image.indirect[pixel] = mean.indirect * of_medium;
   if (!image.emission.empty()) // glows where nothing may be opaque
     image.emission[pixel] = mean.emission;
+  if (!image.groups.empty())
+    share_among_groups(place, pixel, image);
 }
 
-PassImage Draft::enlarged(const EstimatorInput& full) const {
-  const std::vector<Seen> seen = look_through();
+PassImage Draft::enlarged(const EstimatorInput& full, const PixelRegion& part) const {
   PassImage image;
-  const Camera& camera = full.camera;
-  image.resize(camera.width(), camera.height(), !full.world.medium.emitters.empty());
-  const double step_x = static_cast<double>(sum_.width) / camera.width(),
-               step_y = static_cast<double>(sum_.height) / camera.height();
-  tbb::parallel_for(full.window.y0, full.window.y1, [&](int y) {
+  image.resize(part.width(), part.height(), !full.world.medium.emitters.empty(),
+               static_cast<int>(sum_.groups.size()), nullptr, full.object_count(),
+               full.plane_count());
+  const RasterMap map(picture_, scene_.image);
+  tbb::parallel_for(part.y0, part.y1, [&](int y) {
     DepthProfile profile;
-    for (int x = full.window.x0; x < full.window.x1; ++x) {
+    for (int x = part.x0; x < part.x1; ++x) {
       const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-          static_cast<std::size_t>(x);
-      const CameraRay ray = camera_ray(full.world, camera, camera.ray(x + 0.5, y + 0.5));
-      enlarge(full, seen, (x + 0.5) * step_x - 0.5, (y + 0.5) * step_y - 0.5, ray, pixel, profile,
-              image);
+          static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(image.width) +
+          static_cast<std::size_t>(x - part.x0);
+      const CameraRay ray = camera_ray(full.world, full.camera, full.camera.ray(x + 0.5, y + 0.5));
+      enlarge(full, {map.x(x + 0.5), map.y(y + 0.5)}, ray, pixel, profile, image);
     }
   });
   return image;

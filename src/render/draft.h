@@ -10,12 +10,19 @@ namespace vdbeam {
 
 /// Renders a whole picture in little time: passes of the scene in fewer pixels, enlarged. The light
 /// of the medium changes slowly per opacity, and that of a surface changes slowly over it, so both
-/// are interpolated; opacity, depth and the lights behind are computed for every pixel of the
-/// picture. A draft leaves out layers, groups, deep samples and motion.
+/// are interpolated, and so are the shares of groups of lights; opacity, depth, the lights behind,
+/// coverage and planes of layers are computed for every pixel of the picture. A draft leaves out
+/// layers of the light of single volumes, deep samples and motion.
 class Draft {
 public:
-  /// In 1 / `reduction` of the pixels each way. Runs the pilots. What is given must outlive this.
-  Draft(const Scene& scene, const PreparedScenePtr& prepared, int reduction, const StopToken& stop);
+  /// Whether a draft can show all that a scene asks for, but for motion.
+  static bool can_show(const Scene& scene);
+
+  /// Of the pixels of `window` in the raster, in 1 / `reduction` of them each way. Runs the pilots.
+  /// What is given must outlive this.
+  Draft(const Scene& scene, const PreparedScenePtr& prepared, const PixelRegion& window,
+        int reduction, const StopToken& stop);
+  ~Draft();
 
   /// False where it was stopped; then nothing was added.
   bool add_pass();
@@ -24,23 +31,29 @@ public:
   double pilot_seconds() const { return pilot_seconds_; }
   double pass_seconds() const { return pass_seconds_; } ///< of the last pass
 
-  /// The mean of the passes in the pixels of `full`, the same scene's input; requires a pass.
-  /// Pixels beyond its window stay empty.
-  PassImage enlarged(const EstimatorInput& full) const;
+  /// Makes the mean of the passes ready to be enlarged; requires a pass.
+  void look_through();
+  /// The mean in a part of the window of `full`, the same scene's input, as an image of that part's
+  /// size. Several threads may ask.
+  PassImage enlarged(const EstimatorInput& full, const PixelRegion& part) const;
 
 private:
   struct Seen;
   struct Around;
-  std::vector<Seen> look_through() const;
-  Around around(const std::vector<Seen>& seen, double x, double y, int surface) const;
-  void enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, double x, double y,
-               CameraRay ray, std::size_t pixel, DepthProfile& profile, PassImage& image) const;
+  struct Place;
+  Around around(const Place& place, int surface) const;
+  void enlarge(const EstimatorInput& full, const Place& place, CameraRay ray, std::size_t pixel,
+               DepthProfile& profile, PassImage& image) const;
+  void share_among_groups(const Place& place, std::size_t pixel, PassImage& image) const;
 
-  Scene scene_;
+  ImageSettings picture_; ///< that is enlarged to
+  Scene scene_;           ///< of the draft
   int reduction_;
+  PixelRegion window_; ///< of the draft
   std::unique_ptr<FrameSetup> setup_;
   std::unique_ptr<PassRenderer> renderer_;
   PassImage sum_;
+  std::vector<Seen> seen_; ///< per pixel
   int passes_ = 0;
   double pilot_seconds_ = 0, pass_seconds_ = 0;
 };

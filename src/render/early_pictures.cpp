@@ -1,4 +1,4 @@
-#include "lights/light_groups.h"
+#include "render/develop_bands.h"
 #include "render/pass_loop.h"
 #include "render/pass_window.h"
 #include "render/quick_look.h"
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 // Pictures that there are before the first pass: quick looks and drafts.
 
@@ -30,20 +31,29 @@ constexpr double pilot_over_draft = 2.5, pilot_of_next_draft = 1.5, enlarging = 
 
 } // namespace
 
-/// Develops a picture that is no pass, by way of the film that has none yet.
-void PassLoop::take_picture(PassImage& image) {
-  if (!whole_)
-    image = cut_out(image, window_);
-  clamp(image);
-  film_.add(image);
-  develop();
+/// Develops what is no pass, and enters no film.
+void PassLoop::take_picture(const std::function<PassImage(const PixelRegion&)>& image_of) {
+  std::mutex mutex;
+  const auto part = [&](const PixelRegion& region) {
+    PassImage image = image_of(region);
+    const std::scoped_lock lock(mutex);
+    clamp(image);
+    return image;
+  };
+  std::uint64_t invalid = 0;
+  result_.image = develop_bands(
+      window_, part, [&](int width, int height) { return make_film(width, height); }, scene_.layers,
+      invalid);
+  finish_image();
+  if (invalid > 0)
+    note(fmt::format("{} pixel values were not finite and count as 0", invalid));
 }
 
 /// Renders a quick look into the result's image.
 void PassLoop::take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image) {
   input.stop = &stop;
   fill_with_quick_look(input, image);
-  take_picture(image);
+  take_picture([&](const PixelRegion& part) { return cut_out(image, part); });
 }
 
 /// Shows the caller what `take` puts into the result's image, and forgets it.
@@ -52,7 +62,6 @@ void PassLoop::show(const std::function<void()>& take) {
   result_.quick_look = true;
   take();
   attempt([&] { hooks_.on_quick_look(result_); });
-  replace_film();
   result_.statistics = before;
   result_.quick_look = false;
   result_.image = {};
@@ -67,19 +76,17 @@ void PassLoop::show_quick_look(EstimatorInput input) {
   show([&] { take_quick_look(input, soon, image); });
 }
 
-/// Drafts have no layers of their own, and no part of a picture is worth one.
 bool PassLoop::may_draft() const {
-  const bool plain = scene_.layers.empty() && light_group_names(scene_).empty() &&
-                     !scene_.image.deep && !scene_.image.cryptomatte && scene_.image.overscan == 0;
-  return plain && whole_ && film_.passes() == 0 && !frame_.pass_range && !stop_.stopped();
+  return Draft::can_show(scene_) && film_.passes() == 0 && !frame_.pass_range && !stop_.stopped();
 }
 
 /// 1 where the first pass is likely to be finished in time.
 int PassLoop::affordable_reduction() const {
-  const double left = limit_seconds() - seconds(), pilot = draft_->pilot_seconds();
+  const double pilot = draft_->pilot_seconds();
   const double pass = draft_->pass_seconds() * draft_->reduction() * draft_->reduction();
-  if (pilot_over_draft * pilot + pass <= left)
+  if (pilot_over_draft * pilot + pass <= limit_seconds() - seconds())
     return 1;
+  const double left = limit_seconds(Packing::quick) - seconds();
   for (int reduction = least_reduction; reduction < draft_->reduction(); ++reduction)
     if (pilot_of_next_draft * pilot + pass / (reduction * reduction) + enlarging * pass <= left)
       return reduction;
@@ -88,34 +95,33 @@ int PassLoop::affordable_reduction() const {
 
 bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& full) {
   const bool limited = std::isfinite(limit_seconds());
-  const double width = scene_.image.width;
-  const bool shown = hooks_.on_quick_look && width * scene_.image.height >= worth_drafting;
-  if (!may_draft() || (!limited && !shown))
-    return false;
+  const double width = window_.width();
+  const bool shown = hooks_.on_quick_look && width * window_.height() >= worth_drafting;
   const auto reduction = static_cast<int>(std::lround(width / draft_width));
-  draft_ = std::make_unique<Draft>(
-      scene_, prepared, std::clamp(reduction, least_reduction, greatest_reduction), stop_);
+  if (!may_draft() || reduction < least_reduction || (!limited && !shown))
+    return false;
+  set_deadline(Packing::quick);
+  draft_ = std::make_unique<Draft>(scene_, prepared, window_,
+                                   std::min(reduction, greatest_reduction), stop_);
   if (!draft_->add_pass()) {
     draft_.reset();
-    return false;
+    return false; // and there is no time for a pass
   }
   const int affordable = limited ? affordable_reduction() : 1;
   if (affordable == 1) {
     if (shown)
-      show([&] {
-        PassImage image = draft_->enlarged(full);
-        take_picture(image);
-      });
+      show([&] { take_enlarged(full); });
+    set_deadline();
     return false;
   }
   if (affordable < draft_->reduction()) {
-    auto finer = std::make_unique<Draft>(scene_, prepared, affordable, stop_);
+    auto finer = std::make_unique<Draft>(scene_, prepared, window_, affordable, stop_);
     if (finer->add_pass())
       draft_ = std::move(finer);
   }
   const double pass = draft_->pass_seconds();
   const double end = enlarging * pass * draft_->reduction() * draft_->reduction();
-  while (seconds() + pass + end <= limit_seconds() && draft_->add_pass())
+  while (seconds() + pass + end <= limit_seconds(Packing::quick) && draft_->add_pass())
     continue;
   stop(stop_.requested() ? "stop" : "time");
   take_draft(full);
@@ -129,15 +135,21 @@ void PassLoop::take_early_picture(const EstimatorInput& quick_look) {
   StopToken soon;
   soon.set_deadline(Clock::now() + quick_look_time);
   take_quick_look(quick_look, soon, image_);
+  if (deep_layout_) // without samples
+    result_.deep = DeepFilm(window_layout()).develop(1, window_.width(), window_.height());
   result_.quick_look = true;
   // For the report; the program has words of its own for it.
   result_.notes.emplace_back("no pass was finished: the image is a quick look, for viewing only");
 }
 
+void PassLoop::take_enlarged(const EstimatorInput& full) {
+  draft_->look_through();
+  take_picture([&](const PixelRegion& part) { return draft_->enlarged(full, part); });
+}
+
 /// Makes the draft the frame's picture.
 void PassLoop::take_draft(const EstimatorInput& full) {
-  image_ = draft_->enlarged(full);
-  take_picture(image_);
+  take_enlarged(full);
   result_.draft = draft_->reduction();
   result_.quick_look = result_.stopped_by == "stop";
   note(fmt::format("there was no time for a pass: the image is a draft, {} at 1/{} of the "

@@ -4,6 +4,7 @@
 #include "film/layers.h"
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
+#include "machine/threads.h"
 #include "rays/make_deep_layout.h"
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"
@@ -55,12 +56,21 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
   set_deadline();
 }
 
+/// Of the window.
 Film PassLoop::make_film() const {
   std::optional<DeepFilm> deep;
   if (deep_layout_)
-    deep.emplace(cut_out(*deep_layout_, scene_.image.raster_width(), window_));
-  return {window_.width(),
-          window_.height(),
+    deep.emplace(window_layout());
+  return make_film(window_.width(), window_.height(), std::move(deep));
+}
+
+DeepLayout PassLoop::window_layout() const {
+  return cut_out(*deep_layout_, scene_.image.raster_width(), window_);
+}
+
+Film PassLoop::make_film(int width, int height, std::optional<DeepFilm> deep) const {
+  return {width,
+          height,
           scene_.glows(),
           light_group_names(scene_),
           std::move(deep),
@@ -84,14 +94,22 @@ void PassLoop::gather_deep(const DeepLayout& layout) {
         fmt::format("{}: holds other deep samples; delete it", frame_.checkpoint.path));
 }
 
-/// Rendering time [s] that the passes may take; infinite without a limit.
-double PassLoop::limit_seconds() const {
-  return scene_.render.time && !frame_.pass_range ? *scene_.render.time - frame_.seconds_used
-                                                  : std::numeric_limits<double>::infinity();
+/// Rendering time [s] after which the picture is to be developed and written, for its time counts
+/// too; infinite without a limit.
+double PassLoop::limit_seconds(Packing packing) const {
+  // Processor time [ns] per pixel and channel, measured: to take new memory, develop, make halves
+  // and pack them.
+  const double per_value = packing == Packing::thorough ? 60 : 15;
+  const double values = static_cast<double>(film_.values_per_pixel()) * window_.width() *
+                        static_cast<double>(window_.height());
+  return scene_.render.time && !frame_.pass_range
+             ? *scene_.render.time - frame_.seconds_used -
+                   1e-9 * per_value * values / thread_count(scene_.render)
+             : std::numeric_limits<double>::infinity();
 }
 
-void PassLoop::set_deadline() {
-  stop_.set_deadline(start_, limit_seconds() - earlier_seconds_);
+void PassLoop::set_deadline(Packing packing) {
+  stop_.set_deadline(start_, limit_seconds(packing) - earlier_seconds_);
 }
 
 double PassLoop::seconds() const {
@@ -118,7 +136,7 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
     develop();
   }
   const int times = shutter_times(scene_.camera);
-  if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() < times)
+  if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() > 0 && film_.passes() < times)
     note(fmt::format(
         "motion blur has {} only, one per pass, and may show steps; render at least {} passes",
         count_text(static_cast<std::uint64_t>(film_.passes()), "motion sample"), times));
@@ -323,8 +341,13 @@ void PassLoop::write_checkpoint() {
 
 void PassLoop::develop() {
   result_.image = develop_layers(film_, scene_.layers);
-  result_.image.primaries = chromaticities_of(scene_.image.working_space);
   result_.deep = film_.develop_deep();
+  finish_image();
+}
+
+/// Says what the colours are, and where the pixels lie.
+void PassLoop::finish_image() {
+  result_.image.primaries = chromaticities_of(scene_.image.working_space);
   if (!whole_ || scene_.image.overscan > 0)
     place(result_.image);
 }

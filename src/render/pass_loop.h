@@ -50,23 +50,29 @@ private:
   void attempt(const std::function<void()>& write);
   void write_checkpoint();
   Film make_film() const;
+  Film make_film(int width, int height, std::optional<DeepFilm> deep = std::nullopt) const;
+  DeepLayout window_layout() const;
   void replace_film();
   void develop();
+  void finish_image();
   void place(Image& image) const;
   FilmFileInfo file_info() const;
   int least_passes() const;
   bool time_is_over() const;
-  void set_deadline();
+  /// How well the picture is packed in the end: drafts and quick looks in little time.
+  enum class Packing { quick, thorough };
+  double limit_seconds(Packing packing = Packing::thorough) const;
+  void set_deadline(Packing packing = Packing::thorough);
   void render_pass(Shutter& shutter);
   std::optional<Shutter::Renderer> renderer_of_pass(Shutter& shutter);
   void take_quick_look(EstimatorInput input, const StopToken& stop, PassImage& image);
-  void take_picture(PassImage& image);
+  void take_picture(const std::function<PassImage(const PixelRegion&)>& image_of);
+  void take_enlarged(const EstimatorInput& full);
   void take_draft(const EstimatorInput& full);
   void show(const std::function<void()>& take);
   void take_early_picture(const EstimatorInput& quick_look);
   bool may_draft() const;
   int affordable_reduction() const;
-  double limit_seconds() const;
   void note(const std::string& line);
   double seconds() const;
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace vdbeam {
 namespace {
@@ -108,7 +109,7 @@ PictureFacts picture_facts(const Image& image, const Sight& sight) {
   const auto count = static_cast<double>(pixels);
   facts.black = static_cast<double>(black) / count;
   facts.over_one = static_cast<double>(over_one) / count;
-  facts.opacity = opacity / count;
+  facts.opacity = alpha ? opacity / count : std::numeric_limits<double>::quiet_NaN();
   return facts;
 }
 

@@ -132,7 +132,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   if (!scene.layers.empty())
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);
-  if (result.quick_look) // its blocks are packed in no time, and its time is over
+  if (result.quick_look || result.draft > 0) // is packed in no time, for its time is over
     image.metadata["vdbeam:compression"] = enum_name(Compression::rle);
   else if (scene.image.compression != Compression::zip)
     image.metadata["vdbeam:compression"] = enum_name(scene.image.compression);

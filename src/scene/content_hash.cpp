@@ -1,6 +1,7 @@
 #include "scene/content_hash.h"
 
 #include "machine/input_file.h"
+#include "machine/stop_reading.h"
 
 #include <algorithm>
 #include <ctime>
@@ -36,8 +37,10 @@ std::uint64_t hash_contents(const std::string& path) {
   const InputFile file = open_input_file(path, EmptyFile::accepted);
   ContentHash hash;
   std::vector<char> buffer(1 << 20);
-  while (const std::size_t got = read_bytes(file, path, buffer.data(), buffer.size()))
+  while (const std::size_t got = read_bytes(file, path, buffer.data(), buffer.size())) {
     hash.add(buffer.data(), got);
+    StopReading::check();
+  }
   return hash.value();
 }
 

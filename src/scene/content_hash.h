@@ -26,7 +26,7 @@ private:
   std::unique_ptr<XXH3_state_s, Delete> state_;
 };
 
-/// Hash of a file's bytes. Throws InputError where it cannot be read.
+/// Hash of a file's bytes. Throws InputError where it cannot be read, and Stopped (StopReading).
 std::uint64_t hash_file(const std::string& path);
 
 } // namespace vdbeam

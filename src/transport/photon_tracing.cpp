@@ -381,14 +381,14 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
                         tracers[chunk].trace(chunk * paths_per_chunk,
                                              std::min(paths, (chunk + 1) * paths_per_chunk), first);
                     });
-  std::uint64_t collisions = 0;
-  for (const PathTracer& tracer : tracers)
-    collisions += tracer.collisions;
+  for (const PathTracer& tracer : tracers) // in whole numbers, so that their order is no matter
+    pass.mean_collisions += static_cast<double>(tracer.collisions);
+  pass.mean_collisions /= static_cast<double>(std::max<std::uint64_t>(paths, 1));
+  if (settings.stop && settings.stop->stopped())
+    return pass; // what there is is of no use, and there may be much of it
   const int groups = world.lights.group_count();
   pass.photons = joined(tracers, &PathTracer::photons, groups);
   pass.surface_photons = joined(tracers, &PathTracer::surface_photons, groups);
-  pass.mean_collisions =
-      paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
   return pass;
 }
 

@@ -62,6 +62,8 @@ struct TracedPhotons {
 /// an unbiased sample of the fluence, whose weight is bounded by the local majorant
 /// (docs/theory/beam.md). Scatter storage: at every real collision the scattered flux (Jensen and
 /// Christensen 1998).
+///
+/// Where `stop` asked to end meanwhile, there are no photons.
 TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settings);
 
 } // namespace vdbeam

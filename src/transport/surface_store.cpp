@@ -4,6 +4,7 @@
 #include "geometry/gltf_files.h"
 #include "geometry/mesh_reader.h"
 #include "machine/input_file.h"
+#include "machine/stop_reading.h"
 
 #include <fmt/format.h>
 
@@ -43,7 +44,9 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
     ++meshes_read_;
     made.center = mesh.center;
     made.notes = std::move(mesh.notes);
+    StopReading::check();
     complete_normals(mesh, surface.smooth_angle);
+    StopReading::check();
     made.shape = make_mesh_shape(std::move(mesh));
   } else {
     made.shape = make_simple_shape(surface.shape);

@@ -18,6 +18,8 @@ CLOUD = str(DATA / "cloud.vdb")
 SMALL = ["--resolution", "32x18", "--set", "render.photons=2000"]
 LONG_DEEP = ["--resolution", "2048x1152", "--set", "image.deep=true", "--set", "image.deep_alpha=0.02"]
 LONG_SAMPLES = ["--resolution", "16x16", "--set", "render.direct_samples=1000000000"]
+SLOW_VOLUME = ["--set", "volume.0.interpolation=cubic", "--set", "volume.0.noise_amplitude=0.05", "--set",
+               "volume.0.noise_octaves=12", "--resolution", "16x16"]
 PATIENCE = 60  # seconds, of a stage that would take many minutes
 
 
@@ -72,9 +74,7 @@ class Interruption(unittest.TestCase):
 
     def test_time_limit_holds_while_volumes_are_prepared(self):
         """Cubic interpolation and 12 octaves of noise: minutes of work before the first pass."""
-        slow = ["--set", "volume.0.interpolation=cubic", "--set", "volume.0.noise_amplitude=0.05", "--set",
-                "volume.0.noise_octaves=12", "--resolution", "16x16"]
-        result = subprocess.run(self.words("--time", "1", *slow), cwd=self.folder, capture_output=True,
+        result = subprocess.run(self.words("--time", "1", *SLOW_VOLUME), cwd=self.folder, capture_output=True,
                                 timeout=PATIENCE, check=False)
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn(b"the time limit of 1.0s ended the frame while its files were read", result.stderr)
@@ -157,6 +157,28 @@ class Interruption(unittest.TestCase):
         log = self.wait_for_line(child, b"still working")
         child.kill()
         self.assertIn(b"no pass yet, still working\n", log)
+
+    def test_slow_reading_is_no_silence_slow(self):
+        child = self.start("--passes", "1", *SLOW_VOLUME)
+        log = self.wait_for_line(child, b"still working")
+        child.kill()
+        self.assertIn(b"reading the next frame, still working\n", log)
+
+    def test_time_limit_holds_while_meshes_are_read(self):
+        """A mesh file whose reading takes seconds, and a limit that leaves it half of one."""
+        side = 700
+        with open(self.folder / "large.obj", "w", encoding="ascii") as mesh:
+            for y in range(side):
+                mesh.write("".join(f"v {x} {x * y % 7} {y}\n" for x in range(side)))
+            for y in range(side - 1):
+                mesh.write("".join(f"f {y * side + x + 1} {y * side + x + 2} {y * side + x + side + 1}\n"
+                                   for x in range(side - 1)))
+        (self.folder / "m.toml").write_text('[[mesh]]\nfile = "large.obj"\n[[light]]\ntype = "sky"\n')
+        result = subprocess.run([VDBEAM, "render", "m.toml", "-o", "o.exr", "--time", "0.01"], cwd=self.folder,
+                                capture_output=True, timeout=PATIENCE, check=False)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn(b"ended the frame while its files were read", result.stderr)
+        self.assertFalse((self.folder / "o.exr").exists())
 
 
 if __name__ == "__main__":

@@ -77,6 +77,16 @@ TEST(ViewImportance, FallsBesideTheView) {
   }
 }
 
+TEST(ViewImportance, LooksAtTheClock) {
+  View view(noisy_cube(60));
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  const CellTables tables =
+      view_importance(view.world, view.camera, 0.02f, least, view.rays, &stop);
+  for (const float value : tables[0])
+    ASSERT_EQ(value, least); // as where no ray has come
+}
+
 TEST(ViewImportance, IsTheSameForAnyThreads) {
   const MemoryScene scene = noisy_cube(20);
   std::vector<CellTables> tables;

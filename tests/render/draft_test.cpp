@@ -1,12 +1,15 @@
 // A draft is the picture in fewer pixels: as bright as the picture, with its opacity and depth.
 #include "render/draft.h"
 
+#include "layers/scene_objects.h"
 #include "support/statistics.h"
 #include "vdbeam/scene_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace vdbeam {
@@ -17,6 +20,10 @@ Scene cloud_over_ground(const std::string& width, const std::string& height) {
   return load_scene(
       VDBEAM_SOURCE_DIR "/data/cloud_over_ground.toml", 1,
       {"image.width=" + width, "image.height=" + height, "render.estimator=\"auto\""});
+}
+
+PixelRegion whole(const Scene& scene) {
+  return {0, 0, scene.image.raster_width(), scene.image.raster_height()};
 }
 
 double mean(const std::vector<float>& values) {
@@ -31,14 +38,15 @@ TEST(Draft, IsAsBrightAsThePicture) {
   const PreparedScenePtr prepared = prepare_scene(scene);
   scene.render.passes = 4;
   const RenderResult full = render(scene, prepared, {}, {});
-  const FrameSetup setup(scene, prepared, {0, 0, scene.image.width, scene.image.height});
+  const FrameSetup setup(scene, prepared, whole(scene));
   const StopToken stop;
   for (const int reduction : {2, 3, 5}) {
-    Draft draft(scene, prepared, reduction, stop);
+    Draft draft(scene, prepared, whole(scene), reduction, stop);
     ASSERT_TRUE(draft.add_pass());
     ASSERT_TRUE(draft.add_pass());
     EXPECT_EQ(draft.passes(), 2);
-    const PassImage image = draft.enlarged(setup.input);
+    draft.look_through();
+    const PassImage image = draft.enlarged(setup.input, whole(scene));
     ASSERT_EQ(image.width, scene.image.width);
     std::vector<float> red;
     for (std::size_t i = 0; i < image.direct.size(); ++i)
@@ -50,12 +58,110 @@ TEST(Draft, IsAsBrightAsThePicture) {
   }
 }
 
+/// One pass of a draft, enlarged over a part of the picture.
+PassImage drafted(const Scene& scene, const PixelRegion& part, int reduction = 3) {
+  const PreparedScenePtr prepared = prepare_scene(scene);
+  const FrameSetup setup(scene, prepared, part);
+  const StopToken stop;
+  Draft draft(scene, prepared, part, reduction, stop);
+  EXPECT_TRUE(draft.add_pass());
+  draft.look_through();
+  return draft.enlarged(setup.input, part);
+}
+
+std::vector<float> red_of(const PassImage& image) {
+  std::vector<float> red;
+  for (std::size_t i = 0; i < image.direct.size(); ++i)
+    red.push_back(image.total(i).x);
+  return red;
+}
+
+TEST(Draft, SharesItsLightAmongTheGroups) {
+  Scene scene = cloud_over_ground("96", "64");
+  scene.lights[0].group = "key";
+  const PassImage image = drafted(scene, whole(scene));
+  ASSERT_EQ(image.groups.size(), 2u); // "key" and the rest
+  for (std::size_t i = 0; i < image.direct.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(image.groups[0][i][c] + image.groups[1][i][c], image.total(i)[c],
+                  1e-4f * (1 + image.total(i)[c]));
+  scene.render.passes = 2;
+  const RenderResult full = render(scene);
+  std::vector<float> key;
+  for (const Rgb& light : image.groups[0])
+    key.push_back(light.x);
+  const double wanted = mean(full.image.find("light_key.R")->data);
+  EXPECT_NEAR(mean(key), wanted, 0.1 * wanted);
+}
+
+TEST(Draft, KnowsWhatEachObjectCovers) {
+  Scene scene = cloud_over_ground("96", "64");
+  scene.image.cryptomatte = true;
+  scene.layers = {{"alpha"}, {"position"}};
+  ASSERT_TRUE(Draft::can_show(scene));
+  const PassImage image = drafted(scene, whole(scene));
+  ASSERT_EQ(image.coverage.size(), scene_objects(scene).names.size());
+  ASSERT_EQ(image.planes.size(), 3u);
+  for (std::size_t i = 0; i < image.opacity.size(); ++i) {
+    float covered = 0;
+    for (const std::vector<float>& object : image.coverage)
+      covered += object[i];
+    ASSERT_NEAR(covered, image.opacity[i], 1e-3f);
+  }
+  scene.layers = {{"volumes"}};
+  EXPECT_FALSE(Draft::can_show(scene)); // it has no light of single volumes
+  scene.layers.clear();
+  scene.image.deep = true;
+  EXPECT_FALSE(Draft::can_show(scene));
+}
+
+/// A part of the picture, beyond its border too, is as it is in the whole picture.
+TEST(Draft, ShowsRegionsAndOverscan) {
+  Scene scene = cloud_over_ground("96", "64");
+  scene.image.overscan = 12;
+  const PassImage all = drafted(scene, whole(scene));
+  const PixelRegion corner{0, 40, 60, 88};
+  const PassImage part = drafted(scene, corner);
+  ASSERT_EQ(part.width, 60);
+  ASSERT_EQ(part.height, 48);
+  std::vector<float> of_all, opacity_of_all;
+  const std::vector<float> red = red_of(all);
+  for (int y = corner.y0; y < corner.y1; ++y)
+    for (int x = corner.x0; x < corner.x1; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) +
+                            static_cast<std::size_t>(x);
+      of_all.push_back(red[i]);
+      opacity_of_all.push_back(all.opacity[i]);
+    }
+  EXPECT_NEAR(mean(red_of(part)), mean(of_all), 0.1 * mean(of_all));
+  EXPECT_NEAR(mean(part.opacity), mean(opacity_of_all), 0.01);
+  Scene larger = scene; // the same view in pixels of its own
+  larger.image.width += 24;
+  larger.image.height += 24;
+  larger.image.overscan = 0;
+  larger.camera.fov = 2 *
+                      std::atan(std::tan(larger.camera.fov * std::numbers::pi / 360) *
+                                larger.image.height / scene.image.height) *
+                      180 / std::numbers::pi;
+  const PassImage alike = drafted(larger, whole(larger));
+  EXPECT_NEAR(mean(alike.opacity), mean(all.opacity), 0.02);
+  EXPECT_NEAR(mean(red_of(alike)), mean(red), 0.1 * mean(red));
+}
+
+/// Photons would take minutes there, as `auto` knows before it runs the pilot of beam.
+TEST(Draft, TakesPathWherePhotonsAreRare) {
+  Scene scene = cloud_over_ground("48", "32");
+  scene.volumes[0].extinction = 1e7;
+  const PassImage image = drafted(scene, whole(scene));
+  EXPECT_GT(mean(red_of(image)), 0);
+}
+
 TEST(Draft, StopsWhereItIsAsked) {
   const Scene scene = cloud_over_ground("96", "64");
   const PreparedScenePtr prepared = prepare_scene(scene);
   std::atomic<bool> request = true;
   const StopToken stop(&request);
-  Draft draft(scene, prepared, 4, stop);
+  Draft draft(scene, prepared, whole(scene), 4, stop);
   EXPECT_FALSE(draft.add_pass());
   EXPECT_EQ(draft.passes(), 0);
 }

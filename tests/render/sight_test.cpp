@@ -1,3 +1,5 @@
+#include "render/sight.h"
+
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
 
@@ -54,6 +56,17 @@ TEST(Sight, NotesBlackAndGlaringPictures) {
       << notes_of(bright);
   const auto usual = render_with({});
   EXPECT_EQ(notes_of(usual), "");
+}
+
+/// Which layers a file has says nothing of the opacity.
+TEST(Sight, KnowsNoOpacityWithoutAlpha) {
+  Image image;
+  image.width = image.height = 1;
+  for (const char* name : {"R", "G", "B"})
+    image.channels.push_back({name, {0.5f}});
+  EXPECT_TRUE(std::isnan(picture_facts(image, {}).opacity));
+  image.channels.push_back({"A", {0.25f}});
+  EXPECT_EQ(picture_facts(image, {}).opacity, 0.25);
 }
 
 } // namespace

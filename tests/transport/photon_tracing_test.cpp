@@ -207,5 +207,21 @@ TEST(PhotonTracing, NothingToDo) {
   EXPECT_EQ(trace_photons(empty.world(), pass).photons.size(), 0u);
 }
 
+/// What there is would be of no use, and to put it together takes long.
+TEST(PhotonTracing, LeavesNoPhotonsWhereItWasStopped) {
+  const MemoryScene scene = [] {
+    MemoryScene made = cube(5, Rgb(0.9f));
+    made.add_light(LightType::distant).direction = {0, 0, -1};
+    return made;
+  }();
+  const World world = scene.world();
+  PhotonPassSettings pass = settings(1000, 0);
+  const std::atomic<bool> yes = true;
+  const StopToken stop(&yes);
+  EXPECT_GT(trace_photons(world, pass).photons.size(), 0u);
+  pass.stop = &stop;
+  EXPECT_EQ(trace_photons(world, pass).photons.size(), 0u);
+}
+
 } // namespace
 } // namespace vdbeam

@@ -63,10 +63,11 @@ class MemoryLimit:
 
 
 class Result:
-    """What a command did: its exit code (below 0: the signal that ended it), output, seconds and peak of memory."""
+    """What a command did: its exit code (below 0: the signal that ended it), output, seconds and peak of memory. `ended`:
+    a SIGTERM ended it that was sent, by which a command dies that has nothing to save."""
 
-    def __init__(self, code, text, errors, seconds, peak, hung):
-        self.code, self.text, self.errors = code, text, errors
+    def __init__(self, code, text, errors, seconds, peak, hung, ended=False):
+        self.code, self.text, self.errors, self.ended = code, text, errors, ended
         self.seconds, self.peak, self.hung = seconds, peak, hung
 
 
@@ -83,7 +84,8 @@ def run(words, folder, limit=None, patience=None, environment=None):
         descriptor = os.pidfd_open(process.pid)
         end.register(descriptor, select.POLLIN)
         ready = end.poll(1000 * (patience or SECONDS))
-        if not ready and patience:
+        sent = not ready and patience
+        if sent:
             process.send_signal(signal.SIGTERM)
             ready = end.poll(1000 * SECONDS)
         waited = SECONDS
@@ -98,7 +100,8 @@ def run(words, folder, limit=None, patience=None, environment=None):
         for stream in (output, errors):
             stream.seek(0)
         peak = limit.peak() if by_group else 1024 * usage.ru_maxrss
-        return Result(code, output.read(1 << 20), errors.read(1 << 20), time.monotonic() - begin, peak, not ready)
+        ended = bool(sent) and code == -signal.SIGTERM and words[0] != "render"
+        return Result(code, output.read(1 << 20), errors.read(1 << 20), time.monotonic() - begin, peak, not ready, ended)
 
 
 def stat_fields(process):
@@ -126,7 +129,7 @@ def complaint(result, limit=MEMORY):
         return f"hang: still running after {result.seconds:.0f} s"
     if result.peak >= limit - (8 << 20):
         return f"memory: {result.peak / 2**30:.2f} GiB, exit code {result.code}"
-    if result.code not in (0, 2, 3, *INTERRUPTED):
+    if result.code not in (0, 2, 3, *INTERRUPTED) and not result.ended:
         return f"exit code {result.code}: {text[-300:]!r}"
     if "internal error" in text:
         return f"internal error: {text[-300:]!r}"
