@@ -16,11 +16,27 @@ void add_placement(KeyTable& table, std::array<double, 12> S::*transform) {
 
 void add_volume(KeyTable& table) {
   using V = VolumeSettings;
+  using F = FogSettings;
   table.section(SceneSection::volume);
+  table.add(
+      "shape", &F::shape,
+      "what its density comes from: a file; or without one, in the box from box_lower to "
+      "box_upper: 1 everywhere; 1 in the sphere or ellipsoid that touches its faces; 1 at its "
+      "bottom and falling exponentially with y");
   table.add("file", &V::file, "the VDB; ####, %04d or $F4 stands for the frame number")
       .file(InputKind::volume)
+      .types({"file"})
       .required();
-  table.add("density", &V::density, "name of the density grid").always_written();
+  table.add("density", &V::density, "name of the density grid").types({"file"}).always_written();
+  table.add("scale_height", &F::scale_height, "height over which the density falls to 1/e")
+      .unit("world")
+      .types({"height"})
+      .above(0);
+  table
+      .add("least_density", &F::least_density,
+           "above the height where the density is less, there is none")
+      .types({"height"})
+      .inside(0, 1);
   table.add("extinction", &V::extinction, "extinction coefficient where the density is 1")
       .unit("1 / world")
       .at_least(0)
@@ -30,28 +46,46 @@ void add_volume(KeyTable& table) {
   table.add("albedo", &V::albedo, "share of the extinction that scatters, per channel")
       .within(0, 1)
       .always_written();
-  table.add("color_grid", &V::color_grid,
-            R"(grid of colours that multiply the albedo, or three of numbers ("r,g,b"); "auto": )"
-            R"("Cd", "color" or "albedo"; "": none)");
+  table
+      .add("color_grid", &V::color_grid,
+           R"(grid of colours that multiply the albedo, or three of numbers ("r,g,b"); "auto": )"
+           R"("Cd", "color" or "albedo"; "": none)")
+      .types({"file"});
   table.add("name", &V::name, R"(its name in Cryptomatte; "": volume0, volume1, ...)")
       .keeps_world();
   add_placement(table, &V::transform);
 
-  table.add("add", &V::add, R"(names of grids that are added to the density, "a, b"; "": none)");
-  table.add("mask", &V::mask,
-            R"(names of grids whose values multiply the density, "a, b"; "": none)");
+  table.add("add", &V::add, R"(names of grids that are added to the density, "a, b"; "": none)")
+      .types({"file"});
+  table
+      .add("mask", &V::mask,
+           R"(names of grids whose values multiply the density, "a, b"; "": none)")
+      .types({"file"});
   using D = DensityRemap;
-  table.add("density_scale", &D::scale, "the density's values are multiplied by this");
-  table.add("density_offset", &D::offset, "then this is added to values above 0");
-  table.add("density_min", &D::least, "then smaller values become 0").at_least(0);
-  table.add("density_max", &D::most, "then larger values become this").above(0).absent("none");
-  table.add("density_power", &D::power, "then values are raised to this power").above(0);
-  table.add("density_curve", &D::curve,
-            R"(then values go through this curve, "x:y x:y ...", linear in between; "": none)");
-  table.add(
-      "interpolation", &V::interpolation,
-      "how density and emission are interpolated between voxels; cubic takes ten times the memory");
-  table.add("box_lower", &V::box_lower, "lower corner of a box outside of which nothing is seen")
+  table.add("density_scale", &D::scale, "the density's values are multiplied by this")
+      .types({"file"});
+  table.add("density_offset", &D::offset, "then this is added to values above 0").types({"file"});
+  table.add("density_min", &D::least, "then smaller values become 0").at_least(0).types({"file"});
+  table.add("density_max", &D::most, "then larger values become this")
+      .above(0)
+      .absent("none")
+      .types({"file"});
+  table.add("density_power", &D::power, "then values are raised to this power")
+      .above(0)
+      .types({"file"});
+  table
+      .add("density_curve", &D::curve,
+           R"(then values go through this curve, "x:y x:y ...", linear in between; "": none)")
+      .types({"file"});
+  table
+      .add("interpolation", &V::interpolation,
+           "how density and emission are interpolated between voxels; cubic takes ten times the "
+           "memory")
+      .types({"file"});
+  table
+      .add("box_lower", &V::box_lower,
+           "lower corner of a box outside of which nothing is seen; of a shape "
+           "without a file its box, before it is placed, from -1 to 1 where there is none")
       .unit("world")
       .absent("none");
   table.add("box_upper", &V::box_upper, "its upper corner").unit("world").absent("none");
@@ -70,11 +104,14 @@ void add_volume(KeyTable& table) {
   table.add("noise_seed", &N::seed, "another seed is another noise").at_least(0);
 
   using W = VelocitySettings;
-  table.add("velocity", &W::grid,
-            R"(grid of the velocity, or three of its components ("vx,vy,vz"); "auto", "none")");
-  table.add("velocity_fps", &W::fps, "frames in a second of the velocity").above(0);
-  table.add("velocity_scale", &W::scale, "factor of the velocity");
-  table.add("velocity_units", &W::units, "what velocities are measured in, per second");
+  table
+      .add("velocity", &W::grid,
+           R"(grid of the velocity, or three of its components ("vx,vy,vz"); "auto", "none")")
+      .types({"file"});
+  table.add("velocity_fps", &W::fps, "frames in a second of the velocity").above(0).types({"file"});
+  table.add("velocity_scale", &W::scale, "factor of the velocity").types({"file"});
+  table.add("velocity_units", &W::units, "what velocities are measured in, per second")
+      .types({"file"});
 
   using P = PhaseSettings;
   table.section(SceneSection::phase);
@@ -166,47 +203,23 @@ void add_mesh(KeyTable& table) {
   table.add("radiance", &M::radiance, "radiance that it sends out")
       .unit("W / m^2 / sr")
       .at_least(0);
-  table.add("two_sided", &M::two_sided, "whether its back shines too");
-}
-
-void add_light(KeyTable& table) {
-  using L = LightSettings;
-  table.section(SceneSection::light);
-  table.add("type", &L::type, "kind of light").required();
-  table.add("direction", &L::direction, "the way the light travels").always_written();
-  table.add("irradiance", &L::irradiance, "irradiance of a plane that faces the light")
-      .unit("W / m^2")
-      .at_least(0)
-      .always_written();
-  table.add("angular_radius", &L::angular_radius, "half angle of the light's disc (the sun: 0.27)")
-      .unit("degrees")
-      .within(0, 90);
-  table.add("position", &L::position, "where the light is").unit("world").always_written();
-  table.add("intensity", &L::intensity, "radiant intensity").unit("W / sr").at_least(0);
-  table.add("cone_angle", &L::cone_angle, "half angle where the light ends")
-      .unit("degrees")
-      .above_up_to(0, 90);
-  table.add("cone_falloff", &L::cone_falloff, "width of the soft edge inside the cone")
-      .unit("degrees")
-      .within(0, 90);
   table
-      .add("radiance", &L::radiance,
-           "radiance from everywhere; with an image or for a sky: factor of what follows")
-      .unit("W / m^2 / sr")
+      .add("power", &M::power,
+           "radiant power of all of the surface, before a texture takes its part, in place of "
+           "radiance")
+      .unit("W")
       .at_least(0)
-      .always_written();
-  table.add("zenith", &L::zenith, "radiance straight up").unit("W / m^2 / sr").at_least(0);
-  table.add("horizon", &L::horizon, "radiance at the horizon").unit("W / m^2 / sr").at_least(0);
-  table.add("ground", &L::ground, "radiance of what lies below the horizon")
-      .unit("W / m^2 / sr")
-      .at_least(0);
-  table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
-      .file(InputKind::picture);
-  table.add("rotation", &L::rotation, "turns the sky about the camera's up axis").unit("degrees");
-  table.add("visible", &L::visible,
-            "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
-  table.add("group", &L::group, "lights of one group share the layer light_NAME").keeps_world();
-  table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
+      .absent("none");
+  table
+      .add("kelvin", &M::kelvin,
+           "temperature of a black body by whose colour, of luminance 1, its light is multiplied")
+      .unit("kelvin")
+      .within(500, 50000)
+      .absent("none");
+  table.add("exposure", &M::exposure, "its light is multiplied by 2 to the power of this")
+      .unit("stops")
+      .within(-100, 100);
+  table.add("two_sided", &M::two_sided, "whether its back shines too");
 }
 
 void add_layer(KeyTable& table) {
@@ -319,7 +332,7 @@ std::vector<SceneKey> make_table() {
   add_volume(table);
   add_emission(table);
   add_mesh(table);
-  add_light(table);
+  add_light_keys(table);
   add_layer(table);
   add_render(table);
   std::vector<SceneKey> keys;

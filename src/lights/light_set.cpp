@@ -9,7 +9,7 @@ LightSet::LightSet(const std::vector<LightSettings>& settings, const Vec3d& up,
                    std::vector<std::string>* notes) {
   const LightContext context{up, space, region, notes};
   for (const LightSettings& light : settings)
-    add(light_kind(light.type).make(light, context),
+    add(make_light(light, context),
         {light.visible, light_kind(light.type).surrounds,
          light_kind(light.type).wants_shadow_rays(light)});
 }

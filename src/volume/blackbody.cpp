@@ -143,6 +143,10 @@ Vec3d blackbody_color(double kelvin, ColorSpace space) {
   return Table::read(table(space).color, std::clamp(kelvin, coldest, hottest));
 }
 
+Rgb light_tint(const std::optional<double>& kelvin, double exposure, ColorSpace space) {
+  return Rgb((kelvin ? blackbody_color(*kelvin, space) : Vec3d(1)) * std::exp2(exposure));
+}
+
 double blackbody_luminance(double kelvin, double reference) {
   if (!(kelvin > 0))
     return 0;

@@ -73,10 +73,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{VOLUME "phase = { type = 'henyey_greenstein', anisotropy = 0.5 }\n",
                  "s.toml:3: unknown key volume.0.phase.anisotropy; did you mean g?"},
         BadScene{
-            "[[light]]\ntype = 'distant'\nkelvin = 5000\n",
-            "s.toml:3: unknown key light.0.kelvin; colour and strength of a light are one key: "
-            "irradiance of a distant light, intensity of a point or spot light, radiance of an "
-            "environment or sky, e.g. irradiance = [5, 4, 3]"},
+            "[[light]]\ntype = 'distant'\ncolor = [1, 0.5, 0]\n",
+            "s.toml:3: unknown key light.0.color; colour and strength of a light are one key: "
+            "irradiance of a distant light, intensity or power of a point or spot light, radiance "
+            "of "
+            "an environment or sky, e.g. irradiance = [5, 4, 3]; kelvin and exposure multiply it"},
         BadScene{"[[light]]\ntype = 'distant'\nelevation = 50\n",
                  "s.toml:3: unknown key light.0.elevation; direction = [x, y, z] is the way that a "
                  "distant or spot light travels"},
