@@ -51,6 +51,7 @@ struct SurfaceSettings {
   /// curved surface; 0: they are flat.
   double smooth_angle = 0;
   MaterialSettings material;
+  std::string group;   ///< of a surface that shines, as LightSettings::group
   bool visible = true; ///< to the camera; a hidden surface still stops and scatters light
   /// Row-major affine 3x4 matrix from the shape's own space to the world.
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};

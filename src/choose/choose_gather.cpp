@@ -49,7 +49,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
       const auto light = [&] {
         const GatheredLight found =
             gather.gather(ray.camera.ray(), ray.profile, GatherPlan::most_walks, 1, rng, uncounted);
-        return found.direct + found.indirect;
+        return found.direct.sum() + found.indirect.sum();
       };
       const Rgb a = light(), b = light(), d = a - b;
       means.push_back((a + b) * 0.5f);

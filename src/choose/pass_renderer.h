@@ -20,7 +20,7 @@ public:
   /// be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 
-  /// What was chosen; of groups of lights, for the first.
+  /// What was chosen.
   virtual const Choices& choices() const = 0;
 };
 

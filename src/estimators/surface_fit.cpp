@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace vdbeam {
@@ -31,29 +30,30 @@ float radius_of(int pass) {
 SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
     : camera_(input.camera), width_(input.camera.width()), height_(input.camera.height()),
       radius_(radius_of(pass)),
-      pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
+      pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
+      groups_(static_cast<std::size_t>(input.world.lights.group_count()),
+              std::vector<Rgb>(pixels_.size())) {}
 
 void SurfaceFit::set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr) {
-  pixels_[pixel] = {seen.smooth, seen.albedo * tr, seen.position, seen.normal, seen.surface};
+  pixels_[pixel] = {seen.smooth.sum(), seen.albedo * tr, seen.position, seen.normal, seen.surface};
+  for (std::size_t g = 0; g < seen.smooth.parts().size(); ++g)
+    groups_[g][pixel] = seen.smooth.parts()[g];
 }
 
-Rgb SurfaceFit::fitted(int x, int y, float widest) const {
-  const auto at = [&](int px, int py) -> const Pixel& {
-    return pixels_[static_cast<std::size_t>(py) * static_cast<std::size_t>(width_) +
-                   static_cast<std::size_t>(px)];
+/// The pixels whose weighted sum is what the plane fitted about a pixel has there.
+std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float widest,
+                                                      Shares& shares) const {
+  const auto index = [&](int px, int py) {
+    return static_cast<std::size_t>(py) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(px);
   };
-  const Pixel& center = at(x, y);
-  constexpr std::size_t most = (2 * reach + 1) * (2 * reach + 1);
-  struct Share {
-    const Pixel* pixel;
-    double weight, dx, dy;
-  };
-  std::array<Share, most> shares;
+  const Pixel& center = pixels_[index(x, y)];
+  std::array<std::array<double, 2>, std::tuple_size_v<Shares>> offsets;
   std::size_t count = 0;
   PlaneFit fit;
   for (int py = std::max(0, y - reach); py <= std::min(height_ - 1, y + reach); ++py)
     for (int px = std::max(0, x - reach); px <= std::min(width_ - 1, x + reach); ++px) {
-      const Pixel& other = at(px, py);
+      const Pixel& other = pixels_[index(px, py)];
       const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
       const float near = 1 - (dx * dx + dy * dy) / ((radius_ + 1) * (radius_ + 1));
       if (other.surface != center.surface || !(near > 0))
@@ -64,32 +64,44 @@ Rgb SurfaceFit::fitted(int x, int y, float widest) const {
       if (!(weight > 0))
         continue;
       fit.add(static_cast<double>(weight), px - x, py - y);
-      shares[count++] = {&other, static_cast<double>(weight), static_cast<double>(px - x),
-                         static_cast<double>(py - y)};
+      offsets[count] = {static_cast<double>(px - x), static_cast<double>(py - y)};
+      shares[count++] = {index(px, py), static_cast<double>(weight)};
     }
   const std::array<double, 3> row = fit.row();
-  Vec3d sum;
   for (std::size_t i = 0; i < count; ++i)
-    sum += Vec3d(shares[i].pixel->light) *
-           (shares[i].weight * (row[0] + row[1] * shares[i].dx + row[2] * shares[i].dy));
-  return Rgb(sum);
+    shares[i].weight *= row[0] + row[1] * offsets[i][0] + row[2] * offsets[i][1];
+  return {shares.data(), count};
+}
+
+void SurfaceFit::fit_pixel(int x, int y, PassImage& image) const {
+  const std::size_t i =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  const Pixel& pixel = pixels_[i];
+  if (pixel.surface < 0)
+    return;
+  const Vec3d eye = camera_.ray(x + 0.5, y + 0.5).origin;
+  const double pixel_width =
+      camera_.pixel_width(x + 0.5, y + 0.5, length(Vec3d(pixel.position) - eye));
+  const auto widest = static_cast<float>(farthest_off_plane * pixel_width) * (radius_ + 0.5f);
+  if (!(widest > 0))
+    return;
+  Shares buffer;
+  const std::span<const Share> fitted = shares(x, y, widest, buffer);
+  const auto replace = [&](const auto& light, std::vector<Rgb>& of_image) {
+    Vec3d sum;
+    for (const Share& share : fitted)
+      sum += Vec3d(light(share.pixel)) * share.weight;
+    of_image[i] += (Rgb(sum) - light(i)) * pixel.factor;
+  };
+  replace([&](std::size_t at) { return pixels_[at].light; }, image.background);
+  for (std::size_t g = 0; g < std::min(groups_.size(), image.groups.size()); ++g)
+    replace([&](std::size_t at) { return groups_[g][at]; }, image.groups[g]);
 }
 
 void SurfaceFit::apply(const PixelRegion& window, PassImage& image) const {
   tbb::parallel_for(window.y0, window.y1, [&](int y) {
-    for (int x = window.x0; x < window.x1; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                            static_cast<std::size_t>(x);
-      const Pixel& pixel = pixels_[i];
-      if (pixel.surface < 0)
-        continue;
-      const Vec3d eye = camera_.ray(x + 0.5, y + 0.5).origin;
-      const double pixel_width =
-          camera_.pixel_width(x + 0.5, y + 0.5, length(Vec3d(pixel.position) - eye));
-      const auto widest = static_cast<float>(farthest_off_plane * pixel_width) * (radius_ + 0.5f);
-      if (widest > 0)
-        image.background[i] += (fitted(x, y, widest) - pixel.light) * pixel.factor;
-    }
+    for (int x = window.x0; x < window.x1; ++x)
+      fit_pixel(x, y, image);
   });
 }
 

@@ -4,6 +4,8 @@
 #include "rays/estimator_input.h"
 #include "rays/profile_shading.h"
 
+#include <array>
+#include <span>
 #include <vector>
 
 namespace vdbeam {
@@ -33,18 +35,25 @@ public:
 
 private:
   struct Pixel {
-    Rgb light;      ///< smooth light per albedo
+    Rgb light;      ///< smooth light per albedo, of all groups of lights
     Rgb factor;     ///< albedo times transmittance
     Vec3f position; ///< render space
     Vec3f normal;
     int surface = -1; ///< -1: none that is fitted
   };
-  Rgb fitted(int x, int y, float widest) const;
+  struct Share {
+    std::size_t pixel;
+    double weight;
+  };
+  using Shares = std::array<Share, (2 * reach + 1) * (2 * reach + 1)>;
+  std::span<const Share> shares(int x, int y, float widest, Shares& shares) const;
+  void fit_pixel(int x, int y, PassImage& image) const;
 
   const Camera& camera_;
   int width_, height_;
   float radius_; ///< [pixels]
   std::vector<Pixel> pixels_;
+  std::vector<std::vector<Rgb>> groups_; ///< Pixel::light of each group, by pixel
 };
 
 constexpr std::size_t SurfaceFit::bytes_per_pixel() {

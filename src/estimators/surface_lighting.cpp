@@ -10,18 +10,18 @@ SurfaceLighting::SurfaceLighting(const EstimatorInput& input, const World& world
     : world_(world), photons_(photons),
       tracer_(world, lights_of_surfaces(input), input.settings.max_bounces) {}
 
-Rgb SurfaceLighting::reflected(const SurfaceVertex& vertex, const Vec3f& direction,
-                               Rng& rng) const {
+GroupedLight SurfaceLighting::reflected(const SurfaceVertex& vertex, const Vec3f& direction,
+                                        Rng& rng) const {
   return by_paths(vertex, direction, rng) + by_photons(vertex, rng);
 }
 
-Rgb SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
-                              Rgb* straight) const {
+GroupedLight SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction,
+                                       Rng& rng, GroupedLight* straight) const {
   return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false,
                               straight);
 }
 
-Rgb SurfaceLighting::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
+GroupedLight SurfaceLighting::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
   if (!shows_photons(vertex))
     return {};
   return SurfacePhotons(*world_.surfaces, *photons_).reflected(vertex, rng);

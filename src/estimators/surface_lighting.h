@@ -19,12 +19,12 @@ public:
 
   /// Radiance that leaves the surface against `direction`, along which a ray meets it, but for what
   /// the surface itself emits.
-  Rgb reflected(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
+  GroupedLight reflected(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
   /// The two parts of it; `straight`, unless it is null, gets what shadow rays find of the first.
-  Rgb by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
-               Rgb* straight = nullptr) const;
-  Rgb by_photons(const SurfaceVertex& vertex, Rng& rng) const;
+  GroupedLight by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
+                        GroupedLight* straight = nullptr) const;
+  GroupedLight by_photons(const SurfaceVertex& vertex, Rng& rng) const;
 
 private:
   /// Photons bring light to the surface, which it spreads.

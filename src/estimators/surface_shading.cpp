@@ -112,8 +112,8 @@ private:
 
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                                const SurfaceLighting& surfaces, GatherAlong gather)
-    : input_(input), world_(photons.world()), lights_of_matte_(input.lights_of_matte()),
-      photons_(photons), gather_(std::move(gather)), surfaces_(surfaces),
+    : input_(input), world_(photons.world()), photons_(photons), gather_(std::move(gather)),
+      surfaces_(surfaces),
       more_shadow_rays_(samples_extended_light(world_, surfaces.tracer()) ? more_shadow_rays : 0),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
 
@@ -127,7 +127,7 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
     Rng rng = path_rng(0);
-    return {{}, caught_shadow(world_, lights_of_matte_, camera, rng)};
+    return {{}, caught_shadow(world_, camera, rng)};
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
@@ -143,10 +143,10 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   constexpr float least_albedo = 1e-3f;
   const bool fitted = std::min(albedo.x, std::min(albedo.y, albedo.z)) > least_albedo;
   const int paths = fitted ? matt_paths : paths_per_ray;
-  Rgb beyond, straight, photons;
+  GroupedLight beyond, straight, photons;
   for (int i = 0; i < paths; ++i) {
     Rng rng = path_rng(i);
-    Rgb by_shadow_rays;
+    GroupedLight by_shadow_rays;
     beyond += surfaces_.by_paths(vertex, direction, rng, &by_shadow_rays) - by_shadow_rays;
     straight += by_shadow_rays;
     if (i > 0)
@@ -157,7 +157,8 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   }
   beyond *= 1 / static_cast<float>(paths);
   straight *= 1 / static_cast<float>(paths + more_shadow_rays_);
-  SeenSurface seen{beyond + straight + photons + vertex.emitted(), 0, lamp_of(vertex)};
+  const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
+  SeenSurface seen{beyond + straight + photons + emitted, 0, lamp_of(vertex)};
   if (!fitted)
     return seen;
   seen.albedo = albedo;
@@ -169,30 +170,30 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
 }
 
 /// What the surface emits as a light with shadow rays into the medium.
-Rgb SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
+GroupedLight SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
   const int light = vertex.light();
   const bool sampled =
       light >= 0 && photons_.plan().sampled_lights[static_cast<std::size_t>(light)];
-  return sampled ? vertex.emitted() : Rgb();
+  return {sampled ? vertex.emitted() : Rgb(), group_of(world_, vertex)};
 }
 
 /// What the first surface shows of its surroundings: the mean over a few paths. Glass sends some of
 /// them either way.
 template <class PathRng>
-Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
-                             RenderStatistics& counts) const {
+GroupedLight SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                      RenderStatistics& counts) const {
   if (is_frosted(vertex))
     return shown_by_frosted(vertex, path_rng, counts);
   const SpecularBranches ways = vertex.branches(Carried::radiance);
   const int reflected = reflected_paths(ways), refracted = paths_per_ray - reflected;
-  Rgb sum;
+  GroupedLight sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
     Chain chain{rng, counts, vertex.absorbed()};
     if (reflected == 0) {
-      Rgb light = scatter(vertex, chain);
+      GroupedLight light = scatter(vertex, chain);
       light += follow(chain);
-      sum += light / paths_per_ray;
+      sum += light / static_cast<float>(paths_per_ray);
       continue;
     }
     chain.take_share(vertex, i < reflected ? ways.reflected : ways.refracted);
@@ -203,18 +204,19 @@ Rgb SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rn
 
 /// Frosted glass: each path draws a facet, at which it goes one way or the other.
 template <class PathRng>
-Rgb SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
-                                     RenderStatistics& counts) const {
+GroupedLight SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                              RenderStatistics& counts) const {
   int reflected = 0;
-  Rgb sum;
+  GroupedLight sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
     if (i == 0) // by a facet of which no path makes use
       reflected = paths_by_share(vertex.both_ways(Carried::radiance, rng).reflected.weight);
     Chain chain{rng, counts, vertex.absorbed()};
-    sum += surfaces_.tracer().lights_at_surface(vertex, rng) * chain.throughput / paths_per_ray;
+    sum += surfaces_.tracer().lights_at_surface(vertex, rng) * chain.throughput /
+           static_cast<float>(paths_per_ray);
     const bool reflects = i < reflected;
-    Rgb light;
+    GroupedLight light;
     if (!reflects) {
       light = lamps_behind(vertex, rng) * chain.throughput;
       chain.lamps_found = true;
@@ -232,8 +234,8 @@ Rgb SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const PathRng&
 
 /// The light of lamps that the surface behind frosted glass scatters to it: where both have narrow
 /// lobes, few rays are on their way to a lamp, and those are bright.
-Rgb SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
-  Rgb sum;
+GroupedLight SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
+  GroupedLight sum;
   for (int i = 0; i < lamp_rays; ++i) {
     const MaterialSample way = vertex.both_ways(Carried::radiance, rng).refracted;
     if (!(max_component(way.weight) > 0))
@@ -246,14 +248,14 @@ Rgb SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
       sum += surfaces_.tracer().lights_at_surface(next, rng) * next.absorbed() * way.weight *
              exact_transmittance(world_.medium, ray.segment);
   }
-  return sum / lamp_rays;
+  return sum / static_cast<float>(lamp_rays);
 }
 
 /// Sends the chain on from a surface; returns the light of lights that the surface reflects to it,
 /// or what is seen the other way where it goes both ways.
-Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
+GroupedLight SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
   const bool specular = vertex.material().is_specular();
-  Rgb light;
+  GroupedLight light;
   if (!std::exchange(chain.lamps_found, false) && !specular)
     light = surfaces_.tracer().lights_at_surface(vertex, chain.rng) * chain.throughput;
   if (chain.splits > 0 && splits_light(vertex)) {
@@ -275,8 +277,8 @@ Rgb SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) const {
 }
 
 /// What the chain sees from its present segment on, times its throughput.
-Rgb SurfaceShading::follow(Chain chain) const {
-  Rgb sum;
+GroupedLight SurfaceShading::follow(Chain chain) const {
+  GroupedLight sum;
   DepthProfile profile;
   while (chain.survives_roulette() && chain.length.survive(chain.throughput, chain.rng)) {
     const CameraRay ray = ray_from_surface(world_, chain.origin, chain.direction);
@@ -299,8 +301,8 @@ Rgb SurfaceShading::follow(Chain chain) const {
 /// The radiance that a segment of the chain adds. Light that only the peak of the phase function
 /// scatters comes with that which goes straight on, but for lights with shadow rays, where
 /// direct_light has it.
-Rgb SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
-                          Chain& chain) const {
+GroupedLight SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
+                                   Chain& chain) const {
   const std::vector<bool>& sampled_lights = photons_.plan().sampled_lights;
   const bool has_peak = world_.medium.peak && !profile.empty();
   const auto weight = [&](std::size_t i) {
@@ -309,16 +311,18 @@ Rgb SurfaceShading::along(const CameraRay& ray, const DepthProfile& profile, con
                ? chain.pdf / (chain.pdf + light.incident_pdf(ray.ray().origin, chain.direction))
                : 1.0f;
   };
-  Rgb radiance = lights_through(world_, ray.whole(), profile, tr, false, [&](std::size_t i) {
-    return has_peak && sampled_lights[i] ? 0.0f : weight(i);
-  });
+  GroupedLight radiance =
+      lights_through(world_, ray.whole(), profile, tr, false, [&](std::size_t i) {
+        return has_peak && sampled_lights[i] ? 0.0f : weight(i);
+      });
   if (has_peak)
     radiance += lights_through(input_.world, ray.whole(),
                                profile.scaled(world_.medium.peak->extinction_factor),
                                tr * left_of_lamps(profile), false,
                                [&](std::size_t i) { return sampled_lights[i] ? weight(i) : 0.0f; });
   if (!ray.segment.empty())
-    radiance += emission_along(world_.medium, ray.segment, profile, cutoff_);
+    radiance.add(emission_along(world_.medium, ray.segment, profile, cutoff_),
+                 world_.lights.group_of_emission());
   if (!profile.empty())
     radiance += in_scattered(ray, profile, chain.rng, chain.counts);
   return radiance;
@@ -336,7 +340,8 @@ Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
 
 /// What leaves the surface at which the chain ends. `lamps`: transmittance on the way there for
 /// lights with shadow rays over that for others.
-Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const {
+GroupedLight SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps,
+                                    Chain& chain) const {
   Rgb emitted(1);
   if (const int light = vertex.light(); light >= 0) {
     const auto i = static_cast<std::size_t>(light);
@@ -346,7 +351,8 @@ Rgb SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain&
     if (photons_.plan().sampled_lights[i])
       emitted *= lamps;
   }
-  return vertex.emitted() * emitted + surfaces_.reflected(vertex, chain.direction, chain.rng);
+  return GroupedLight(vertex.emitted() * emitted, group_of(world_, vertex)) +
+         surfaces_.reflected(vertex, chain.direction, chain.rng);
 }
 
 /// The surface that the segment leaves has sent a shadow ray to this light as well.
@@ -355,12 +361,12 @@ bool SurfaceShading::sampled_too(std::size_t light, const Chain& chain) const {
 }
 
 /// Light that the medium scatters into the ray: once, by shadow rays; else by photons.
-Rgb SurfaceShading::in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
-                                 RenderStatistics& counts) const {
+GroupedLight SurfaceShading::in_scattered(const CameraRay& ray, const DepthProfile& profile,
+                                          Rng& rng, RenderStatistics& counts) const {
   ++counts.depth_profiles;
-  Rgb sum = direct_light(world_, ray.ray(), profile,
-                         {photons_.plan().sampled_lights, 1, &photons_.shadows()}, rng,
-                         counts.shadow_rays);
+  GroupedLight sum = direct_light(world_, ray.ray(), profile,
+                                  {photons_.plan().sampled_lights, 1, &photons_.shadows()}, rng,
+                                  counts.shadow_rays);
   if (photons_.map().size() > 0) {
     ++counts.lookups;
     sum += gather_(ray, profile, rng);

@@ -10,7 +10,8 @@
 namespace vdbeam {
 
 /// What the photons of a pass scatter into a ray with this profile, which is not empty.
-using GatherAlong = std::function<Rgb(const CameraRay& ray, const DepthProfile& profile, Rng& rng)>;
+using GatherAlong =
+    std::function<GroupedLight(const CameraRay& ray, const DepthProfile& profile, Rng& rng)>;
 
 /// The surfaces that camera rays meet, for estimators that gather photons.
 ///
@@ -35,28 +36,28 @@ private:
   struct Chain;
 
   template <class PathRng>
-  Rgb shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
-               RenderStatistics& counts) const;
+  GroupedLight shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+                        RenderStatistics& counts) const;
   template <class PathRng>
-  Rgb shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
-                       RenderStatistics& counts) const;
-  Rgb lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
-  Rgb scatter(const SurfaceVertex& vertex, Chain& chain) const;
-  Rgb follow(Chain chain) const;
+  GroupedLight shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                RenderStatistics& counts) const;
+  GroupedLight lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
+  GroupedLight scatter(const SurfaceVertex& vertex, Chain& chain) const;
+  GroupedLight follow(Chain chain) const;
   template <class PathRng>
   SeenSurface matt(const SurfaceVertex& vertex, const Vec3f& direction,
                    const PathRng& path_rng) const;
-  Rgb lamp_of(const SurfaceVertex& vertex) const;
+  GroupedLight lamp_of(const SurfaceVertex& vertex) const;
   Rgb left_of_lamps(const DepthProfile& profile) const;
-  Rgb along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr, Chain& chain) const;
-  Rgb at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const;
+  GroupedLight along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
+                     Chain& chain) const;
+  GroupedLight at_end(const SurfaceVertex& vertex, const Rgb& lamps, Chain& chain) const;
   bool sampled_too(std::size_t light, const Chain& chain) const;
-  Rgb in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
-                   RenderStatistics& counts) const;
+  GroupedLight in_scattered(const CameraRay& ray, const DepthProfile& profile, Rng& rng,
+                            RenderStatistics& counts) const;
 
   const EstimatorInput& input_;
   const World& world_; ///< of the map, perhaps without forward peaks
-  const LightSet& lights_of_matte_;
   const PhotonPass& photons_;
   GatherAlong gather_;
   const SurfaceLighting& surfaces_;

@@ -56,25 +56,28 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
 /// Light of surfaces and of surrounding lights that only the peak of the phase function scattered
 /// on its way along the ray: what the medium without its peak lets through beyond what the scene's
 /// own does. Lights with shadow rays have theirs from these.
-Rgb light_of_the_peak(const World& world, const TileRays::PixelRay& ray, const SeenSurface& surface,
-                      const std::vector<bool>& sampled_lights, const RaySink& sink) {
-  Rgb radiance;
+GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
+                               const SeenSurface& surface, const std::vector<bool>& sampled_lights,
+                               const RaySink& sink) {
+  GroupedLight radiance;
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
   radiance = surface.radiance - surface.lamp;
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     if (!sampled_lights[i])
-      radiance += world.lights[i].emitted_radiance(ray.camera.whole()).radiance;
+      radiance.add(world.lights[i].emitted_radiance(ray.camera.whole()).radiance,
+                   world.lights.group(i));
   const std::size_t last = ray.profile.knots() - 1;
   const Rgb tau = ray.profile.channels(world.medium, last);
   Rgb excess;
   for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
     excess += world.medium.peak->excess[v] * ray.profile.tau(last, v);
-  Rgb through;
+  Rgb through, scattered;
   for (int c = 0; c < 3; ++c) {
-    through[c] = radiance[c] * std::exp(-tau[c]);
-    radiance[c] *= std::exp(-tau[c]) * opacity_of(excess[c]);
+    through[c] = radiance.sum()[c] * std::exp(-tau[c]);
+    scattered[c] = std::exp(-tau[c]) * opacity_of(excess[c]);
   }
+  radiance *= scattered;
   if (sink.deep)
     add_light_of_the_peak(world, ray.profile, through, sink.deep);
   if (sink.volumes)
@@ -177,9 +180,10 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
   const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
                                &photons.shadows(), input.stop};
-  image.direct[target.pixel] +=
-      light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
-      direct_light(world, ray.camera.ray(), ray.profile, sampling, rng, counts.shadow_rays, sink);
+  image.add(&PassImage::direct, target.pixel,
+            light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
+                direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
+                             counts.shadow_rays, sink));
 }
 
 SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& photons) {
@@ -196,9 +200,7 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     input.window = widened(wanted(task), SurfaceFit::reach, task.camera);
     fit.emplace(input, pass);
   }
-  const Camera& camera = input.camera;
-  image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(), input.deep,
-               input.object_count(), input.plane_count());
+  input.resize(image);
   const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
   std::optional<SurfaceShading> surfaces;
   const SurfaceLighting lighting = surface_lighting(input, photons);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "image/deep_layout.h"
+#include "math/grouped_light.h"
 #include "vdbeam/vec.h"
 
 #include <algorithm>
@@ -51,9 +52,10 @@ struct PassImage {
   std::vector<std::uint8_t> finished_tiles;
   static constexpr int tile_width = 16;
 
-  /// `glows`: there is something to hold in `emission`.
-  void resize(int w, int h, bool glows = false, const DeepLayout* layout = nullptr,
-              std::size_t objects = 0, std::size_t plane_count = 0) {
+  /// `glows`: there is something to hold in `emission`. `group_count`: of groups of lights.
+  void resize(int w, int h, bool glows = false, int group_count = 0,
+              const DeepLayout* layout = nullptr, std::size_t objects = 0,
+              std::size_t plane_count = 0) {
     width = w;
     height = h;
     const std::size_t n = static_cast<std::size_t>(w) * h;
@@ -61,7 +63,7 @@ struct PassImage {
     indirect.assign(n, {});
     background.assign(n, {});
     emission.assign(glows ? n : 0, {});
-    groups.clear();
+    groups.assign(static_cast<std::size_t>(group_count), std::vector<Rgb>(n));
     coverage.assign(objects, std::vector<float>(n));
     planes.assign(plane_count, std::vector<float>(n));
     opacity.assign(n, 0);
@@ -78,6 +80,15 @@ struct PassImage {
     return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
            static_cast<std::size_t>(x / tile_width);
   }
+  /// Adds light to one of the sums above, and what comes from each group to the group's.
+  void add(std::vector<Rgb> PassImage::*sum, std::size_t pixel, const GroupedLight& light) {
+    (this->*sum)[pixel] += light.sum();
+    add_to_groups(pixel, light);
+  }
+  void add_to_groups(std::size_t pixel, const GroupedLight& light) {
+    for (std::size_t g = 0; g < std::min(groups.size(), light.parts().size()); ++g)
+      groups[g][pixel] += light.parts()[g];
+  }
   /// Of the pixel's indirect light, `light` was scattered once only: no more than there is but for
   /// rounding.
   void move_to_direct(std::size_t pixel, const Rgb& light) {
@@ -92,6 +103,8 @@ struct PassImage {
     for (std::vector<Rgb>* light : {&direct, &indirect, &background, &emission})
       if (!light->empty())
         (*light)[pixel] *= factor;
+    for (std::vector<Rgb>& group : groups)
+      group[pixel] *= factor;
     opacity[pixel] *= factor;
     depth[pixel] *= factor;
     for (std::vector<float>& object : coverage)

@@ -73,7 +73,7 @@ void add_light_keys(KeyTable& table) {
       .within(-100, 100);
   table.add("visible", &L::visible,
             "whether the camera sees it; hidden, it still lights the medium, and A is 0 beside it");
-  table.add("group", &L::group, "lights of one group share the layer light_NAME").keeps_world();
+  table.add("group", &L::group, "lights of one group share the layer light_NAME");
   table.add("direct", &L::direct, "how its single scattering is found, instead of render.direct");
 }
 

@@ -171,6 +171,8 @@ void add_mesh(KeyTable& table) {
       .types({"file"});
   table.add("visible", &S::visible, "whether the camera sees it; it stops light in any case");
   table.add("name", &S::name, R"(its name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
+  table.add("group", &S::group,
+            "of an emissive mesh: lights of one group share the layer light_NAME");
   add_placement(table, &S::transform);
 
   using M = MaterialSettings;

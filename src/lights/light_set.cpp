@@ -14,15 +14,11 @@ LightSet::LightSet(const std::vector<LightSettings>& settings, const Vec3d& up,
          light_kind(light.type).wants_shadow_rays(light)});
 }
 
-LightSet LightSet::only(const std::vector<bool>& chosen) const {
-  LightSet result;
-  for (std::size_t i = 0; i < lights_.size(); ++i)
-    if (chosen[i]) {
-      result.any_extent_ = result.any_extent_ || lights_[i]->has_extent();
-      result.lights_.push_back(lights_[i]);
-      result.traits_.push_back(traits_[i]);
-    }
-  return result;
+void LightSet::sort_into_groups(int count, const std::vector<int>& of_light, int of_emission) {
+  group_count_ = count;
+  group_of_emission_ = of_emission;
+  for (std::size_t i = 0; i < traits_.size(); ++i)
+    traits_[i].group = of_light[i];
 }
 
 void LightSet::add(std::unique_ptr<Light> light, LightTraits traits) {

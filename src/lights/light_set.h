@@ -16,6 +16,7 @@ struct LightTraits {
   bool surrounds = false;        ///< its light comes from all around, as a sky's does (LightKind)
   bool wants_shadow_rays = true; ///< they find it better than scattered rays do (LightKind)
   bool is_emission = false;      ///< of the medium: whatever looks along a ray sees it anyway
+  int group = -1;                ///< to which its light belongs (LightGroups); -1: there are none
 };
 
 /// All lights of a scene.
@@ -27,14 +28,19 @@ public:
   LightSet(const std::vector<LightSettings>& settings, const Vec3d& up, const RenderSpace& space,
            const OccupiedRegion& region, std::vector<std::string>* notes = nullptr);
 
-  /// Those of the lights that are chosen, one for each.
-  LightSet only(const std::vector<bool>& chosen) const;
+  /// Sorts all lights into groups: one number for each light; of the medium's own emission
+  /// `of_emission`. Without it there are no groups.
+  void sort_into_groups(int count, const std::vector<int>& of_light, int of_emission);
 
   void add(std::unique_ptr<Light> light, LightTraits traits = {});
 
   std::size_t size() const { return lights_.size(); }
   const Light& operator[](std::size_t i) const { return *lights_[i]; }
   const LightTraits& traits(std::size_t i) const { return traits_[i]; }
+  int group_count() const { return group_count_; }
+  int group(std::size_t i) const { return traits_[i].group; }
+  /// Of what glows in the medium.
+  int group_of_emission() const { return group_of_emission_; }
   /// Some light may be met at a finite distance.
   bool any_extent() const { return any_extent_; }
 
@@ -42,6 +48,7 @@ private:
   std::vector<std::shared_ptr<const Light>> lights_; ///< shared by copies
   std::vector<LightTraits> traits_;                  ///< per light
   bool any_extent_ = false;
+  int group_count_ = 0, group_of_emission_ = -1;
 };
 
 } // namespace vdbeam

@@ -56,6 +56,11 @@ struct BeamTile {
   /// Out: the part of it that comes from photons on their first flight, single scattering. Empty
   /// where the map has no such photons.
   std::vector<float> first_flight;
+  /// Whether the parts of groups of lights are asked for.
+  bool by_group = false;
+  /// Out: those parts, as `radiance` for each group, one after the other. Empty where the map has
+  /// no groups.
+  std::vector<float> group_radiance;
 
 private:
   static std::array<double, ray_count> endless() {

@@ -17,12 +17,13 @@ struct MapView {
 
 /// PhotonMap::query, query_ray and query_point on the best SIMD target of this machine.
 QueryCounts query_tile(const MapView& map, BeamTile& tile);
-/// `first_flight`, unless it is null, takes the part of photons on their first flight too.
+/// `first_flight`, unless it is null, takes the part of photons on their first flight too, and
+/// `groups` the parts of groups of lights, as PhotonMap has them.
 QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance,
-                      Rgb* first_flight = nullptr);
+                      Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr);
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
                         const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
-                        Rgb* first_flight = nullptr);
+                        Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr);
 
 /// SIMD targets that this binary has and this machine can run, best first, as Highway's bits; and a
 /// way to confine the queries to some of them (0: all), for tests.

@@ -4,6 +4,7 @@
 #include "vdbeam/vec.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace vdbeam {
 
@@ -20,14 +21,22 @@ struct PhotonList {
   /// surfaces. Empty where there are none.
   UnfilledArray<std::uint8_t> first_flight;
 
+  /// Group of the light that sent it, < `groups`; empty where lights have no groups.
+  UnfilledArray<std::uint16_t> group;
+  int groups = 0;
+
   /// Number of the light path within its pass; empty unless it was asked for. Photons of one path
   /// stand in the order in which it left them.
   UnfilledArray<std::uint32_t> path;
 
   std::size_t size() const { return position.size(); }
   static constexpr std::size_t bytes_per_photon(bool directions) {
-    return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t);
+    return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t) +
+           sizeof(std::uint16_t);
   }
 };
+
+/// The photons of all lists, one list after the other, of so many groups of lights.
+PhotonList join(const std::vector<const PhotonList*>& lists, int groups);
 
 } // namespace vdbeam

@@ -20,9 +20,12 @@ public:
 
   PhotonBlocks() = default;
   /// Room for `count` photons, which have no value until they are written; the padding has.
-  PhotonBlocks(std::size_t count, int channels, bool directions, bool first_flights = false)
+  /// `groups`: of lights, whose photons are told apart; 0: none are.
+  PhotonBlocks(std::size_t count, int channels, bool directions, bool first_flights = false,
+               int groups = 0)
       : count_(count), channels_(channels), directions_(directions), first_flights_(first_flights),
-        stride_(width * (4 + channels + (directions ? 3 : 0))), rows_(block_count() * stride_) {
+        groups_(groups), stride_(width * (4 + channels + (directions ? 3 : 0) + (groups ? 1 : 0))),
+        rows_(block_count() * stride_) {
     if (count % width != 0)
       std::fill(rows_.end() - static_cast<std::ptrdiff_t>(stride_), rows_.end(), 0.0f);
   }
@@ -33,8 +36,11 @@ public:
   bool has_directions() const { return directions_; }
   /// Some photons come straight from a light.
   bool has_first_flights() const { return first_flights_; }
+  int groups() const { return groups_; }
   /// First field of the direction's three; only where has_directions().
   int direction_field() const { return power + channels_; }
+  /// The number of the photon's group; only where there are groups.
+  int group_field() const { return power + channels_ + (directions_ ? 3 : 0); }
 
   const float* row(std::size_t block, int field) const {
     return rows_.data() + block * stride_ + field * width;
@@ -50,7 +56,7 @@ public:
   std::size_t bytes() const { return rows_.size() * sizeof(float); }
   /// The same photons once more.
   PhotonBlocks copy() const {
-    PhotonBlocks other(count_, channels_, directions_, first_flights_);
+    PhotonBlocks other(count_, channels_, directions_, first_flights_, groups_);
     copy_in_parallel(rows_, other.rows_.data());
     return other;
   }
@@ -62,6 +68,7 @@ private:
   std::size_t count_ = 0;
   int channels_ = 1;
   bool directions_ = false, first_flights_ = false;
+  int groups_ = 0;
   std::size_t stride_ = 0;
   UnfilledArray<float> rows_;
 };

@@ -54,7 +54,7 @@ UnfilledArray<OrderedPhoton> finite_photons(const PhotonList& photons) {
 PhotonBlocks gather_blocks(const PhotonList& photons, const UnfilledArray<OrderedPhoton>& order,
                            int channels) {
   PhotonBlocks blocks(order.size(), channels, !photons.direction.empty(),
-                      !photons.first_flight.empty());
+                      !photons.first_flight.empty(), photons.groups);
   const auto fill_block = [&](std::size_t block) {
     const std::size_t begin = block * PhotonBlocks::width;
     const std::size_t count = std::min(PhotonBlocks::width, order.size() - begin);
@@ -73,6 +73,8 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const UnfilledArray<Ordere
       if (blocks.has_directions())
         for (int axis = 0; axis < 3; ++axis)
           put(blocks.direction_field() + axis, lane, photons.direction[from][axis]);
+      if (blocks.groups() > 0)
+        put(blocks.group_field(), lane, photons.group[from]);
     }
   };
   tbb::parallel_for(std::size_t(0), blocks.block_count(), fill_block);
@@ -243,6 +245,9 @@ int PhotonMap::channels() const {
 bool PhotonMap::has_first_flights() const {
   return data_->blocks.has_first_flights();
 }
+int PhotonMap::groups() const {
+  return data_->blocks.groups();
+}
 bool PhotonMap::has_directions() const {
   return data_->blocks.has_directions();
 }
@@ -260,8 +265,9 @@ QueryCounts PhotonMap::query(BeamTile& tile) const {
   return query_tile(data_->view(), tile);
 }
 
-QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance) const {
-  return vdbeam::query_ray(data_->view(), profile, radiance);
+QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance,
+                                 std::vector<Rgb>* groups) const {
+  return vdbeam::query_ray(data_->view(), profile, radiance, nullptr, groups);
 }
 
 void PhotonMap::visit_disc(const Vec3f& point,
@@ -286,15 +292,17 @@ void PhotonMap::visit_disc(const Vec3f& point,
       visit({blocks.position(i),
              {blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)},
              power * kernel,
-             radius});
+             radius,
+             blocks.groups() > 0 ? static_cast<int>(blocks.at(i, blocks.group_field())) : -1});
     }
   });
 }
 
 QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
                                    const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
-                                   Rgb* first_flight) const {
-  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered, first_flight);
+                                   Rgb* first_flight, std::vector<Rgb>* groups) const {
+  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered, first_flight,
+                             groups);
 }
 
 } // namespace vdbeam

@@ -34,6 +34,7 @@ struct DiscPhoton {
   Vec3f position, direction; ///< `direction`: the way it travels
   Rgb irradiance;            ///< its power times the disc kernel K_2D(d, r)
   float radius = 0;
+  int group = -1; ///< of the light that sent it; -1: there are none
 };
 
 struct MapTimes {
@@ -98,15 +99,19 @@ public:
     int weight_channels = 1;
     const std::vector<PhaseFunction>* phases = nullptr;
   };
-  QueryCounts query_ray(const RayProfile& profile, Rgb& radiance) const;
+  /// Adds to `radiance`. `groups`, unless it is null: set to the part of each group of lights.
+  QueryCounts query_ray(const RayProfile& profile, Rgb& radiance,
+                        std::vector<Rgb>* groups = nullptr) const;
 
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
   /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
   /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size())
   /// and, unless it is null, likewise first_flight, to what of it comes straight from lights.
+  /// `groups`, unless it is null: set to the part of each group of lights, [group][phase function].
   QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
                           const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
-                          Rgb* first_flight = nullptr) const;
+                          Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr) const;
+  int groups() const;             ///< of lights, whose photons are told apart; 0: none are
   bool has_first_flights() const; ///< photons that come straight from a light
 
   /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. Requires

@@ -48,16 +48,20 @@ NearRay near_ray(const PhotonMap::RayProfile& profile, const Boxf& bounds) {
 struct LaneSums {
   alignas(64) float lanes[3][16] = {};
 
-  Rgb total() const {
+  /// `grey`: the other channels are as the first.
+  Rgb total(bool grey) const {
     Rgb sum(0);
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < 16; ++i)
         sum[c] += lanes[c][i];
-    return sum;
+    return grey ? Rgb(sum.x) : sum;
   }
 };
 
 constexpr std::size_t phases_at_once = 4;
+
+/// Sums by group of lights: [group][phases_at_once]; none where nobody asks.
+using GroupSums = std::vector<LaneSums>;
 
 } // namespace
 } // namespace vdbeam
@@ -130,6 +134,18 @@ struct PhotonLanes {
   HWY_INLINE void add(V16 value, int channel, LaneSums& sums) const {
     add_power(value, hn::Abs(power(channel)), channel, sums);
   }
+  /// The same for the photons of each group, in `phase`'s sums.
+  HWY_INLINE void add_to_groups(V16 value, int channel, std::size_t phase, GroupSums& sums) const {
+    const D16 d;
+    if (sums.empty())
+      return;
+    const auto group = field(blocks.group_field());
+    for (std::size_t g = 0; g < sums.size() / phases_at_once; ++g) {
+      const auto mine = hn::Eq(group, hn::Set(d, static_cast<float>(g)));
+      if (!hn::AllFalse(d, mine))
+        add(hn::IfThenElseZero(mine, value), channel, sums[g * phases_at_once + phase]);
+    }
+  }
   /// The same for photons on their first flight, whose power has a minus sign.
   HWY_INLINE void add_first_flight(V16 value, int channel, LaneSums& sums) const {
     const D16 d;
@@ -159,8 +175,9 @@ HWY_INLINE V16 phase_lanes(const PhotonLanes& photons, const PhaseFunction& phas
 class RayWalk {
 public:
   RayWalk(const MapView& map, const PhotonMap::RayProfile& profile, const NearRay& ray,
-          bool first_flights)
-      : map_(map), profile_(profile), ray_(ray), kernel_(disc_polynomial(map.shape)),
+          bool first_flights, GroupSums& groups)
+      : group_sums(groups), map_(map), profile_(profile), ray_(ray),
+        kernel_(disc_polynomial(map.shape)),
         channels_(std::max(map.blocks.channels(), profile.weight_channels)),
         first_flights_(first_flights && map.blocks.has_first_flights()) {}
 
@@ -181,6 +198,7 @@ public:
   }
 
   LaneSums sums, first_sums;
+  GroupSums& group_sums;
   QueryCounts counts;
 
 private:
@@ -233,6 +251,7 @@ private:
           value = hn::Mul(common, hn::MulAdd(fraction, hn::Sub(high, low), low));
         }
         photons.add(value, c, sums);
+        photons.add_to_groups(value, c, 0, group_sums);
         if (first_flights_)
           photons.add_first_flight(value, c, first_sums);
       }
@@ -248,8 +267,9 @@ private:
 };
 
 QueryCounts ray_on_target(const MapView& map, const PhotonMap::RayProfile& profile,
-                          const NearRay& ray, LaneSums& sums, LaneSums* first_sums) {
-  RayWalk walk(map, profile, ray, first_sums != nullptr);
+                          const NearRay& ray, LaneSums& sums, LaneSums* first_sums,
+                          GroupSums& groups) {
+  RayWalk walk(map, profile, ray, first_sums != nullptr, groups);
   walk.run();
   sums = walk.sums;
   if (first_sums)
@@ -260,7 +280,7 @@ QueryCounts ray_on_target(const MapView& map, const PhotonMap::RayProfile& profi
 /// At most phases_at_once phase functions.
 QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f& towards,
                             const PhaseFunction* phases, std::size_t count, LaneSums* sums,
-                            LaneSums* first_flight) {
+                            LaneSums* first_flight, GroupSums& groups) {
   const D16 d;
   const KernelPolynomial kernel = ball_polynomial(map.shape);
   const float x[3] = {point.x, point.y, point.z};
@@ -288,6 +308,7 @@ QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f&
       const auto scattered = hn::Mul(value, phase_lanes(photons, phases[g], direction));
       for (int c = 0; c < photons.blocks.channels(); ++c) {
         photons.add(scattered, c, sums[g]);
+        photons.add_to_groups(scattered, c, g, groups);
         if (photons.blocks.has_first_flights())
           photons.add_first_flight(scattered, c, first_flight[g]);
       }
@@ -318,40 +339,54 @@ namespace vdbeam {
 HWY_EXPORT(ray_on_target);
 HWY_EXPORT(point_on_target);
 
+namespace {
+
+GroupSums make_group_sums(const MapView& map, const std::vector<Rgb>* groups) {
+  return GroupSums(groups ? static_cast<std::size_t>(map.blocks.groups()) * phases_at_once : 0);
+}
+
+} // namespace
+
 QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, Rgb& radiance,
-                      Rgb* first_flight) {
+                      Rgb* first_flight, std::vector<Rgb>* groups) {
+  if (groups)
+    groups->assign(static_cast<std::size_t>(map.blocks.groups()), {});
   if (map.tree.levels.empty() || profile.knots < 2 || !(profile.step > 0) || !profile.phases)
     return {};
   const NearRay ray = near_ray(profile, map.tree.bounds);
   LaneSums sums, first_sums;
+  GroupSums group_sums = make_group_sums(map, groups);
   const QueryCounts counts = HWY_DYNAMIC_DISPATCH(ray_on_target)(
-      map, profile, ray, sums, first_flight ? &first_sums : nullptr);
-  const Rgb total = sums.total();
+      map, profile, ray, sums, first_flight ? &first_sums : nullptr, group_sums);
   const bool grey = map.blocks.channels() == 1 && profile.weight_channels == 1;
-  radiance += grey ? Rgb(total.x) : total;
-  if (first_flight) {
-    const Rgb straight = first_sums.total();
-    *first_flight += grey ? Rgb(straight.x) : straight;
-  }
+  radiance += sums.total(grey);
+  if (first_flight)
+    *first_flight += first_sums.total(grey);
+  for (std::size_t g = 0; groups && g < groups->size(); ++g)
+    (*groups)[g] = group_sums[g * phases_at_once].total(grey);
   return counts;
 }
 
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
                         const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
-                        Rgb* first_flight) {
+                        Rgb* first_flight, std::vector<Rgb>* groups) {
+  const bool grey = map.blocks.channels() == 1;
+  if (groups)
+    groups->assign(static_cast<std::size_t>(map.blocks.groups()) * phases.size(), {});
   QueryCounts counts;
   for (std::size_t first = 0; first < phases.size(); first += phases_at_once) {
     const std::size_t count = std::min(phases_at_once, phases.size() - first);
     LaneSums sums[phases_at_once], first_sums[phases_at_once];
+    GroupSums group_sums = make_group_sums(map, groups);
     if (!map.tree.levels.empty())
       counts = HWY_DYNAMIC_DISPATCH(point_on_target)(map, point, direction, phases.data() + first,
-                                                     count, sums, first_sums);
-    for (std::size_t g = 0; g < count; ++g) {
-      const bool grey = map.blocks.channels() == 1;
-      const Rgb total = sums[g].total(), straight = first_sums[g].total();
-      in_scattered[first + g] = grey ? Rgb(total.x) : total;
+                                                     count, sums, first_sums, group_sums);
+    for (std::size_t i = 0; i < count; ++i) {
+      in_scattered[first + i] = sums[i].total(grey);
       if (first_flight)
-        first_flight[first + g] = grey ? Rgb(straight.x) : straight;
+        first_flight[first + i] = first_sums[i].total(grey);
+      for (std::size_t g = 0; g < group_sums.size() / phases_at_once; ++g)
+        (*groups)[g * phases.size() + first + i] = group_sums[g * phases_at_once + i].total(grey);
     }
   }
   return counts;

@@ -48,6 +48,7 @@ struct Candidates {
   alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
   alignas(64) float power[3][slots];
   alignas(64) float signed_power[slots]; ///< where the map tells first flights apart
+  alignas(64) float group[slots];        ///< of lights, where they are told apart
 };
 
 /// What is the same for all of a query.
@@ -179,6 +180,8 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
   writer.write(d, strength, out.strength + at);
   if (query.blocks.has_first_flights())
     writer.write(d, part.field(PhotonBlocks::power), out.signed_power + at);
+  if (query.blocks.groups() > 0)
+    writer.write(d, part.field(query.blocks.group_field()), out.group + at);
   if (s.per_ray) {
     writer.write(d, p.f, out.fraction + at);
     writer.write(d, hn::Mul(p.w, inverse_step), out.depth + at);

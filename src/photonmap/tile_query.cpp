@@ -103,7 +103,8 @@ HWY_INLINE std::uint32_t subtiles_of_box(const TileFrame& frame, const BoxGroup&
 class TileWalk {
 public:
   TileWalk(const MapView& map, const BeamTile& tile, const TileFrame& frame)
-      : frame_(frame), query_(map.blocks, map.shape, tile) {
+      : frame_(frame), query_(map.blocks, map.shape, tile),
+        group_sums_(tile.by_group ? static_cast<std::size_t>(map.blocks.groups()) : 0) {
     for (int s = 0; s < BeamTile::subtile_count; ++s)
       if (frame.active >> s & 1)
         shaders_[s] = choose_shader(query_, frame.subtiles[s]);
@@ -128,7 +129,9 @@ public:
     shade_hits();
   }
 
-  void add_to(BeamTile& tile, int channels) const {
+  void add_to(BeamTile& tile, int channels) {
+    for (std::size_t g = 0; g < group_sums_.size(); ++g)
+      add_group(tile, channels, g);
     for (int c = 0; c < channels; ++c)
       for (int r = 0; r < BeamTile::ray_count; ++r)
         if (frame_.active >> (r / BeamTile::rays_per_subtile) & 1)
@@ -174,30 +177,57 @@ private:
     hit_count_ = 0;
   }
 
+  /// Of one group of lights; all sums are those of the groups then.
+  void add_group(BeamTile& tile, int channels, std::size_t group) {
+    const GroupSums& own = group_sums_[group];
+    for (int c = 0; c < channels; ++c)
+      for (int r = 0; r < BeamTile::ray_count; ++r) {
+        if (!(frame_.active >> (r / BeamTile::rays_per_subtile) & 1))
+          continue;
+        sums_[c][r] += own.rest[c][r];
+        first_sums_[c][r] += own.first[c][r];
+        const auto row = group * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c);
+        tile.group_radiance[row * BeamTile::ray_count + static_cast<std::size_t>(r)] +=
+            (own.rest[c][r] - own.first[c][r]) * frame_.subtiles[r / 16].scale[r % 16];
+      }
+  }
+
   void shade_candidates(std::size_t s) {
     if (candidates_.count == 0)
       return;
     counts.candidates += candidates_.count * BeamTile::rays_per_subtile;
+    if (group_sums_.empty())
+      shade_selected(s, sums_, first_sums_, [](std::size_t) { return true; });
+    for (std::size_t g = 0; g < group_sums_.size(); ++g)
+      shade_selected(s, group_sums_[g].rest, group_sums_[g].first,
+                     [&](std::size_t i) { return candidates_.group[i] == static_cast<float>(g); });
+    candidates_.count = 0;
+  }
+
+  /// Shades the candidates i with wanted(i), those on their first flight apart.
+  template <class Wanted>
+  void shade_selected(std::size_t s, TileSums& sums, TileSums& first_sums, const Wanted& wanted) {
     rest_.count = first_.count = 0;
-    if (query_.blocks.has_first_flights()) {
-      for (std::size_t i = 0; i < candidates_.count; ++i) {
-        const bool first = std::signbit(candidates_.signed_power[i]);
-        rest_.index[rest_.count] = first_.index[first_.count] = static_cast<std::uint16_t>(i);
-        rest_.count += !first;
-        first_.count += first;
-      }
-    } else {
-      for (; rest_.count < candidates_.count; ++rest_.count)
-        rest_.index[rest_.count] = static_cast<std::uint16_t>(rest_.count);
+    const bool flights = query_.blocks.has_first_flights();
+    for (std::size_t i = 0; i < candidates_.count; ++i) {
+      const bool chosen = wanted(i);
+      const bool first = flights && std::signbit(candidates_.signed_power[i]);
+      rest_.index[rest_.count] = first_.index[first_.count] = static_cast<std::uint16_t>(i);
+      rest_.count += chosen && !first;
+      first_.count += chosen && first;
     }
     const SubtileFrame& subtile = frame_.subtiles[s];
     if (rest_.count > 0)
-      counts.contributions += shaders_[s](query_, subtile, candidates_, rest_, s * 16, sums_);
+      counts.contributions += shaders_[s](query_, subtile, candidates_, rest_, s * 16, sums);
     if (first_.count > 0)
-      counts.contributions +=
-          shaders_[s](query_, subtile, candidates_, first_, s * 16, first_sums_);
-    candidates_.count = 0;
+      counts.contributions += shaders_[s](query_, subtile, candidates_, first_, s * 16, first_sums);
   }
+
+  /// Of the photons of one group of lights.
+  struct GroupSums {
+    alignas(64) TileSums rest = {};
+    alignas(64) TileSums first = {}; ///< on their first flight
+  };
 
   const TileFrame& frame_;
   TileQuery query_;
@@ -208,6 +238,7 @@ private:
   Selection rest_, first_; ///< candidates by what they are, of which one sum each
   alignas(64) TileSums sums_ = {};
   alignas(64) TileSums first_sums_ = {}; ///< of photons on their first flight
+  std::vector<GroupSums> group_sums_;    ///< by group; empty where nobody asks
 };
 
 QueryCounts query_tile_on_target(const MapView& map, const TileFrame& frame, BeamTile& tile,
@@ -283,8 +314,9 @@ void query_rays(const MapView& map, BeamTile& tile, int subtile, int channels,
       continue;
     Rgb radiance, straight;
     const bool flights = map.blocks.has_first_flights();
-    const QueryCounts found =
-        query_ray(map, ray.profile(), radiance, flights ? &straight : nullptr);
+    std::vector<Rgb> groups;
+    const QueryCounts found = query_ray(map, ray.profile(), radiance, flights ? &straight : nullptr,
+                                        tile.by_group ? &groups : nullptr);
     counts.contributions += found.contributions;
     counts.candidates += found.candidates;
     counts.blocks += found.blocks;
@@ -293,6 +325,9 @@ void query_rays(const MapView& map, BeamTile& tile, int subtile, int channels,
       tile.radiance[at] += radiance[c];
       if (flights)
         tile.first_flight[at] += straight[c];
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        tile.group_radiance[g * static_cast<std::size_t>(channels) * BeamTile::ray_count + at] +=
+            groups[g][c];
     }
   }
 }
@@ -306,6 +341,8 @@ QueryCounts query_tile(const MapView& map, BeamTile& tile) {
     tile.radiance.resize(size, 0.0f);
   if (map.blocks.has_first_flights() && tile.first_flight.size() < size)
     tile.first_flight.resize(size, 0.0f);
+  const std::size_t groups = tile.by_group ? static_cast<std::size_t>(map.blocks.groups()) : 0;
+  tile.group_radiance.assign(groups * size, 0.0f);
   if (map.tree.levels.empty())
     return {};
   const Vec3f far_side =

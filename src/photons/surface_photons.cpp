@@ -65,10 +65,11 @@ float SurfacePhotons::share(Disc& disc, Rng& rng) const {
   return static_cast<float>(std::max(found, 1)) / points;
 }
 
-Rgb SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) const {
+GroupedLight SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) const {
   struct Near {
     Vec3f position;
     Rgb light;
+    int group;
   };
   std::vector<Near> near;
   const SurfaceHit& hit = vertex.hit();
@@ -83,7 +84,7 @@ Rgb SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) const {
     radii += weight * photon.radius;
     const Rgb light = vertex.evaluate(-photon.direction) * photon.irradiance / cosine;
     if (max_component(light) > 0)
-      near.push_back({photon.position, light});
+      near.push_back({photon.position, light, photon.group});
   });
   if (near.empty() || !(weights > 0))
     return {};
@@ -98,10 +99,10 @@ Rgb SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) const {
     disc.lift = 0.5 * ceiling->t;
   disc.above = disc.center + disc.normal * disc.lift;
   const float part = share(disc, rng);
-  Rgb sum;
+  GroupedLight sum;
   for (const Near& photon : near)
     if (!disc.hidden || sees(disc, Vec3d(photon.position)))
-      sum += photon.light;
+      sum.add(photon.light, photon.group);
   return sum * vertex.absorbed() / part;
 }
 

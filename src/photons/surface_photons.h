@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/grouped_light.h"
 #include "photonmap/photon_map.h"
 #include "transport/surfaces.h"
 
@@ -16,7 +17,7 @@ public:
   SurfacePhotons(const Surfaces& surfaces, const PhotonMap& map) : surfaces_(surfaces), map_(map) {}
 
   /// The light that leaves against the direction in which the path came.
-  Rgb reflected(const SurfaceVertex& vertex, Rng& rng) const;
+  GroupedLight reflected(const SurfaceVertex& vertex, Rng& rng) const;
 
 private:
   struct Disc;

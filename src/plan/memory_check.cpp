@@ -1,7 +1,7 @@
 #include "plan/memory_check.h"
 
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "lights/light_groups.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>

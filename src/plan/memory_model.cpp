@@ -152,7 +152,6 @@ private:
                            : automatic_paths(hits, stored));
   }
 
-  /// Groups of lights have their photons one after the other.
   void add_photons() {
     const double count = photons();
     const bool directions = plan_.needs(Stage::photon_directions);
@@ -170,7 +169,7 @@ private:
     }
   }
 
-  /// Each group has shadows of its own lights, each moment of the shutter coarse ones.
+  /// Each light has shadows of its own, each moment of the shutter coarse ones.
   void add_shadows() {
     if (!plan_.needs(Stage::shadow_rays) ||
         !estimator_kind(scene_.render.estimator).shoots_photons())

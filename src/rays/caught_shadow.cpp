@@ -28,7 +28,8 @@ Rgb unobstructed(const World& world, Vec3d origin, const IncidentSample& sample)
 
 } // namespace
 
-float caught_shadow(const World& world, const LightSet& lights, const CameraRay& camera, Rng& rng) {
+float caught_shadow(const World& world, const CameraRay& camera, Rng& rng) {
+  const LightSet& lights = world.lights;
   const SurfaceHit& hit = *camera.hit;
   const Vec3f& direction = camera.ray().direction;
   const Vec3f normal = hit.normal * std::copysign(1.0f, -dot(hit.normal, direction));

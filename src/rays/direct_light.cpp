@@ -107,10 +107,10 @@ public:
   }
 
   /// All lights at a distance drawn by what scatters.
-  Rgb by_medium(float u) {
+  GroupedLight by_medium(float u) {
     const bool chromatic = world_.medium.chromatic;
     const int c = chromatic ? std::min(2, static_cast<int>(rng_.uniform() * 3)) : 0;
-    Rgb sum;
+    GroupedLight sum;
     if (!(distances_.opacity(c) > 0))
       return sum;
     const ScatterPoint point = distances_.sample(u, c);
@@ -120,15 +120,15 @@ public:
       if (!light.pieces.empty())
         continue;
       const float other = light.near ? light.near->pdf(point.t) : 0;
-      sum += scattered(point, light.index, point.pdf / (point.pdf + other));
+      add(sum, light, scattered(point, light.index, point.pdf / (point.pdf + other)));
     }
-    sink_.deep.add_light_at(point.t, sum * share_);
+    sink_.deep.add_light_at(point.t, sum.sum() * share_);
     return sum;
   }
 
   /// Lights with a shadow lattice, at distances drawn by the weights of their pieces.
-  Rgb by_shadow(float u) {
-    Rgb sum;
+  GroupedLight by_shadow(float u) {
+    GroupedLight sum;
     for (const SampledLight& light : lights_) {
       if (light.pieces.empty())
         continue;
@@ -148,21 +148,22 @@ public:
       // By the medium alone, the piece is drawn with its share of the opacity.
       const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
       if (point.pdf > 0)
-        sum += take_down(point, scattered(point, light.index, share / drawn));
+        add(sum, light, take_down(point, scattered(point, light.index, share / drawn)));
     }
     return sum;
   }
 
   /// Each light that stands in or near the medium, at a distance drawn by its 1 / r^2.
-  Rgb by_nearness(float u) {
-    Rgb sum;
+  GroupedLight by_nearness(float u) {
+    GroupedLight sum;
     for (const SampledLight& light : lights_) {
       if (!light.near)
         continue;
       const ScatterPoint point = distances_.at(light.near->sample(u));
       const float other = light.near->pdf(point.t);
       if (point.pdf > 0)
-        sum += take_down(point, scattered(point, light.index, point.pdf / (point.pdf + other)));
+        add(sum, light,
+            take_down(point, scattered(point, light.index, point.pdf / (point.pdf + other))));
     }
     return sum;
   }
@@ -177,6 +178,10 @@ private:
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
     std::vector<Piece> pieces;       ///< where a lattice tells what is shadowed; else empty
   };
+
+  void add(GroupedLight& sum, const SampledLight& light, const Rgb& found) const {
+    sum.add(found, world_.lights.group(light.index));
+  }
 
   /// Distances by nearness, where they are of use: to a light that is near, or that shines on a
   /// part of the ray only.
@@ -271,12 +276,12 @@ private:
 
 } // namespace
 
-Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
-                 const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
-                 const RaySink& sink) {
+GroupedLight direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
+                          const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
+                          const RaySink& sink) {
   constexpr int samples_per_check = 16;
   const std::vector<bool>& sampled = sampling.sampled;
-  Rgb sum;
+  GroupedLight sum;
   if (profile.empty() || std::find(sampled.begin(), sampled.end(), true) == sampled.end())
     return sum;
   const float share = 1 / static_cast<float>(sampling.samples);

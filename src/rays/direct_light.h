@@ -29,9 +29,9 @@ struct LightSampling {
 /// Lights with a shadow lattice (grey media only) get distances of their own, drawn by what
 /// scatters times what of the light is expected there. Adds the number of traced rays to
 /// `shadow_rays`, and the light to `sink`.
-Rgb direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
-                 const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
-                 const RaySink& sink = {});
+GroupedLight direct_light(const World& world, const Ray& ray, const DepthProfile& profile,
+                          const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
+                          const RaySink& sink = {});
 
 /// A lattice for each light that is sampled and comes from one direction; `rays`: shadow rays to
 /// spend on each.

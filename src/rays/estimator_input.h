@@ -27,12 +27,9 @@ struct EstimatorTask {
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
-  /// Of a moment of the scene: the photons of the scene itself, whose plan it follows, or those of
-  /// each group of its lights, one after the other; null: it makes plans of its own.
+  /// Of a moment of the scene: the choices of the scene itself, which it follows; null: it makes
+  /// choices of its own.
   const SceneChoices* of_scene = nullptr;
-  /// All lights of the scene, where the world holds one group of them: shadows on shadow catchers
-  /// belong to the matte, which groups do not change. Null: the world has them all.
-  const LightSet* all_lights = nullptr;
   /// Light paths reach the limit of bounces often enough to be seen, where there is one.
   bool reaches_bounce_limit = true;
 };
@@ -64,9 +61,13 @@ struct EstimatorInput : EstimatorTask {
   }
   /// Channels of the photons' power.
   int photon_channels() const { return plan.needs(Stage::photon_color) ? 3 : 1; }
-  const LightSet& lights_of_matte() const { return all_lights ? *all_lights : world.lights; }
   std::size_t object_count() const { return objects ? objects->names.size() : 0; }
   std::size_t plane_count() const { return layers ? layers->planes() : 0; }
+  /// Makes room for a pass in `image`.
+  void resize(PassImage& image) const {
+    image.resize(camera.width(), camera.height(), !world.medium.emitters.empty(),
+                 world.lights.group_count(), deep, object_count(), plane_count());
+  }
   bool stopped() const { return stop && stop->stopped(); }
 };
 

@@ -55,10 +55,10 @@ void add_coverage(const EstimatorInput& input, const CameraRay& camera, const De
 
 } // namespace
 
-Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
-                   const Rgb& tr, bool camera,
-                   const std::function<float(std::size_t light)>& weight) {
-  Rgb beyond, sum;
+GroupedLight lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                            const Rgb& tr, bool camera,
+                            const std::function<float(std::size_t light)>& weight) {
+  GroupedLight beyond, sum;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
     if ((camera && !world.lights.traits(i).visible) || world.lights[i].surface() >= 0)
       continue;
@@ -66,11 +66,12 @@ Rgb lights_through(const World& world, const Segment& segment, const DepthProfil
     if (weight)
       hit.radiance *= weight(i);
     if (hit.distance == infinity)
-      beyond += hit.radiance;
+      beyond.add(hit.radiance, world.lights.group(i));
     else
-      sum += hit.radiance * transmittance_to(world.medium, profile, hit.distance);
+      sum.add(hit.radiance * transmittance_to(world.medium, profile, hit.distance),
+              world.lights.group(i));
   }
-  return sum + tr * beyond;
+  return sum + beyond * tr;
 }
 
 Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
@@ -98,12 +99,12 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   const World& world = input.world;
   const Rgb tr = transmittance(world.medium, profile);
   OpacityAndDepth seen = opacity_and_depth(world, camera, profile);
-  Rgb background = lights_through(world, camera.whole(), profile, tr, true);
+  GroupedLight background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
-    background += tr * surface.radiance;
+    background += surface.radiance * tr;
     end_at_surface(world, camera, surface.shadow, seen);
   }
-  image.background[pixel] += background;
+  image.add(&PassImage::background, pixel, background);
   image.opacity[pixel] += seen.opacity;
   image.depth[pixel] += seen.depth;
   if (!image.coverage.empty())
@@ -124,8 +125,9 @@ void shade_emission(const EstimatorInput& input, const World& world, const Camer
   const auto cutoff = static_cast<float>(input.settings.cutoff);
   const VolumeLights volumes(input.layers, pixel, image);
   std::vector<Rgb> of_emitters;
-  image.emission[pixel] += emission_along(world.medium, camera.segment, profile, cutoff,
-                                          volumes ? &of_emitters : nullptr);
+  const Rgb emission = emission_along(world.medium, camera.segment, profile, cutoff,
+                                      volumes ? &of_emitters : nullptr);
+  image.add(&PassImage::emission, pixel, {emission, world.lights.group_of_emission()});
   for (std::size_t i = 0; i < of_emitters.size(); ++i)
     volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
   if (const DeepRay deep(world, camera, pixel, image); deep)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/grouped_light.h"
 #include "medium/depth_profile.h"
 #include "rays/estimator_input.h"
 #include "transport/camera_ray.h"
@@ -10,11 +11,13 @@ namespace vdbeam {
 
 /// What a camera ray sees of the surface at which it ends.
 struct SeenSurface {
-  Rgb radiance = {}; ///< that leaves it against the ray
-  float shadow = 0;  ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
-  Rgb lamp = {};     ///< the part of `radiance` that the surface emits, as a light with shadow rays
+  GroupedLight radiance = {}; ///< that leaves it against the ray
+  float shadow = 0; ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+  /// The part of `radiance` that the surface emits, as a light with shadow rays.
+  GroupedLight lamp = {};
   // Of a matt surface:
-  Rgb smooth = {};     ///< the part that comes by way of other surfaces and the medium, per albedo
+  /// The part of `radiance` that comes by way of other surfaces and the medium, per albedo.
+  GroupedLight smooth = {};
   Rgb albedo = {};     ///< of the surface
   Vec3f position = {}; ///< render space
   Vec3f normal = {};   ///< on the side that is seen
@@ -45,9 +48,9 @@ void shade_emission(const EstimatorInput& input, const World& world, const Camer
 
 /// The lights that a ray meets on `segment`, seen through the medium, whose transmittance all along
 /// is `tr`. `camera`: only those that the camera sees. `weight`, if given: factor of each light.
-Rgb lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
-                   const Rgb& tr, bool camera,
-                   const std::function<float(std::size_t light)>& weight = {});
+GroupedLight lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
+                            const Rgb& tr, bool camera,
+                            const std::function<float(std::size_t light)>& weight = {});
 
 /// exp(-tau) all along the profile.
 Rgb transmittance(const Medium& medium, const DepthProfile& profile);

@@ -35,6 +35,8 @@ Scene reduced(const Scene& scene, int reduction) {
   small.moments.clear();
   for (LightSettings& light : small.lights)
     light.group.clear();
+  for (SurfaceSettings& surface : small.surfaces)
+    surface.group.clear();
   return small;
 }
 
@@ -178,7 +180,7 @@ void Draft::enlarge(const EstimatorInput& full, const std::vector<Seen>& seen, d
     if (near.clear && !ray.hit)
       ray.segment.t_end = ray.segment.t_begin;
     profile.build(full.world.medium, ray.segment, static_cast<float>(full.settings.cutoff));
-    shade_profile(full, ray, profile, pixel, image, {mean.radiance});
+    shade_profile(full, ray, profile, pixel, image, {GroupedLight(mean.radiance, -1)});
     opacity = opacity_and_depth(full.world, ray, profile).opacity;
   }
   const float of_medium =

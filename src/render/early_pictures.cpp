@@ -1,4 +1,4 @@
-#include "layers/light_group_names.h"
+#include "lights/light_groups.h"
 #include "render/pass_loop.h"
 #include "render/pass_window.h"
 #include "render/quick_look.h"

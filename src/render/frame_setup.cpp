@@ -2,8 +2,8 @@
 
 #include "choose/feature.h"
 #include "choose/schedule.h"
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "lights/light_groups.h"
 #include "photons/photon_plan.h"
 #include "prepare/read_volumes.h"
 #include "render/bias_probe.h"

@@ -2,8 +2,8 @@
 
 #include "film/clamp.h"
 #include "film/layers.h"
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "lights/light_groups.h"
 #include "rays/make_deep_layout.h"
 #include "render/arithmetic.h"
 #include "render/checkpoint.h"

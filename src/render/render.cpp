@@ -3,7 +3,6 @@
 #include "choose/choose_estimator.h"
 #include "choose/feature.h"
 #include "film/deep_film.h"
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
 #include "machine/memory.h"
 #include "machine/stopwatch.h"
@@ -183,11 +182,11 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   const EstimatorInput& input = path ? path_input : setup.input;
   const EstimatorType type = type_of_passes(scene, choice);
   Shutter shutter(scene, type, prepared, input, setup.path_plan, loop.probe_pixels());
-  if (choice.photons && light_group_names(scene).empty()) {
+  if (choice.photons) {
     if (scene.moments.empty())
       shutter.take(std::move(choice.photons));
     else
-      shutter.follow({{choice.photons->choices(), setup.world().space}}, result.statistics);
+      shutter.follow({choice.photons->choices(), setup.world().space}, result.statistics);
   }
   for (const std::string& line : limit_notes(scene, input))
     note(line);

@@ -1,7 +1,5 @@
 #include "render/shutter.h"
 
-#include "choose/group_passes.h"
-#include "layers/light_group_names.h"
 #include "machine/memory.h"
 #include "machine/stopwatch.h"
 #include "prepare/prepared_scene.h"
@@ -66,10 +64,7 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   renderer.last_pass = pass;
   if (!renderer.passes) {
     const Stopwatch watch;
-    renderer.passes = ready_ ? std::move(ready_)
-                      : light_group_names(scene_).empty()
-                          ? make_pass_renderer(type_, renderer.input)
-                          : make_group_passes(scene_, type_, renderer.input);
+    renderer.passes = ready_ ? std::move(ready_) : make_pass_renderer(type_, renderer.input);
     if (renderer.input.plan.needs(Stage::bias))
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
@@ -85,24 +80,19 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   return {*renderer.passes, renderer.probe.get()};
 }
 
-void Shutter::follow(std::vector<SceneChoices> choices, RenderStatistics& statistics) {
+void Shutter::follow(SceneChoices choices, RenderStatistics& statistics) {
+  statistics.pilot_paths += choices.choices.photons.pilot_paths;
+  statistics.importance_rays += choices.choices.photons.importance_rays;
   scene_choices_ = std::move(choices);
-  for (const SceneChoices& each : scene_choices_) {
-    statistics.pilot_paths += each.choices.photons.pilot_paths;
-    statistics.importance_rays += each.choices.photons.importance_rays;
-  }
 }
 
-/// What moments follow; empty where they choose for themselves. It depends on the scene alone,
+/// What moments follow; none where they choose for themselves. It depends on the scene alone,
 /// never on which moment came first.
-const std::vector<SceneChoices>& Shutter::scene_choices(RenderStatistics& statistics) {
-  if (!input_.plan.needs(Stage::photon_importance) || !scene_choices_.empty())
+const std::optional<SceneChoices>& Shutter::scene_choices(RenderStatistics& statistics) {
+  if (!input_.plan.needs(Stage::photon_importance) || scene_choices_)
     return scene_choices_;
   const Stopwatch watch;
-  follow(light_group_names(scene_).empty()
-             ? std::vector{choose_for_scene(input_, estimator_kind(type_))}
-             : choose_for_groups(scene_, type_, input_),
-         statistics);
+  follow(choose_for_scene(input_, estimator_kind(type_)), statistics);
   statistics.pilot += watch.seconds();
   return scene_choices_;
 }
@@ -118,10 +108,10 @@ Shutter::MomentRenderer& Shutter::renderer_of(const Scene& moment, RenderStatist
     renderer = std::make_unique<MomentRenderer>(
         prepared, Camera(scene_.camera, scene_.image, prepared->world->space), input_, path_plan_);
     if (&moment != &scene_)
-      for (const SceneChoices& choices : scene_choices(statistics))
-        renderer->scene_choices.push_back(choices.in_units(prepared->world->space.scale));
-    if (!renderer->scene_choices.empty())
-      renderer->input.of_scene = renderer->scene_choices.data();
+      if (const auto& choices = scene_choices(statistics)) {
+        renderer->scene_choices = choices->in_units(prepared->world->space.scale);
+        renderer->input.of_scene = &*renderer->scene_choices;
+      }
     if (input_.layers) {
       renderer->layers.emplace(input_.layers->at(moment));
       renderer->input.layers = &*renderer->layers;

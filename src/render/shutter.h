@@ -31,11 +31,11 @@ public:
           const EstimatorInput& input, const RenderPlan& path_plan,
           const std::vector<std::size_t>& probe_pixels);
 
-  /// Has the passes of a still scene without light groups that were made already.
+  /// Has the passes of a still scene that were made already.
   void take(std::unique_ptr<PassRenderer> ready) { ready_ = std::move(ready); }
-  /// Has the choices of the scene itself, by group of its lights, that moments are to follow; adds
-  /// the work that they took.
-  void follow(std::vector<SceneChoices> choices, RenderStatistics& statistics);
+  /// Has the choices of the scene itself, which moments are to follow; adds the work that they
+  /// took.
+  void follow(SceneChoices choices, RenderStatistics& statistics);
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
@@ -50,7 +50,7 @@ private:
 
     PreparedScenePtr prepared;
     Camera camera;
-    std::vector<SceneChoices> scene_choices; ///< in this moment's units
+    std::optional<SceneChoices> scene_choices; ///< in this moment's units
     EstimatorInput input, path_input;
     std::optional<RayLayers> layers; ///< of this moment
     std::unique_ptr<PassRenderer> passes;
@@ -59,7 +59,7 @@ private:
   };
 
   MomentRenderer& renderer_of(const Scene& moment, RenderStatistics& statistics);
-  const std::vector<SceneChoices>& scene_choices(RenderStatistics& statistics);
+  const std::optional<SceneChoices>& scene_choices(RenderStatistics& statistics);
   void make_room();
 
   const Scene& scene_;
@@ -67,7 +67,7 @@ private:
   PreparedScenePtr prepared_;
   const EstimatorInput& input_;
   const RenderPlan& path_plan_;
-  std::vector<SceneChoices> scene_choices_; ///< that the moments follow, by group
+  std::optional<SceneChoices> scene_choices_; ///< that the moments follow
   const std::vector<std::size_t>& probe_pixels_;
   std::unique_ptr<PassRenderer> ready_;
   std::map<std::string, std::unique_ptr<MomentRenderer>>

@@ -4,8 +4,8 @@
 #include "image/color_conversion.h"
 #include "keys/estimator_kind.h"
 #include "keys/scene_keys.h"
-#include "layers/light_group_names.h"
 #include "layers/plane_layers.h"
+#include "lights/light_groups.h"
 #include "lights/light_table.h"
 #include "materials/material_table.h"
 #include "phase/phase_table.h"
@@ -142,24 +142,27 @@ public:
     check_transform(fmt::format("mesh.{}.transform", index), surface.transform);
   }
 
+  void check_group(const std::string& path, const std::string& group) const {
+    const bool plain = std::all_of(group.begin(), group.end(),
+                                   [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    if (!plain || group == rest_group)
+      fail(path,
+           fmt::format("must be made of letters, digits and _, and not be \"rest\", got \"{}\"",
+                       group));
+  }
+
   void check_groups() const {
-    bool grouped = false;
-    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
-      const std::string& group = scene_.lights[i].group;
-      grouped = grouped || !group.empty();
-      const bool plain = std::all_of(group.begin(), group.end(),
-                                     [](unsigned char c) { return std::isalnum(c) || c == '_'; });
-      if (!plain || group == "rest")
-        fail(fmt::format("light.{}.group", i),
-             fmt::format("must be made of letters, digits and _, and not be \"rest\", got \"{}\"",
-                         group));
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i)
+      check_group(fmt::format("light.{}.group", i), scene_.lights[i].group);
+    for (std::size_t i = 0; i < scene_.surfaces.size(); ++i) {
+      const SurfaceSettings& surface = scene_.surfaces[i];
+      check_group(fmt::format("mesh.{}.group", i), surface.group);
+      if (!surface.group.empty() && !shines(surface.material))
+        fail(fmt::format("mesh.{}.group", i),
+             "is for a mesh that shines: give it an emissive material, or leave the group out");
     }
-    if (grouped && scene_.render.clamp)
-      fail("render.clamp", "excludes groups of lights (light.group)");
-    for (std::size_t i = 0; i < scene_.surfaces.size() && grouped; ++i)
-      if (shines(scene_.surfaces[i].material))
-        fail(fmt::format("mesh.{}.material", i),
-             "must not be emissive in a scene whose lights have groups (light.group)");
+    if (!light_group_names(scene_).empty() && scene_.render.clamp)
+      fail("render.clamp", "excludes groups of lights (light.group, mesh.group)");
   }
 
   void check_layers() const {

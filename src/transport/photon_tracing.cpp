@@ -275,6 +275,7 @@ private:
     surface_photons.position.emplace_back(vertex.hit().position);
     surface_photons.direction.push_back(path.segment.ray.direction);
     surface_photons.power.push_back(path.throughput);
+    store_group(surface_photons, path);
   }
 
   float store_probability(const Volume& volume, const Vec3f& point, const Vec3f& direction) const {
@@ -285,6 +286,11 @@ private:
     if (!settings_.camera || !settings_.directions)
       return by_cell;
     return by_cell * towards_camera(*settings_.camera, world_.medium, volume, point, direction);
+  }
+
+  void store_group(PhotonList& list, const LightPath& path) const {
+    if (world_.lights.group_count() > 0)
+      list.group.push_back(static_cast<std::uint16_t>(world_.lights.group(path.light)));
   }
 
   void store(LightPath& path, const Collision& hit, const Rgb& power) {
@@ -298,6 +304,7 @@ private:
     if (settings_.directions)
       photons.direction.push_back(path.segment.ray.direction);
     photons.power.push_back(power * settings_.albedo / probability);
+    store_group(photons, path);
     if (settings_.path_numbers)
       photons.path.push_back(path.number);
     if (single_scattering_)
@@ -310,26 +317,13 @@ private:
   bool single_scattering_; ///< photons may bring light that the medium has not scattered yet
 };
 
-/// What the tracers have in one array of theirs, `member` of `list`, one after the other.
-template <class T>
-UnfilledArray<T> joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list,
-                        UnfilledArray<T> PhotonList::*member) {
-  std::vector<std::size_t> first{0};
+/// What the tracers have in one of their lists.
+PhotonList joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list,
+                  int groups) {
+  std::vector<const PhotonList*> lists;
   for (const PathTracer& tracer : tracers)
-    first.push_back(first.back() + (tracer.*list.*member).size());
-  UnfilledArray<T> all(first.back());
-  tbb::parallel_for(std::size_t(0), tracers.size(), [&](std::size_t i) {
-    const UnfilledArray<T>& part = tracers[i].*list.*member;
-    std::copy(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first[i]));
-  });
-  return all;
-}
-
-PhotonList joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list) {
-  return {joined(tracers, list, &PhotonList::position),
-          joined(tracers, list, &PhotonList::direction), joined(tracers, list, &PhotonList::power),
-          joined(tracers, list, &PhotonList::first_flight),
-          joined(tracers, list, &PhotonList::path)};
+    lists.push_back(&(tracer.*list));
+  return join(lists, groups);
 }
 
 } // namespace
@@ -390,8 +384,9 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
   std::uint64_t collisions = 0;
   for (const PathTracer& tracer : tracers)
     collisions += tracer.collisions;
-  pass.photons = joined(tracers, &PathTracer::photons);
-  pass.surface_photons = joined(tracers, &PathTracer::surface_photons);
+  const int groups = world.lights.group_count();
+  pass.photons = joined(tracers, &PathTracer::photons, groups);
+  pass.surface_photons = joined(tracers, &PathTracer::surface_photons, groups);
   pass.mean_collisions =
       paths > 0 ? static_cast<double>(collisions) / static_cast<double>(paths) : 0;
   return pass;

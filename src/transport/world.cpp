@@ -1,5 +1,6 @@
 #include "transport/world.h"
 
+#include "lights/light_groups.h"
 #include "lights/surface_light.h"
 #include "lights/volume_light.h"
 #include "math/color.h"
@@ -209,6 +210,18 @@ void add_surface_lights(const std::vector<SurfaceSettings>& settings, World& wor
   world.surfaces = std::move(surfaces);
 }
 
+/// Each light has the group that its settings name. Volumes that glow belong to the rest.
+void sort_lights_into_groups(const Scene& scene, World& world) {
+  const LightGroups groups(scene);
+  std::vector<int> of_light(world.lights.size(), groups.number(""));
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    of_light[i] = groups.number(scene.lights[i].group);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (const int light = world.surfaces->lights[i]; light >= 0)
+      of_light[static_cast<std::size_t>(light)] = groups.number(scene.surfaces[i].group);
+  world.lights.sort_into_groups(groups.count(), of_light, groups.number(""));
+}
+
 void bound_region(World& world, const Boxd& bounds) {
   world.medium.bounds = {Vec3f(world.space.point(bounds.lower)),
                          Vec3f(world.space.point(bounds.upper))};
@@ -300,6 +313,7 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   if (world.surfaces)
     add_surface_lights(scene.surfaces, world);
   add_volume_lights(world);
+  sort_lights_into_groups(scene, world);
   if (world.surfaces && !world.medium.emitters.empty())
     world.emission = std::make_shared<const EmissionDirections>(world.medium.emitters);
   if (facts)

@@ -30,6 +30,11 @@ inline bool sees_directly(const World& world) {
   return !world.surfaces || !world.surfaces->show_surroundings();
 }
 
+/// The group to which the light of a surface belongs; -1: there are none.
+inline int group_of(const World& world, const SurfaceVertex& vertex) {
+  return vertex.light() < 0 ? -1 : world.lights.group(static_cast<std::size_t>(vertex.light()));
+}
+
 /// No surface stands between a point and a light, or another point, at a distance along
 /// `direction`. What lies within 1e-4 of the distance before its end does not count: it is the end.
 inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& direction,

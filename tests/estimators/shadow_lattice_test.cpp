@@ -83,10 +83,10 @@ Direct measure(const MemoryScene& scene, double rays) {
           profile.build(world.medium, ray.segment, 1e-6f);
           Rng rng({3, 1, draw + (guided ? 1000 : 0)}, RngStage::direct,
                   static_cast<std::uint64_t>(16 * y + x));
-          const Rgb light =
+          const GroupedLight light =
               direct_light(world, ray.segment.ray, profile,
                            {sampled, 2, guided ? &lattices : &none}, rng, shadow_rays);
-          sums[x / 8] += static_cast<double>(light.x);
+          sums[x / 8] += static_cast<double>(light.sum().x);
         }
       for (std::size_t i : {0u, 1u})
         (guided ? result.guided : result.plain)[i].add(sums[i] / 128);

@@ -36,14 +36,14 @@ PassImage fit_of(const TestFrame& frame, int pass, int cut, const Light& light) 
   for (int y = 0; y < width; ++y)
     for (int x = 0; x < width; ++x) {
       SeenSurface seen;
-      seen.smooth = Rgb(static_cast<float>(light(x, y)));
+      seen.smooth = GroupedLight(Rgb(static_cast<float>(light(x, y))), -1);
       seen.albedo = Rgb(0.5f);
       seen.position = Vec3f(Vec3d{x * pixel, y * pixel, 0});
       seen.normal = {0, 0, 1};
       seen.surface = x < cut ? 0 : 1;
       const auto i = static_cast<std::size_t>(y * width + x);
       fit.set(i, seen, Rgb(0.8f));
-      image.background[i] = seen.smooth * 0.4f;
+      image.background[i] = seen.smooth.sum() * 0.4f;
     }
   fit.apply({0, 0, width, width}, image);
   return image;

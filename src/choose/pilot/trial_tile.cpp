@@ -82,11 +82,11 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
     shade_emission(input, world, ray.camera, ray.profile, i, beside, emission_rays);
     // Also of lights that the camera does not see: hiding a sky must change no other pixel's plan.
     const Rgb tr = transmittance(world.medium, ray.profile);
-    beside.background[i] = lights_through(world, ray.camera.whole(), ray.profile, tr, false);
+    beside.background[i] = lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
     if (ray.camera.hit) {
       Rng rng(key, RngStage::surface, ray.pixel);
       beside.background[i] +=
-          tr * surfaces.from_surface(*ray.camera.hit, ray.camera.ray().direction, rng);
+          tr * surfaces.from_surface(*ray.camera.hit, ray.camera.ray().direction, rng).sum();
     }
     const std::size_t x = ray.pixel % width - static_cast<std::size_t>(place.x0);
     const std::size_t y = ray.pixel / width - static_cast<std::size_t>(place.y0);
@@ -96,7 +96,8 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
     // One sample is enough, since it only enters the pixel's weight.
     Rng rng(key, RngStage::direct, ray.pixel);
     const Rgb known = beside.total(i) + direct_light(world, ray.camera.ray(), ray.profile,
-                                                     {plan.sampled_lights}, rng, shadow_rays);
+                                                     {plan.sampled_lights}, rng, shadow_rays)
+                                            .sum();
     view.pixels.push_back(ray.pixel);
     view.rays.push_back(i);
     for (std::size_t c = 0; c < channels; ++c) {

@@ -9,11 +9,13 @@ namespace vdbeam {
 
 namespace {
 
-/// The light of ray `i` of a tile.
-Rgb light_of(const std::vector<float>& values, int i, int channels) {
+/// The light of ray `i` of a tile; `group`: which of several such tables.
+Rgb light_of(const std::vector<float>& values, int i, int channels, std::size_t group = 0) {
+  const float* of_ray =
+      values.data() + group * static_cast<std::size_t>(channels) * BeamTile::ray_count + i;
   return channels == 1
-             ? Rgb(values[i])
-             : Rgb(values[i], values[BeamTile::ray_count + i], values[2 * BeamTile::ray_count + i]);
+             ? Rgb(of_ray[0])
+             : Rgb(of_ray[0], of_ray[BeamTile::ray_count], of_ray[2 * BeamTile::ray_count]);
 }
 
 } // namespace
@@ -26,6 +28,7 @@ void BeamEstimator::gather(TileScratch& scratch, PassImage& image) const {
   const PhotonMap& map = photons_.map();
   BeamTile& tile = scratch.tile;
   fill_beam_tile(photons_.world(), input_.camera, scratch.rays, weight_settings(), tile);
+  tile.by_group = map.groups() > 0;
   tile.radiance.assign(static_cast<std::size_t>(map.channels()) * BeamTile::ray_count, 0);
   tile.first_flight.assign(map.has_first_flights() ? tile.radiance.size() : 0, 0);
   scratch.statistics.contributions += map.query(tile).contributions;
@@ -33,9 +36,12 @@ void BeamEstimator::gather(TileScratch& scratch, PassImage& image) const {
     if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
       scratch.statistics.lookups += ray.profile.empty() ? 0 : 1;
       image.indirect[ray.pixel] = light_of(tile.radiance, i, map.channels());
+      for (std::size_t g = 0; g < image.groups.size() && tile.by_group; ++g)
+        image.groups[g][ray.pixel] += light_of(tile.group_radiance, i, map.channels(), g);
       if (map.has_first_flights())
         image.move_to_direct(ray.pixel, light_of(tile.first_flight, i, map.channels()));
     }
+  tile.by_group = false;
 }
 
 void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
@@ -52,11 +58,13 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
       gather_volumes(scratch, image);
   };
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
+    const PhotonMap& map = photons_.map();
     std::vector<float> table;
+    std::vector<Rgb> groups;
     Rgb sum;
-    photons_.map().query_ray(ray_weights(photons_.world(), ray, profile, weight_settings(), table),
-                             sum);
-    return sum;
+    map.query_ray(ray_weights(photons_.world(), ray, profile, weight_settings(), table), sum,
+                  map.groups() > 0 ? &groups : nullptr);
+    return GroupedLight(sum, groups);
   };
   shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along}, image, statistics);
   image.blur = blur.take();

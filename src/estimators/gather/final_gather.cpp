@@ -54,7 +54,9 @@ struct FinalGather::Walk : Flight {
   GatheredLight found;
 
   /// Light that comes along the present flight.
-  void add(const Rgb& light) { (scatterings == 1 ? found.direct : found.indirect) += light; }
+  void add(const GroupedLight& light) {
+    (scatterings == 1 ? found.direct : found.indirect) += light;
+  }
 };
 
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
@@ -90,10 +92,10 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
     rng = walk.rng;
     ++counts.gather_walks;
     const float counted = std::copysign(stratum * ray_weight, weight);
-    const Rgb light = (walk.found.direct + walk.found.indirect) * counted;
+    const Rgb light = (walk.found.direct.sum() + walk.found.indirect.sum()) * counted;
     sink.add(point.t, volume.setting, light);
-    sum.direct += walk.found.direct * counted;
-    sum.indirect += walk.found.indirect * counted;
+    sum.direct += walk.found.direct *= counted;
+    sum.indirect += walk.found.indirect *= counted;
     sum.blur += walk.found.blur * counted;
   }
   return sum;
@@ -147,12 +149,12 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
 /// lights for which there are no shadow rays.
 void FinalGather::meet_light(Walk& walk, float end) const {
   const Segment piece{walk.segment.ray, walk.gathered, end};
-  Rgb light;
+  GroupedLight light;
   if (!world_.medium.emitters.empty())
-    light += sample_emission(world_.medium, piece, walk.rng);
+    light.add(sample_emission(world_.medium, piece, walk.rng), world_.lights.group_of_emission());
   for (std::size_t l = 0; l < world_.lights.size(); ++l)
     if (!plan_.sampled_lights[l] && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
-      light += world_.lights[l].emitted_radiance(piece).radiance;
+      light.add(world_.lights[l].emitted_radiance(piece).radiance, world_.lights.group(l));
   walk.add(light * walk.throughput);
   walk.gathered = end;
 }
@@ -161,9 +163,9 @@ void FinalGather::meet_light(Walk& walk, float end) const {
 void FinalGather::meet_surface(Walk& walk) const {
   const Vec3f& direction = walk.segment.ray.direction;
   const SurfaceVertex vertex(*world_.surfaces, *walk.end, direction);
-  Rgb light = surfaces_.reflected(vertex, direction, walk.rng);
+  GroupedLight light = surfaces_.reflected(vertex, direction, walk.rng);
   if (vertex.light() >= 0 && !plan_.sampled_lights[static_cast<std::size_t>(vertex.light())])
-    light += vertex.emitted();
+    light.add(vertex.emitted(), group_of(world_, vertex));
   walk.add(light * walk.throughput);
 }
 
@@ -184,8 +186,9 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
     RatioTracking shadow(world_.medium, {{flight.origin, wi}, 0, shadow_ray->distance});
     while (shadow.advance(walk.rng) && shadow.attenuate(walk.rng))
       continue;
-    walk.found.indirect += shadow_ray->light * shadow.transmittance() * walk.throughput *
-                           phase.evaluate(dot(flight.direction, wi));
+    walk.found.indirect.add(shadow_ray->light * shadow.transmittance() * walk.throughput *
+                                phase.evaluate(dot(flight.direction, wi)),
+                            world_.lights.group(l));
   }
 }
 
@@ -194,18 +197,23 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
 void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
   const auto phase = static_cast<std::size_t>(volume.phase_index);
-  std::vector<Rgb> gathered(phases.size());
-  const auto radiance = [&](const PhotonMap& map) {
-    const Ray& at = walk.segment.ray;
+  std::vector<Rgb> gathered(phases.size()), groups;
+  const Ray& at = walk.segment.ray;
+  const auto query = [&](const PhotonMap& map, std::vector<Rgb>* of_groups) {
     walk.counts.contributions +=
-        map.query_point(at.origin, at.direction, phases, gathered.data()).contributions;
-    const Rgb albedo = plan_.albedo_in_power ? Rgb(1) : volume.albedo_at(at.origin);
-    return gathered[phase] * albedo * walk.throughput;
+        map.query_point(at.origin, at.direction, phases, gathered.data(), nullptr, of_groups)
+            .contributions;
   };
-  const Rgb light = radiance(map_);
+  const Rgb albedo = plan_.albedo_in_power ? Rgb(1) : volume.albedo_at(at.origin);
+  query(map_, map_.groups() > 0 ? &groups : nullptr);
+  GroupedLight light(gathered[phase], groups, phase, phases.size());
+  light *= albedo;
+  light *= walk.throughput;
+  if (compared_) {
+    query(*compared_, nullptr);
+    walk.found.blur = light.sum() - gathered[phase] * albedo * walk.throughput;
+  }
   walk.found.indirect += light;
-  if (compared_)
-    walk.found.blur = light - radiance(*compared_);
 }
 
 } // namespace vdbeam

@@ -8,9 +8,9 @@ namespace vdbeam {
 
 /// What the walks of a camera ray gather, the mean over the walks.
 struct GatheredLight {
-  Rgb direct;   ///< scattered once, of lights for which there are no shadow rays
-  Rgb indirect; ///< scattered more often
-  Rgb blur;     ///< by how much `indirect` exceeds what the same walks gather in other kernels
+  GroupedLight direct;   ///< scattered once, of lights for which there are no shadow rays
+  GroupedLight indirect; ///< scattered more often
+  Rgb blur; ///< by how much `indirect` exceeds what the same walks gather in other kernels
 };
 
 /// Final gathering (Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001) in a medium:

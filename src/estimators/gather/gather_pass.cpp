@@ -53,6 +53,8 @@ GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, c
                       static_cast<std::size_t>(input.camera.height());
   walked_.direct.resize(pixels);
   walked_.indirect.resize(pixels);
+  walked_.groups.assign(static_cast<std::size_t>(input.world.lights.group_count()),
+                        std::vector<Rgb>(pixels));
   if (input.world.surfaces) {
     walked_.opacity.resize(pixels);
     walked_.depth.resize(pixels);
@@ -100,14 +102,15 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
     send(ray);
     for (const TileRays::PixelRay& one : more)
       send(one);
-    walked_.direct[ray.pixel] = sum.direct;
-    walked_.indirect[ray.pixel] = sum.indirect;
+    walked_.add(&PassImage::direct, ray.pixel, sum.direct);
+    walked_.add(&PassImage::indirect, ray.pixel, sum.indirect);
     if (probe)
       probe->radiance = sum.blur * BlurProbe::bias_over_difference(BlurProbe::width_of_walks);
   }
 }
 
-Rgb GatherPass::gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const {
+GroupedLight GatherPass::gather_along(const CameraRay& ray, const DepthProfile& profile,
+                                      Rng& rng) const {
   constexpr int walks = 2;
   RenderStatistics uncounted;
   const FinalGather gather(photons_.world(), photons_.plan(), photons_.map(), surfaces_);
@@ -145,12 +148,12 @@ void GatherPass::fit(BlurProbe& blur, PassImage& image) const {
   image.finished_tiles = std::move(finished);
 }
 
-GatheredLight GatherPass::fitted(std::span<const PixelRegression::Share> shares) const {
-  GatheredLight light;
-  for (const PixelRegression::Share& share : shares) {
-    light.direct += walked_.direct[share.pixel] * share.weight;
-    light.indirect += walked_.indirect[share.pixel] * share.weight;
-  }
+/// The weighted sum of what the walks of pixels found.
+Rgb GatherPass::fitted(const std::vector<Rgb>& walked,
+                       std::span<const PixelRegression::Share> shares) {
+  Rgb light;
+  for (const PixelRegression::Share& share : shares)
+    light += walked[share.pixel] * share.weight;
   return light;
 }
 
@@ -161,21 +164,24 @@ void GatherPass::fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) cons
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x);
   PixelRegression::Shares buffer;
+  const auto all = [&](std::span<const PixelRegression::Share> shares) {
+    return fitted(walked_.direct, shares) + fitted(walked_.indirect, shares);
+  };
   if (PixelValue* probe = blur.find(pixel)) {
-    const GatheredLight wide = fitted(regression_.shares(seen, x, y, buffer));
-    const GatheredLight narrow = fitted(narrow_.shares(seen, x, y, buffer));
+    const Rgb narrow = all(narrow_.shares(seen, x, y, buffer));
     probe->radiance +=
-        (wide.direct + wide.indirect - narrow.direct - narrow.indirect) * blur_over_difference_;
+        (all(regression_.shares(seen, x, y, buffer)) - narrow) * blur_over_difference_;
   }
   const std::span<const PixelRegression::Share> shares = regression_.shares(seen, x, y, buffer);
-  const GatheredLight light = fitted(shares);
-  image.direct[pixel] += light.direct;
-  image.indirect[pixel] = light.indirect;
+  const Rgb direct = fitted(walked_.direct, shares), indirect = fitted(walked_.indirect, shares);
+  image.direct[pixel] += direct;
+  image.indirect[pixel] = indirect;
+  for (std::size_t g = 0; g < image.groups.size(); ++g)
+    image.groups[g][pixel] += fitted(walked_.groups[g], shares);
   for (std::size_t plane = 0; plane < walked_.planes.size(); ++plane)
     for (const PixelRegression::Share& share : shares)
       image.planes[plane][pixel] += walked_.planes[plane][share.pixel] * share.weight;
-  add_by_opacity(light.direct + light.indirect - walked_.direct[pixel] - walked_.indirect[pixel],
-                 pixel, image);
+  add_by_opacity(direct + indirect - walked_.direct[pixel] - walked_.indirect[pixel], pixel, image);
 }
 
 } // namespace vdbeam

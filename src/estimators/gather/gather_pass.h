@@ -26,19 +26,19 @@ public:
   void gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image);
 
   /// What a few walks from a ray gather that goes on behind a mirror or glass.
-  Rgb gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const;
+  GroupedLight gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const;
 
   /// After all tiles: adds the fitted light to `image`, which has the pixels' opacity and depth.
   /// Tiles around which some were not finished are no longer finished themselves.
   void fit(BlurProbe& blur, PassImage& image) const;
 
-  /// What a pass takes beyond its picture; layers of volumes twice.
+  /// What a pass takes beyond its picture; groups of lights and layers of volumes twice.
   static constexpr std::size_t bytes_per_pixel() { return 2 * sizeof(Rgb); }
 
 private:
   void fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const;
   /// The weighted sum of what the walks of pixels found.
-  GatheredLight fitted(std::span<const PixelRegression::Share> shares) const;
+  static Rgb fitted(const std::vector<Rgb>& walked, std::span<const PixelRegression::Share> shares);
   bool finished_around(int column, int row, const PassImage& image) const;
 
   EstimatorInput wide_;

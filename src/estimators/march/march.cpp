@@ -24,8 +24,8 @@ public:
 
   /// What the photons scatter into the ray, and in `straight` what of it comes straight from
   /// lights.
-  Rgb march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
-            RenderStatistics& counts, Rgb& straight, const RaySink& sink = {}) {
+  GroupedLight march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
+                     RenderStatistics& counts, Rgb& straight, const RaySink& sink = {}) {
     const Medium& medium = world_.medium;
     const float begin = std::max(static_cast<float>(-camera.shift), profile.front() - reach_);
     const float end = std::min(profile.back() + reach_, camera.whole().t_end);
@@ -36,7 +36,8 @@ public:
     gathered_.resize(medium.phases.size());
     straight_.resize(medium.phases.size());
     straight = {};
-    Rgb sum;
+    groups_.clear();
+    GroupedLight sum;
     for (int i = 0; i < steps; ++i) {
       const float t = begin + step * (static_cast<float>(i) + rng.uniform());
       cursor.move_to(begin + step * static_cast<float>(i + 1));
@@ -44,17 +45,20 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c = photons_.map().query_point(camera.ray().at(t), camera.ray().direction,
-                                                         medium.gathered_phases(), gathered_.data(),
-                                                         straight_.data());
+        const QueryCounts c = photons_.map().query_point(
+            camera.ray().at(t), camera.ray().direction, medium.gathered_phases(), gathered_.data(),
+            straight_.data(), photons_.map().groups() > 0 ? &groups_ : nullptr);
         ++counts.lookups;
         counts.contributions += c.contributions;
         find_albedos(camera.ray().at(t));
-        const Rgb light = weigh(before, after, step, gathered_, sink.volumes);
-        sum += light;
+        const Rgb light = weigh(before, after, step, gathered_.data(), sink.volumes);
+        std::vector<Rgb> parts;
+        for (std::size_t g = 0; g < groups_.size(); g += gathered_.size())
+          parts.push_back(weigh(before, after, step, groups_.data() + g));
+        sum += {light, parts};
         sink.deep.add_light_at(t, light);
         if (photons_.map().has_first_flights())
-          straight += weigh(before, after, step, straight_);
+          straight += weigh(before, after, step, straight_.data());
       }
       before = after;
     }
@@ -70,7 +74,7 @@ private:
   }
 
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
-            const std::vector<Rgb>& gathered, const VolumeLights& of_volumes = {}) const {
+            const Rgb* gathered, const VolumeLights& of_volumes = {}) const {
     const std::vector<Volume>& volumes = world_.medium.volumes;
     Rgb tau, piece;
     for (std::size_t v = 0; v < volumes.size(); ++v) {
@@ -105,6 +109,7 @@ private:
   std::vector<Rgb> albedos_;  ///< per volume
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights
+  std::vector<Rgb> groups_;   ///< what of it each group of lights has: [group][phase function]
 };
 
 } // namespace
@@ -119,9 +124,10 @@ void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatis
         continue;
       Rng rng(key, RngStage::march, ray.pixel);
       Rgb straight;
-      image.indirect[ray.pixel] =
+      image.add(
+          &PassImage::indirect, ray.pixel,
           marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
-                        RaySink(photons_.world(), ray.camera, input_.layers, ray.pixel, image));
+                        RaySink(photons_.world(), ray.camera, input_.layers, ray.pixel, image)));
       image.move_to_direct(ray.pixel, straight);
     }
   };

@@ -84,9 +84,9 @@ SeenSurface PathEstimator::seen_surface(const CameraRay& camera, const RngKey& k
   constexpr int paths = 4;
   if (input_.world.surfaces->material(*camera.hit).is_shadow_catcher()) {
     Rng rng(key, RngStage::surface, pixel * paths);
-    return {{}, caught_shadow(input_.world, input_.lights_of_matte(), camera, rng)};
+    return {{}, caught_shadow(input_.world, camera, rng)};
   }
-  Rgb sum;
+  GroupedLight sum;
   for (int i = 0; i < paths; ++i) {
     Rng rng(key, RngStage::surface, pixel * paths + static_cast<std::size_t>(i));
     sum += tracer_.from_surface(*camera.hit, camera.ray().direction, rng);
@@ -107,9 +107,11 @@ void PathEstimator::trace(const CameraRay& camera, const RngKey& key, std::size_
   scratch.counts.depth_profiles += profile.empty() ? 0 : 1;
   if (profile.empty() || !scatters_)
     return;
-  image.direct[target] = direct_light(
-      world, camera.ray(), profile, {shadow_rays_, direct_samples_, nullptr, input_.stop}, rng,
-      scratch.counts.shadow_rays, RaySink(world, camera, input_.layers, target, image));
+  image.add(&PassImage::direct, target,
+            direct_light(world, camera.ray(), profile,
+                         {shadow_rays_, direct_samples_, nullptr, input_.stop}, rng,
+                         scratch.counts.shadow_rays,
+                         RaySink(world, camera, input_.layers, target, image)));
   DistanceSampler distances(world.medium, camera.ray(), profile);
   for (int i = 0; i < walks_per_ray_; ++i) {
     const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(walks_per_ray_);
@@ -144,7 +146,7 @@ void PathEstimator::add_deep_light(const PathWalk& walk, float share, PassImage&
   float* values = &image.deep[(image.deep_layout->first[walk.target] + walk.piece) *
                               DeepLayout::values_per_piece];
   for (int c = 0; c < 3; ++c)
-    values[c] += (walk.direct[c] + walk.indirect[c]) * share;
+    values[c] += (walk.direct.sum()[c] + walk.indirect.sum()[c]) * share;
 }
 
 /// Lets the walks take turns until no more than `most` are under way. Walks of several pixels:
@@ -162,12 +164,12 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
         ++i;
         continue;
       }
-      image.direct[walk.target] += walk.direct * share;
-      image.indirect[walk.target] += walk.indirect * share;
       VolumeLights(input_.layers, walk.target, image)
-          .add(walk.volume, (walk.direct + walk.indirect) * share);
+          .add(walk.volume, (walk.direct.sum() + walk.indirect.sum()) * share);
       if (image.deep_layout)
         add_deep_light(walk, share, image);
+      image.add(&PassImage::direct, walk.target, walk.direct *= share);
+      image.add(&PassImage::indirect, walk.target, walk.indirect *= share);
       if (&walk != &walks.back())
         walk = std::move(walks.back());
       walks.pop_back();
@@ -214,8 +216,7 @@ void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
   const Stopwatch watch;
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(spec.pass);
-  image.resize(camera.width(), camera.height(), !input_.world.medium.emitters.empty(), input_.deep,
-               input_.object_count(), input_.plane_count());
+  input_.resize(image);
   tbb::enumerable_thread_specific<Scratch> scratches;
   for_each_tile(input_, image, [&](int x0, int y0, int x1, int y1) {
     Scratch& scratch = scratches.local();

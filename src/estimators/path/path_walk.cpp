@@ -46,7 +46,8 @@ bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
   if (walk.shadow) {
     if (walk.shadow->attenuate(walk.rng) && walk.shadow->advance(walk.rng))
       return true;
-    walk.indirect += walk.shadow_value * walk.shadow->transmittance();
+    walk.indirect.add(walk.shadow_value * walk.shadow->transmittance(),
+                      world_.lights.group(walk.light));
     ++walk.light;
     sample_lights(walk);
     return true;
@@ -97,7 +98,7 @@ void WalkTracer::sample_lights(PathWalk& walk) const {
     walk.shadow.emplace(world_.medium, Segment{{ray.origin, wi}, 0, shadow_ray->distance});
     if (walk.shadow->advance(walk.rng))
       return;
-    walk.indirect += walk.shadow_value;
+    walk.indirect.add(walk.shadow_value, world_.lights.group(walk.light));
   }
   walk.shadow.reset();
   walk.scatters = true;
@@ -109,7 +110,7 @@ void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
   if (!direction)
     return;
   PathWalk branch = walk;
-  branch.direct = branch.indirect = Rgb();
+  branch.direct = branch.indirect = {};
   const std::uint64_t high = walk.rng.bits(), low = walk.rng.bits();
   branch.rng = Rng({}, RngStage::split, high << 32 | low);
   if (scatter(branch, *direction)) {
@@ -164,7 +165,8 @@ void WalkTracer::gather_light(PathWalk& walk, float medium_end, float t_end) con
   const Ray& ray = walk.segment.ray;
   if (!world_.medium.emitters.empty() && walk.gathered < medium_end)
     walk.add(sample_emission(world_.medium, {ray, walk.gathered, medium_end}, walk.rng) *
-             walk.throughput);
+                 walk.throughput,
+             world_.lights.group_of_emission());
   if (world_.lights.any_extent() || t_end == infinity)
     walk.add(lights_met(walk, {ray, walk.gathered, t_end}));
   walk.gathered = t_end;
@@ -172,9 +174,9 @@ void WalkTracer::gather_light(PathWalk& walk, float medium_end, float t_end) con
 
 /// The lights that the flight meets within the segment, but for surfaces, weighted against
 /// next-event estimation.
-Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
+GroupedLight WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
   const Ray& ray = segment.ray;
-  Rgb sum;
+  GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     const Light& light = world_.lights[i];
     if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out_sampled()))
@@ -182,7 +184,7 @@ Rgb WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
     float weight = 1;
     if (shadow_rays_[i] && walk.density > 0)
       weight = walk.density / (walk.density + light.incident_pdf(ray.origin, ray.direction));
-    sum += light.emitted_radiance(segment).radiance * weight;
+    sum.add(light.emitted_radiance(segment).radiance * weight, world_.lights.group(i));
   }
   return sum * walk.throughput;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/path/light_branches.h"
+#include "math/grouped_light.h"
 #include "medium/flight.h"
 #include "medium/optical_depth.h"
 #include "transport/world.h"
@@ -26,7 +27,8 @@ struct PathWalk : Flight {
   float density = 0;
   float gathered = 0; ///< distance of the flight up to which light that it meets was added
   std::optional<SurfaceHit> end; ///< of the present flight
-  Rgb direct, indirect; ///< light so far that the medium scattered once at most, and more often
+  /// Light so far that the medium scattered once at most, and more often.
+  GroupedLight direct, indirect;
   std::optional<RatioTracking> shadow;
   std::size_t light = 0; ///< that the shadow ray is sent to
   Rgb shadow_value;      ///< its contribution, without the transmittance
@@ -40,7 +42,10 @@ struct PathWalk : Flight {
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
 
   bool leaves_out_sampled() const { return skips_sampled || (!all_light && !from_surface); }
-  void add(const Rgb& radiance) { (bounces > 1 ? indirect : direct) += radiance; }
+  void add(const GroupedLight& radiance) { (bounces > 1 ? indirect : direct) += radiance; }
+  void add(const Rgb& radiance, int group) {
+    (bounces > 1 ? indirect : direct).add(radiance, group);
+  }
 };
 
 /// Unbiased path tracing in media and among surfaces, a collision at a time: flights by delta
@@ -70,13 +75,15 @@ public:
   /// the medium, and they on to other surfaces, to which photons bring it.
   /// `emits`: with what the surface itself emits. `straight`, unless it is null, gets the part that
   /// shadow rays from the surface find.
-  Rgb from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng, bool all_light = true,
-                   bool emits = true, Rgb* straight = nullptr) const;
+  GroupedLight from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                            bool all_light = true, bool emits = true,
+                            GroupedLight* straight = nullptr) const;
 
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
   /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of
   /// this tracer does, the walk.
-  Rgb lights_at_surface(const SurfaceVertex& vertex, Rng& rng, bool goes_on_as_walk = false) const;
+  GroupedLight lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
+                                 bool goes_on_as_walk = false) const;
   bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
 
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
@@ -105,7 +112,7 @@ private:
   bool outlives_roulette(PathWalk& walk) const;
   float flight_density(const PathWalk& walk, const Vec3f& direction) const;
   void gather_light(PathWalk& walk, float medium_end, float t_end) const;
-  Rgb lights_met(const PathWalk& walk, const Segment& segment) const;
+  GroupedLight lights_met(const PathWalk& walk, const Segment& segment) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;

@@ -7,13 +7,15 @@
 
 namespace vdbeam {
 
-Rgb WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                             bool all_light, bool emits, Rgb* straight) const {
+GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                                      bool all_light, bool emits, GroupedLight* straight) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
   first.least_weight = roulette_from(Rgb(1));
-  Rgb sum = emits ? vertex.emitted() : Rgb();
+  GroupedLight sum;
+  if (emits)
+    sum.add(vertex.emitted(), group_of(world_, vertex));
   std::vector<PathWalk> branches;
   const auto follow = [&](PathWalk& walk, bool goes_on) {
     while (goes_on)
@@ -45,7 +47,7 @@ bool WalkTracer::meet_surface(PathWalk& walk) const {
     if (sampled && walk.density > 0)
       weight *=
           walk.density / (walk.density + world_.lights[light].surface_pdf(*walk.end, direction));
-    walk.add(vertex.emitted() * walk.throughput * weight);
+    walk.add(vertex.emitted() * walk.throughput * weight, group_of(world_, vertex));
   }
   return bounce(walk, vertex, false);
 }
@@ -109,9 +111,9 @@ MaterialSample WalkTracer::leave_surface(const SurfaceVertex& vertex, Rng& rng) 
   return next;
 }
 
-Rgb WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
-                                  bool goes_on_as_walk) const {
-  Rgb sum;
+GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
+                                           bool goes_on_as_walk) const {
+  GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     if (!shadow_rays_[i])
       continue;
@@ -125,8 +127,10 @@ Rgb WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
     const Rgb value = vertex.evaluate(wi);
     const Vec3d origin = vertex.hit().leave(wi);
     if (max_component(value) > 0 && unoccluded(world_, origin, wi, shadow_ray->distance))
-      sum += shadow_ray->light * value * shadow_ray->weight *
-             exact_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance});
+      sum.add(
+          shadow_ray->light * value * shadow_ray->weight *
+              exact_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance}),
+          world_.lights.group(i));
   }
   return sum;
 }
