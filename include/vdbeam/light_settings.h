@@ -16,8 +16,9 @@ enum class DirectLight { automatic, sampled, photons };
 /// default. Each kind of light reads the fields whose comments name it, and those that name none.
 struct LightSettings {
   LightType type = LightType::distant;
-  Vec3d direction{0, -1, 0}; ///< distant, spot, point with ies: the way the light travels
-  Rgb irradiance{1, 1, 1};   ///< distant: on a plane that faces the light [W m^-2]
+  Vec3d direction{0, -1, 0}; ///< the way the light travels
+  /// distant: on a plane that faces the light; atmosphere, sun: the same above the air [W m^-2]
+  Rgb irradiance{1, 1, 1};
   double angular_radius = 0; ///< distant: half angle of the disc, degrees
   Vec3d position{0, 0, 0};   ///< point, spot
   Rgb intensity{1, 1, 1};    ///< point, spot: in the strongest direction [W sr^-1]
@@ -30,6 +31,10 @@ struct LightSettings {
   Rgb zenith{0.07f, 0.19f, 0.52f};  ///< sky: radiance straight up
   Rgb horizon{0.44f, 0.56f, 0.72f}; ///< sky: radiance at the horizon
   Rgb ground{0.15f, 0.15f, 0.145f}; ///< sky: radiance from below the horizon
+  double aerosol = 0.1;             ///< atmosphere, sun: optical depth of haze straight up, 550 nm
+  double ground_albedo = 0.2;       ///< atmosphere, sun: share of light that the ground reflects
+  double altitude = 0;              ///< atmosphere, sun: of the eye above the ground [m]
+  bool sun = true;                  ///< atmosphere: a scene file's has a light `sun` with it
   std::string image;                ///< environment: lat-long EXR or HDR, empty for constant
   /// Of the colours above, to which those of pictures are converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;

@@ -33,6 +33,8 @@ constexpr std::array synonyms{
     KeySynonym{S::light, "ies_file", "ies", ""},
     KeySynonym{S::light, "profile", "ies", ""},
     KeySynonym{S::light, "photometry", "ies", ""},
+    KeySynonym{S::light, "turbidity", "aerosol", ""},
+    KeySynonym{S::light, "haze", "aerosol", ""},
     KeySynonym{S::light, "gobo", "picture", ""},
     KeySynonym{S::light, "penumbra", "cone_falloff", ""},
     KeySynonym{S::light, "softness", "cone_falloff", ""},
@@ -156,7 +158,10 @@ constexpr std::array synonyms{
 };
 
 constexpr std::array values{
-    ValueSynonym{S::light, "type", "sun", "distant", ""},
+    ValueSynonym{S::light, "type", "physical_sky", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "nishita", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "hosek_wilkie", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "sun_sky", "atmosphere", ""},
     ValueSynonym{S::light, "type", "directional", "distant", ""},
     ValueSynonym{S::light, "type", "infinite", "distant", ""},
     ValueSynonym{S::light, "type", "dome", "environment", ""},

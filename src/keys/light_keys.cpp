@@ -8,9 +8,12 @@ void add_light_keys(KeyTable& table) {
   table.add("type", &L::type, "kind of light").required();
   table
       .add("direction", &L::direction,
-           "the way the light travels; a point light has one for its ies")
+           "the way the light travels, of an atmosphere the sun's; a point light has one for its "
+           "ies")
       .always_written();
-  table.add("irradiance", &L::irradiance, "irradiance of a plane that faces the light")
+  table
+      .add("irradiance", &L::irradiance,
+           "irradiance of a plane that faces the light; of an atmosphere's sun above the air")
       .unit("W / m^2")
       .at_least(0)
       .always_written();
@@ -55,6 +58,19 @@ void add_light_keys(KeyTable& table) {
   table.add("ground", &L::ground, "radiance of what lies below the horizon")
       .unit("W / m^2 / sr")
       .at_least(0);
+  table
+      .add("aerosol", &L::aerosol,
+           "haze: its optical depth straight up, at 550 nm; 0: none, 0.05: very clear, 0.1: clear, "
+           "0.3: hazy, 1: thick")
+      .within(0, 5);
+  table
+      .add("ground_albedo", &L::ground_albedo,
+           "share of light that the ground reflects, which brightens the sky too")
+      .within(0, 1);
+  table.add("altitude", &L::altitude, "of the eye above the ground")
+      .unit("metres")
+      .within(0, 50000);
+  table.add("sun", &L::sun, "whether the sun's disc is there, as a light of its own");
   table.add("image", &L::image, "lat-long EXR or HDR picture of the sky; empty: constant")
       .file(InputKind::picture);
   table

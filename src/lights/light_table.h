@@ -44,7 +44,8 @@ LightSettings tinted(LightSettings settings);
 /// The light of its kind. Throws InputError for settings that no light can have.
 std::unique_ptr<Light> make_light(const LightSettings& settings, const LightContext& context);
 
-extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light;
+extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light,
+    atmosphere_light, sun_light;
 
 /// A complaint where the light's direction is 0.
 std::optional<KeyComplaint> direction_complaint(const LightSettings& settings);

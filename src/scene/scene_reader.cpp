@@ -97,9 +97,21 @@ Scene SceneReader::read(const toml::table& root) {
     throw InputError(
         one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
   }
+  add_suns();
   validate_consistency(scene_, [this](const std::string& key) { return locate(key); });
   note_idle_keys();
   return std::move(scene_);
+}
+
+/// Gives each atmosphere its sun, a light after all those of the file, so that these keep their
+/// numbers.
+void SceneReader::add_suns() {
+  const std::size_t count = scene_.lights.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (LightSettings sun = scene_.lights[i]; sun.type == LightType::atmosphere && sun.sun) {
+      sun.type = LightType::sun;
+      scene_.lights.push_back(sun);
+    }
 }
 
 /// Tells of what is right but cannot be what was meant.

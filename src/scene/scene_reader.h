@@ -31,6 +31,7 @@ public:
   Scene read(const toml::table& root);
 
 private:
+  void add_suns();
   void note_idle_keys();
   void note_units();
   void read_section(SceneSection section, const toml::node& node);

@@ -55,6 +55,26 @@ TEST_F(LightKeys, Complaints) {
   EXPECT_NE(error_of(spot + "watts = 3\n").find("did you mean power?"), std::string::npos);
 }
 
+/// A light of its own, after those of the file, which keep their numbers.
+TEST_F(LightKeys, AnAtmosphereHasItsSun) {
+  const std::string sky = "[[light]]\ntype = 'atmosphere'\ndirection = [1, -1, 0]\nirradiance = 6\n"
+                          "aerosol = 0.3\nexposure = 1\ngroup = 'sky'\n";
+  const Scene scene = load(sky + "[[light]]\ntype = 'point'\ngroup = 'lamp'\n");
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_EQ(scene.lights[1].type, LightType::point);
+  const LightSettings& sun = scene.lights[2];
+  EXPECT_EQ(sun.type, LightType::sun);
+  EXPECT_EQ(sun.direction, Vec3d(1, -1, 0));
+  EXPECT_EQ(sun.irradiance, Rgb(6));
+  EXPECT_EQ(sun.aerosol, 0.3);
+  EXPECT_EQ(sun.exposure, 1);
+  EXPECT_EQ(sun.group, "sky");
+  EXPECT_EQ(load(sky + "sun = false\n").lights.size(), 1u);
+  EXPECT_NE(error_of(sky + "turbidity = 2\n").find("did you mean aerosol?"), std::string::npos);
+  EXPECT_EQ(error_of(sky + "altitude = -3\n"),
+            "s.toml:8: light.0.altitude must lie in [0, 50000], got -3");
+}
+
 class FogKeys : public test::SceneTest {};
 
 TEST_F(FogKeys, AVolumeNeedsNoFile) {

@@ -155,16 +155,18 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"beams\"; did you "
                  "mean beam?"},
         BadScene{
-            "[[light]]\ntype = 'sun'\n",
-            "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
-            "did you mean distant?"},
-        BadScene{"[[light]]\ntype = 'dome'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"dome\"; did you mean environment?"},
-        BadScene{"[[light]]\ntype = 'area'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"area\"; a light with an area is a [[mesh]] with material = { type = "
-                 "\"emissive\", radiance = 10 }"},
+            "[[light]]\ntype = 'directional'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere or "
+            "sun, got \"directional\"; did you mean distant?"},
+        BadScene{
+            "[[light]]\ntype = 'dome'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"dome\"; did you mean environment?"},
+        BadScene{
+            "[[light]]\ntype = 'area'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"area\"; a light with an area is a [[mesh]] with material = { type = "
+            "\"emissive\", radiance = 10 }"},
         BadScene{"[[mesh]]\ntype = 'plane'\n",
                  "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"plane\"; did you "
                  "mean quad?"},
