@@ -154,8 +154,8 @@ std::vector<std::vector<GridSummary>> read_summaries(const std::string& path) {
 }
 
 VolumeOutline find_shape(const std::string& path,
-                       const std::vector<std::vector<GridSummary>>& summaries,
-                       const FramingWishes& wishes, std::vector<std::string>& notes) {
+                         const std::vector<std::vector<GridSummary>>& summaries,
+                         const FramingWishes& wishes, std::vector<std::string>& notes) {
   VolumeOutline shape;
   for (const std::vector<GridSummary>& grids : summaries) {
     std::vector<std::string> grid_notes;
