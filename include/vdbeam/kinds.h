@@ -26,9 +26,8 @@ inline constexpr PhaseType PhaseType::isotropic{"isotropic"},
     PhaseType::henyey_greenstein{"henyey_greenstein"}, PhaseType::rayleigh{"rayleigh"},
     PhaseType::two_lobe{"two_lobe"}, PhaseType::mie{"mie"};
 
-/// What a surface looks like, by its name in the table of materials
-/// (src/materials/material_table.cpp); docs/physics.md has the models. The name is not copied: a
-/// literal, or the table's own.
+/// A material, by its name in the table of materials (src/materials/material_table.cpp); its model
+/// is in docs/theory/surfaces.md. The name is not copied: a literal, or the table's own.
 struct MaterialType {
   std::string_view name;
   static const MaterialType diffuse, mirror, conductor, dielectric, emissive, holdout,

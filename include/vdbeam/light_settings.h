@@ -26,7 +26,6 @@ struct LightSettings {
   double cone_angle = 30;    ///< spot: half angle where the light ends, degrees
   double cone_falloff = 5;   ///< spot: width of the smooth edge inside it, degrees
   std::string ies;           ///< point, spot: LM-63 file with its photometric profile, or empty
-  std::string picture;       ///< spot: picture that it projects, or empty
   Rgb radiance{1, 1, 1};     ///< environment: constant, or the image's factor; sky: factor
   Rgb zenith{0.07f, 0.19f, 0.52f};  ///< sky: radiance straight up
   Rgb horizon{0.44f, 0.56f, 0.72f}; ///< sky: radiance at the horizon
@@ -35,10 +34,10 @@ struct LightSettings {
   double ground_albedo = 0.2;       ///< atmosphere, sun: share of light that the ground reflects
   double altitude = 0;              ///< atmosphere, sun: of the eye above the ground [m]
   bool sun = true;                  ///< atmosphere: a scene file's has a light `sun` with it
-  std::string image;                ///< environment: lat-long EXR or HDR, empty for constant
-  /// Of the colours above, to which those of pictures are converted; not a key of its own.
+  std::string image; ///< environment: lat-long EXR or HDR, empty: constant; spot: projected
+  /// Colour space of the colours above, to which images are converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;
-  /// Degrees; environment: about the up axis; point and spot: profile and picture about direction.
+  /// Degrees; environment: about the up axis; point and spot: profile and image about direction.
   double rotation = 0;
   std::optional<double> kelvin;      ///< its colour is multiplied by that of a black body
   double exposure = 0;               ///< its strength is multiplied by 2^exposure

@@ -47,7 +47,7 @@ public:
   const std::vector<std::string>& plane_names() const { return plane_names_; }
   /// Values of the passes so far that were NaN or infinite.
   std::uint64_t invalid_values() const { return invalid_values_; }
-  /// What a film takes for each pixel, beside its history.
+  /// Memory of a film per pixel [bytes], without its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 17 : 14) * CompensatedSums::bytes_per_value;
   }
@@ -97,8 +97,8 @@ public:
   double mrse_estimate() const;
   /// The same, corrected for the bias of weighting each pixel by its own noisy mean, with the bias
   /// that probes show (`unbiased`: there is none) and an interval that takes the noise shared by
-  /// pixels into account (docs/physics.md). The corrections change only when a batch of passes is
-  /// complete.
+  /// pixels into account (docs/theory/error-estimate.md). The corrections change only when a batch
+  /// of passes is complete.
   ErrorEstimate error_estimate(bool unbiased) const;
 
 private:

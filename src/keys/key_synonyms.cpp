@@ -35,7 +35,7 @@ constexpr std::array synonyms{
     KeySynonym{S::light, "photometry", "ies", ""},
     KeySynonym{S::light, "turbidity", "aerosol", ""},
     KeySynonym{S::light, "haze", "aerosol", ""},
-    KeySynonym{S::light, "gobo", "picture", ""},
+    KeySynonym{S::light, "gobo", "image", ""},
     KeySynonym{S::light, "penumbra", "cone_falloff", ""},
     KeySynonym{S::light, "softness", "cone_falloff", ""},
     KeySynonym{S::light, "strength", strength_keys, strength},
@@ -45,15 +45,15 @@ constexpr std::array synonyms{
     KeySynonym{S::light, "elevation", "direction", aim},
     KeySynonym{S::light, "azimuth", "direction", aim},
     KeySynonym{S::light, "rotate", "direction rotation",
-               "direction = [x, y, z] is the way that a distant or spot light travels; rotation "
-               "turns an environment"},
+               "direction = [x, y, z] is the direction in which a distant or spot light travels; "
+               "rotation turns an environment"},
     KeySynonym{S::light, "target", "direction", aim},
     KeySynonym{S::light, "angle", "angular_radius cone_angle", ""},
     KeySynonym{S::light, "size", "angular_radius", ""},
     KeySynonym{S::light, "radius", "angular_radius", area_light},
     KeySynonym{S::light, "translate", "position", ""},
-    KeySynonym{S::light, "file", "image picture ies", ""},
-    KeySynonym{S::light, "texture", "image picture", ""},
+    KeySynonym{S::light, "file", "image ies", ""},
+    KeySynonym{S::light, "texture", "image", ""},
     KeySynonym{S::light, "map", "image", ""},
 
     KeySynonym{S::render, "keep", "", "render.photons says how many photons a pass stores"},
@@ -150,7 +150,7 @@ constexpr std::array synonyms{
     KeySynonym{S::material, "emission", "radiance", ""},
     KeySynonym{S::material, "intensity", "radiance power", ""},
     KeySynonym{S::material, "temperature", "kelvin", ""},
-    KeySynonym{S::material, "picture", "texture", ""},
+    KeySynonym{S::material, "image", "texture", ""},
     KeySynonym{S::material, "index", "ior", ""},
 
     KeySynonym{S::layer, "type", "name", ""},

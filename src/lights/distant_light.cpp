@@ -91,7 +91,7 @@ private:
     const Vec3d chord = Vec3d(direction) + cone_.axis;
     return dot(chord, chord) <= 2 * cone_.one_minus_cos;
   }
-  /// The light that travels along `direction`, of which `even` is the mean over the disc.
+  /// The light that travels along `direction`; `even` is its mean over the disc.
   Rgb darkened(const Rgb& even, const Vec3d& direction) const {
     if (limb_ == Rgb(0))
       return even;
@@ -157,7 +157,7 @@ std::unique_ptr<Light> make_disc_light(const Vec3d& direction, const Rgb& irradi
 
 const LightKind distant_light{
     .name = "distant",
-    .help = "far away, like the sun",
+    .help = "a directional light with an angular radius, such as the sun",
     .keys = distant_keys,
     .colored = [](const LightSettings& light) { return !is_grey(light.irradiance); },
     .complaint = direction_complaint,

@@ -20,7 +20,7 @@ double luminance(const Rgb& c) {
 constexpr float largest_half = 65504;
 constexpr float largest_float = std::numeric_limits<float>::max();
 
-/// What had to be changed in an image's values to make radiance of them.
+/// Corrections of an image's values to make them radiance.
 struct Mended {
   std::uint64_t infinite = 0, negative = 0, not_numbers = 0, too_bright = 0;
 
@@ -39,7 +39,7 @@ struct Mended {
     return std::min(value * factor, largest_float);
   }
 
-  void tell(const std::string& name, std::vector<std::string>& notes) const {
+  void add_notes(const std::string& name, std::vector<std::string>& notes) const {
     const auto add = [&](std::uint64_t count, const char* what) {
       if (count > 0)
         notes.push_back(fmt::format("light.image {}: {} {} {}", name, count,
@@ -128,7 +128,7 @@ public:
         axes_(environment_axes(context.up, settings.rotation)), boxes_(context.region.boxes) {
     power_ = estimate_power(*this);
     if (context.notes)
-      map_.mended().tell(name, *context.notes);
+      map_.mended().add_notes(name, *context.notes);
   }
 
   IncidentSample sample_incident(const Vec3f&, float u, float v) const override {

@@ -30,7 +30,7 @@ constexpr std::string_view keys[] = {"radiance",  "power",   "kelvin",      "exp
 
 const MaterialKind emissive_material{
     .name = "emissive",
-    .help = "a lamp, which shines with the same radiance in all directions and reflects nothing",
+    .help = "an area light of constant radiance; reflects nothing",
     .keys = keys,
     .colored =
         [](const MaterialSettings& settings) {

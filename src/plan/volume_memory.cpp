@@ -19,7 +19,7 @@ constexpr std::uint64_t brick_bytes = DensityField::brick_size * sizeof(float);
 constexpr std::uint64_t leaf_values = 512;
 /// Index table and largest values of a field, per cell.
 constexpr std::uint64_t table_bytes = sizeof(std::int32_t) + sizeof(float);
-/// What a leaf of OpenVDB's tree takes beyond its values: masks, origin, the allocator.
+/// Memory of a leaf of OpenVDB's tree beyond its values [bytes]: masks, origin, the allocator.
 constexpr std::uint64_t leaf_overhead = 112;
 /// A process that reads a file takes so much beyond the grid: pages that it copies, buffers.
 constexpr std::uint64_t reader_bytes = std::uint64_t{8} << 20;
@@ -35,8 +35,8 @@ struct FieldMemory {
   CellSet set;
   std::uint64_t bytes = 0, peak = 0;
   Affine to_world; ///< of its cells
-  /// Of the grid itself, before it is refined and displaced: by its voxels it is known best what
-  /// the camera sees.
+  /// Cells of the grid before refinement and displacement: its voxels show best what the camera
+  /// sees.
   CellSet grid;
   Affine grid_to_world;
 };

@@ -60,7 +60,7 @@ void add(const PassImage& image, PassImage& sum) {
 
 } // namespace
 
-/// What a pixel of the draft holds, per opacity or transmittance.
+/// Pixel of the draft, per opacity or transmittance.
 struct Draft::Seen {
   float opacity = 0, depth = 0; ///< of the medium, as in PassImage
   Rgb direct, indirect, emission;
@@ -99,7 +99,7 @@ bool Draft::add_pass() {
   return true;
 }
 
-/// What the draft's pixels hold.
+/// Pixels of the draft.
 std::vector<Draft::Seen> Draft::look_through() const {
   const EstimatorInput& input = setup_->input;
   std::vector<Seen> pixels(sum_.direct.size());

@@ -16,18 +16,18 @@
 namespace vdbeam {
 namespace {
 
-/// Of a mean line: deep enough that the form shows by its shading, thin enough that light comes
+/// Optical depth of a mean line: deep enough to shade the form, thin enough that light comes
 /// through the edges.
 constexpr double target_optical_depth = 25;
-/// Of the densest value over the shortest side: keeps a thin, dense plume in a large box from
-/// becoming solid.
+/// Optical depth of the densest value over the shortest side: keeps a thin, dense plume in a large
+/// box from becoming solid.
 constexpr double largest_optical_depth = 100;
 
 bool is_density(const GridSummary& grid) {
   return !is_level_set(grid) && !why_no_density(kind_of(grid));
 }
 
-/// Of "density[1]", which is what OpenVDB calls the second of several grids "density".
+/// "density" for "density[1]", OpenVDB's name of the second of several grids "density".
 std::string given_name(const std::string& name) {
   const std::size_t bracket = name.find_last_of('[');
   return name.ends_with(']') && bracket != name.npos ? name.substr(0, bracket) : name;
@@ -86,7 +86,7 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
   return *grid;
 }
 
-/// What a grid's shape says about camera and extinction.
+/// Data of a grid's shape for camera and extinction.
 struct VolumeOutline {
   std::string grid;
   std::vector<Vec3d> points; ///< a body around them holds all that is to be seen

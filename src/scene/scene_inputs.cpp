@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t gib = std::uint64_t(1) << 30;
 
-/// What can be said of a file without reading it: larger ones could not be held in memory, and a
+/// Checks of a file without reading it: larger ones could not be held in memory, and a
 /// file with holes may claim any size.
 struct InputRule {
   InputKind kind;

@@ -18,7 +18,7 @@ struct Child {
   const toml::node* node;
 };
 
-/// A table's entries in the order of the file, so that the first mistake is told first.
+/// A table's entries in the order of the file, so that the first mistake is reported first.
 std::vector<Child> children_of(const toml::table& table) {
   std::vector<Child> children;
   for (const auto& [name, node] : table)
@@ -55,7 +55,7 @@ std::string item_name(SceneSection section, std::size_t index) {
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
-/// What the user may have meant by an unknown key: what other programs call a key, a key of this
+/// Suggestion for an unknown key: what other programs call a key, a key of this
 /// table, or one of another table.
 std::string suggestion(SceneSection section, const std::string& name) {
   if (const std::string remedy = synonym_remedy(section, name); !remedy.empty())
@@ -114,7 +114,7 @@ void SceneReader::add_suns() {
     }
 }
 
-/// Tells of what is right but cannot be what was meant.
+/// Notes what is valid but probably a mistake.
 void SceneReader::note_idle_keys() {
   if (scene_.camera.focal_length && locations_.contains("camera.fov"))
     scene_.notes.push_back(locate("camera.fov") +
@@ -152,7 +152,7 @@ void SceneReader::note_units() {
   constexpr double large_error = 0.1;
   if (const auto& error = scene_.render.target_error; error && *error >= large_error)
     scene_.notes.push_back(fmt::format("{}: render.target_error = {} is reached by almost any "
-                                       "picture after a few passes; a clean one has about 0.001",
+                                       "image after a few passes; a clean image has about 0.001",
                                        locate("render.target_error"), *error));
 }
 

@@ -12,7 +12,7 @@
 
 namespace vdbeam {
 
-/// What becomes of a frame for which a file of a sequence is not there: it fails, it is black, or
+/// Treatment of a frame for which a file of a sequence is missing: it fails, it is black, or
 /// it shows the nearest earlier file (the first where there is none).
 enum class MissingFile { error, black, hold };
 

@@ -30,8 +30,8 @@ public:
 
   std::string write() {
     text_ =
-        "# A vdbeam scene. docs/scene.md and `vdbeam --help-scene` explain every key; lines that\n"
-        "# begin with # show what holds without them.\n";
+        "# A vdbeam scene. docs/reference/scene.md and `vdbeam --help-scene` explain every key;\n"
+        "# commented lines show the defaults.\n";
     add_section(SceneSection::image, 0, "[image]");
     add_section(SceneSection::camera, 0, "[camera]");
     for (std::size_t i = 0; i < scene_.volumes.size(); ++i) {

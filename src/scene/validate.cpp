@@ -62,7 +62,8 @@ public:
     for (const Scene& moment : scene_.moments)
       if (moment.volumes.size() != scene_.volumes.size() ||
           moment.lights.size() != scene_.lights.size())
-        fail("camera.shutter_open", "needs moments with as many volumes and lights as the scene");
+        fail("camera.shutter_open",
+             "needs moments with the same number of volumes and lights as the scene");
     if (camera.blades == 1 || camera.blades == 2)
       fail("camera.blades", fmt::format("must be 0 or at least 3, got {}", camera.blades));
   }

@@ -19,7 +19,7 @@ Affine moved(const Vec3d& by) {
 }
 
 /// Throws InputError where single precision, in which Embree works, cannot hold both a surface and
-/// the rest of the scene, of which the medium is about 1 wide.
+/// the rest of the scene; the medium is about 1 wide.
 void check_sizes(const std::vector<PlacedShape>& surfaces) {
   constexpr double widest = 4e9, farthest = 1e17;
   double reach = 1e5;
@@ -36,7 +36,7 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
     check(away < farthest, i, "too far away from");
     reach = std::max(reach, away);
   }
-  // In a surface's own space coordinates are as many times larger as it is smaller.
+  // In a surface's own space coordinates are larger by the factor by which it is smaller.
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     check(least_stretch(surfaces[i].to_render.inverse()) > reach / farthest, i,
           "a million million times smaller, in some direction, than");

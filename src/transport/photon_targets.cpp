@@ -121,8 +121,8 @@ bool meets_target(const World& world, std::size_t target, const Ray& ray) {
                                               : meets(world.targets[target].boxes, ray);
 }
 
-/// Shares of the photons: half as many for each target after the medium, but no more than the flux
-/// that counts there in units of that to the medium.
+/// Shares of the photons: each target after the medium gets half of the previous one, at most the
+/// flux that counts there in units of that to the medium.
 void share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
   std::vector<double> weights;
   double sum = 0, to_medium = 0;

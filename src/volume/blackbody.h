@@ -10,7 +10,7 @@ namespace vdbeam {
 /// linearly between steps of 10; 0 outside of 380 to 780.
 Vec3d color_matching(double nanometres);
 
-/// What the eye sees of a black body's radiance (Planck 1901): X, Y and Z of the CIE 1931 standard
+/// Tristimulus values of a black body's radiance (Planck 1901): X, Y and Z of the CIE 1931 standard
 /// observer [W / m^2 / sr, weighed without a unit], summed from 380 to 780 nm. `kelvin` > 0.
 Vec3d planck_xyz(double kelvin);
 

@@ -22,7 +22,7 @@ public:
 
   /// Cells of 8^3 voxels along each axis; the first voxel is at the lattice's lower corner.
   const Vec3<int>& cells() const { return cells_; }
-  /// Of the lattice's index coordinates.
+  /// Map from the lattice's index coordinates.
   const Affine& to_own() const { return to_own_; }
   /// It is the same along x and z, so that one brick serves for all cells of a height.
   bool is_layered() const { return settings_.shape == VolumeShape::height && !noisy_; }

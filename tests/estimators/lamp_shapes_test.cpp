@@ -83,7 +83,7 @@ TEST_F(LampShapes, APointWithAProfile) {
 
 TEST_F(LampShapes, ASpotWithAPicture) {
   MemoryScene scene = lit_by(LightType::spot);
-  scene.scene.lights[0].picture = folder_.file("slide.exr");
+  scene.scene.lights[0].image = folder_.file("slide.exr");
   expect_one_answer(scene);
 }
 
@@ -91,7 +91,7 @@ TEST_F(LampShapes, ASpotWithBothInsideTheFog) {
   MemoryScene scene = lit_by(LightType::spot);
   scene.scene.lights[0].position = {0.1, 0.45, 0.2};
   scene.scene.lights[0].ies = folder_.file("lamp.ies");
-  scene.scene.lights[0].picture = folder_.file("slide.exr");
+  scene.scene.lights[0].image = folder_.file("slide.exr");
   constexpr double noise_near_a_lamp = 0.04;
   expect_one_answer(scene, noise_near_a_lamp);
 }
@@ -100,7 +100,7 @@ TEST_F(LampShapes, ASpotWithBothInsideTheFog) {
 TEST_F(LampShapes, OverAGround) {
   using namespace test::surfaces;
   MemoryScene scene = lit_by(LightType::spot);
-  scene.scene.lights[0].picture = folder_.file("slide.exr");
+  scene.scene.lights[0].image = folder_.file("slide.exr");
   scene.scene.lights[0].ies = folder_.file("lamp.ies");
   SurfaceSettings& ground = add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(0.6));
   ground.transform = {3, 0, 0, 0, 0, 0, 1, -0.6, 0, -3, 0, 0};

@@ -96,7 +96,7 @@ TEST_F(ShapedLamp, PhotonsGiveTheFluenceThatShadowRaysFind) {
     point.rotation = 30;
     lamps.push_back(point);
     LightSettings spot = lamp(LightType::spot, position, position * -1.0);
-    spot.picture = slide();
+    spot.image = slide();
     lamps.push_back(spot);
     spot.ies = profile();
     spot.rotation = -70;
@@ -159,7 +159,7 @@ TEST_F(ShapedLamp, PictureIsUpright) {
   settings.intensity = Rgb(1);
   settings.cone_angle = 45;
   settings.cone_falloff = 0;
-  settings.picture = picture(
+  settings.image = picture(
       [](double x, double y) { return Rgb(static_cast<float>(x), static_cast<float>(y), 1.0f); });
   const auto at = [&](double rotation, float x, float y) {
     settings.rotation = rotation;
@@ -205,7 +205,7 @@ TEST_F(ShapedLamp, PlanesOfTheProfile) {
 TEST_F(ShapedLamp, AnyDirectionWillDo) {
   for (const Vec3d& direction : {Vec3d{0, -1, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}, Vec3d{1, 2, 3}}) {
     LightSettings settings = lamp(LightType::spot, {0, 0, 0}, direction);
-    settings.picture = slide();
+    settings.image = slide();
     const MadeLight made(settings, region_of({cube(Vec3f(normalize(direction)) * 3, 1)}));
     EXPECT_GT(max_component(made.light->power()), 0);
     EXPECT_TRUE(std::isfinite(mean_component(made.light->power())));

@@ -11,7 +11,7 @@ TEST_F(LightKeys, StrengthAndColour) {
   const Scene scene =
       load("[[light]]\ntype = 'distant'\nkelvin = 5500\nexposure = -2\n"
            "[[light]]\ntype = 'point'\npower = 40\nies = 'lamp.ies'\nrotation = 90\n"
-           "[[light]]\ntype = 'spot'\npower = [3, 2, 1]\npicture = 'slide.png'\n"
+           "[[light]]\ntype = 'spot'\npower = [3, 2, 1]\nimage = 'slide.png'\n"
            "[[light]]\ntype = 'sky'\nkelvin = { keys = [[1, 4000], [3, 6000]] }\n"
            "[[mesh]]\ntype = 'sphere'\n"
            "material = { type = 'emissive', power = 9, kelvin = 2700, exposure = 1 }\n",
@@ -22,7 +22,7 @@ TEST_F(LightKeys, StrengthAndColour) {
   EXPECT_EQ(scene.lights[1].ies, file("lamp.ies"));
   EXPECT_EQ(scene.lights[1].rotation, 90);
   EXPECT_EQ(scene.lights[2].power, Rgb(3, 2, 1));
-  EXPECT_EQ(scene.lights[2].picture, file("slide.png"));
+  EXPECT_EQ(scene.lights[2].image, file("slide.png"));
   EXPECT_EQ(scene.lights[3].kelvin, 5000);
   EXPECT_EQ(scene.surfaces[0].material.power, Rgb(9));
   EXPECT_EQ(scene.surfaces[0].material.kelvin, 2700);
@@ -48,10 +48,9 @@ TEST_F(LightKeys, Complaints) {
                 .find("light.0.power does not belong to type \"distant\", only to point and spot"),
             std::string::npos);
   write("slide.png", "any");
-  EXPECT_EQ(error_of(spot + "picture = 'slide.png'\ncone_angle = 90\n"),
-            "s.toml:4: light.0.cone_angle must be at most 89 for a picture, got 90");
-  EXPECT_NE(error_of(spot + "gobo = 'slide.png'\n").find("did you mean picture?"),
-            std::string::npos);
+  EXPECT_EQ(error_of(spot + "image = 'slide.png'\ncone_angle = 90\n"),
+            "s.toml:4: light.0.cone_angle must be at most 89 for an image, got 90");
+  EXPECT_NE(error_of(spot + "gobo = 'slide.png'\n").find("did you mean image?"), std::string::npos);
   EXPECT_NE(error_of(spot + "watts = 3\n").find("did you mean power?"), std::string::npos);
 }
 

@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
     Consistency, BadSceneFile,
     ::testing::Values(
         BadScene{"\n[[volume]]\nextinction = 3\n",
-                 "s.toml:2: volume.0 needs file: the VDB; ####, %04d or $F4 stands for the frame "
+                 "s.toml:2: volume.0 needs file: VDB file; ####, %04d or $F4 stands for the frame "
                  "number"},
         BadScene{"[[light]]\n", "s.toml:1: light.0 needs type: kind of light"},
         BadScene{"[[volume]]\nfile = 'fog.vdb'\n",
@@ -270,9 +270,9 @@ TEST_F(SceneErrors, WhatIsNoSceneIsNamed) {
     return std::string();
   };
   EXPECT_EQ(error_of_file(write("a.exr", "\x76\x2f\x31\x01...")),
-            "a.exr: is an OpenEXR picture, not a scene file or VDB");
+            "a.exr: is an OpenEXR image, not a scene file or VDB");
   EXPECT_EQ(error_of_file(write("a.png", "\x89PNG...")),
-            "a.png: is a PNG picture, not a scene file or VDB");
+            "a.png: is a PNG image, not a scene file or VDB");
   EXPECT_EQ(error_of_file("/dev/null"), "/dev/null: is a device, not a scene file or VDB");
   EXPECT_EQ(error_of_file(file("b.exr")), "there is no file b.exr; did you mean a.exr?");
 }
@@ -292,13 +292,12 @@ TEST_F(SceneErrors, WhatCannotBeMeantIsNoted) {
   EXPECT_EQ(notes(volume + light + "[camera]\nshutter_close = 180\n"),
             "s.toml:6: camera.shutter_close = 180 is in frames; if degrees are meant, write 0.5\n");
   EXPECT_EQ(notes(volume + light + "[camera]\nshutter_open = -0.25\nshutter_close = 0.25\n"), "");
-  EXPECT_EQ(
-      notes(volume + light + "[render]\ntarget_error = 1\n"),
-      "s.toml:6: render.target_error = 1 is reached by almost any picture after a few passes; "
-      "a clean one has about 0.001\n");
+  EXPECT_EQ(notes(volume + light + "[render]\ntarget_error = 1\n"),
+            "s.toml:6: render.target_error = 1 is reached by almost any image after a few passes; "
+            "a clean image has about 0.001\n");
   EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n"),
-            "s.toml: the image will have no A, since no [[layer]] is \"alpha\"; add one to lay it "
-            "over a plate\n");
+            "s.toml: the image will have no alpha, since no [[layer]] is \"alpha\"; add one for "
+            "compositing\n");
   EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n[[layer]]\nname = 'alpha'\n"), "");
   EXPECT_EQ(notes(volume + "time = { speed = 2 }\n" + light),
             "s.toml:2: volume.0.time does nothing: file names a single file, not a sequence like "

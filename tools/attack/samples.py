@@ -152,7 +152,7 @@ power = [3, 4, 5]
 kelvin = 3000
 exposure = 1
 ies = "planes.ies"
-picture = "rgb8.png"
+image = "rgb8.png"
 [[layer]]
 name = "Z"
 [render]

@@ -62,7 +62,7 @@ class Targets:
         self.kinds = [*self.readable, "scene", "values", "command", "clash"]
 
     def find_doors(self):
-        """The kinds of which a sound file renders behind each key. A key that takes none stops the campaign."""
+        """The kinds for which a sound file renders behind each key. A key that takes none stops the campaign."""
         found = {}
         for key in filter(lambda key: key.is_file, tables.keys()):
             owner = (key.owners or [None])[0]
@@ -196,7 +196,7 @@ class Targets:
         return Case("", {"scene.toml": (self.sound / scene).read_bytes()}, words + sets, patience=5)
 
     def value_of(self, key, rng):
-        """Of the right type in most cases, from a table of sound, extreme and absurd ones."""
+        """A value of the right type in most cases, from a table of sound, extreme and absurd ones."""
         if key.is_file:
             return rng.choice(self.files[rng.choice(list(self.readable))])
         examples = key.examples()

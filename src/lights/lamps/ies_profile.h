@@ -19,7 +19,7 @@ public:
   /// Relative to the strongest direction, in [0, 1]. `vertical`: degrees from the lamp's axis, the
   /// file's nadir, in [0, 180]; `horizontal`: degrees about it, in [0, 360).
   double at(double vertical, double horizontal) const;
-  /// Of `at` over all directions [sr].
+  /// Integral of `at` over all directions [sr].
   double integral() const { return integral_; }
   /// It is the same all around the axis.
   bool is_round() const { return horizontal_.size() == 1; }

@@ -39,7 +39,7 @@ constexpr std::string_view point_keys[] = {"position", "intensity", "power",
 } // namespace
 
 const LightKind point_light{.name = "point",
-                            .help = "a point that shines in all directions",
+                            .help = "a point that emits in all directions",
                             .keys = point_keys,
                             .colored =
                                 [](const LightSettings& light) {

@@ -22,13 +22,13 @@ public:
     if (!settings.ies.empty())
       profile_ = same ? same->profile_
                       : std::make_shared<const IesProfile>(read_ies_profile(settings.ies));
-    if (!settings.picture.empty()) {
-      picture_ = same ? same->picture_ : read_picture(settings, context);
+    if (!settings.image.empty()) {
+      slide_ = same ? same->slide_ : read_slide(settings, context);
       // The shorter side spans the cone.
-      const double shorter = std::min(picture_->width(), picture_->height());
+      const double shorter = std::min(slide_->width(), slide_->height());
       const double tangent = std::tan(settings.cone_angle * (std::numbers::pi / 180));
-      half_width_ = tangent * picture_->width() / shorter;
-      half_height_ = tangent * picture_->height() / shorter;
+      half_width_ = tangent * slide_->width() / shorter;
+      half_height_ = tangent * slide_->height() / shorter;
     }
   }
 
@@ -36,16 +36,16 @@ public:
   const Vec3d& axis() const { return axis_; }
 
   Vec3d at(const Vec3d& direction) const {
-    const double lit = without_picture(direction);
-    if (!picture_ || !(lit > 0))
+    const double lit = without_slide(direction);
+    if (!slide_ || !(lit > 0))
       return Vec3d(lit);
     const double along = dot(direction, axis_); // > 0 in the cone
     const Uv uv{static_cast<float>(0.5 + 0.5 * dot(direction, right_) / along / half_width_),
                 static_cast<float>(0.5 + 0.5 * dot(direction, top_) / along / half_height_)};
-    return Vec3d(picture_->at(uv)) * lit;
+    return Vec3d(slide_->at(uv)) * lit;
   }
 
-  /// Over all directions, without the picture [sr].
+  /// Over all directions, without the image [sr].
   double integral() const {
     if (!profile_)
       return cone_->integral();
@@ -56,7 +56,7 @@ public:
     double sum = 0;
     for (int i = 0; i < rings; ++i)
       for (int j = 0; j < around; ++j)
-        sum += without_picture(cone_->outer().sample((i + 0.5) / rings, (j + 0.5) / around));
+        sum += without_slide(cone_->outer().sample((i + 0.5) / rings, (j + 0.5) / around));
     return sum / rings / around * cone_->outer().solid_angle();
   }
 
@@ -75,10 +75,10 @@ private:
     top_ = top * std::cos(angle) - right * std::sin(angle);
   }
 
-  static std::shared_ptr<const Texture> read_picture(const LightSettings& settings,
-                                                     const LightContext& context) {
+  static std::shared_ptr<const Texture> read_slide(const LightSettings& settings,
+                                                   const LightContext& context) {
     MaterialSettings slide;
-    slide.texture = settings.picture;
+    slide.texture = settings.image;
     slide.texture_wrap = TextureWrap::clamp;
     slide.color_space = settings.color_space;
     std::vector<std::string> unread;
@@ -86,7 +86,7 @@ private:
         read_texture(slide, true, context.notes ? *context.notes : unread));
   }
 
-  double without_picture(const Vec3d& direction) const {
+  double without_slide(const Vec3d& direction) const {
     const double lit = cone_ ? cone_->share(direction) : 1;
     if (!profile_ || !(lit > 0))
       return lit;
@@ -100,8 +100,8 @@ private:
   Vec3d axis_, right_, top_;
   std::optional<SpotCone> cone_;
   std::shared_ptr<const IesProfile> profile_;
-  std::shared_ptr<const Texture> picture_;
-  double half_width_ = 1, half_height_ = 1; ///< of the picture at distance 1
+  std::shared_ptr<const Texture> slide_;
+  double half_width_ = 1, half_height_ = 1; ///< of the image at distance 1
 };
 
 class ShapedLamp final : public LocalLight {
@@ -141,7 +141,7 @@ private:
 } // namespace
 
 bool is_shaped(const LightSettings& settings) {
-  return !settings.ies.empty() || (settings.type == LightType::spot && !settings.picture.empty());
+  return !settings.ies.empty() || (settings.type == LightType::spot && !settings.image.empty());
 }
 
 std::unique_ptr<Light> make_shaped_lamp(const LightSettings& settings,

@@ -10,9 +10,9 @@ class SpotCone {
 public:
   explicit SpotCone(const LightSettings& settings);
 
-  /// In [0, 1].
+  /// Fraction of the intensity on the axis, in [0, 1].
   double share(const Vec3d& direction) const;
-  /// Of `share` over all directions [sr].
+  /// Integral of `share` over all directions [sr].
   double integral() const;
   const Cone& outer() const { return outer_; }
 

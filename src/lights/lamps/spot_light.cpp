@@ -45,26 +45,26 @@ std::optional<KeyComplaint> spot_complaint(const LightSettings& settings) {
     return KeyComplaint{"cone_falloff", fmt::format("must be at most cone_angle ({}), got {}",
                                                     settings.cone_angle, settings.cone_falloff)};
   constexpr double widest = 89;
-  if (!settings.picture.empty() && settings.cone_angle > widest)
-    return KeyComplaint{"cone_angle", fmt::format("must be at most {} for a picture, got {}",
-                                                  widest, settings.cone_angle)};
+  if (!settings.image.empty() && settings.cone_angle > widest)
+    return KeyComplaint{"cone_angle", fmt::format("must be at most {} for an image, got {}", widest,
+                                                  settings.cone_angle)};
   return direction_complaint(settings);
 }
 
 constexpr std::string_view spot_keys[] = {"direction", "position",   "intensity",
                                           "power",     "cone_angle", "cone_falloff",
-                                          "ies",       "picture",    "rotation"};
+                                          "ies",       "image",      "rotation"};
 
 } // namespace
 
 const LightKind spot_light{.name = "spot",
-                           .help = "a point that shines into a cone",
+                           .help = "a point that emits into a cone",
                            .keys = spot_keys,
                            .colored =
                                [](const LightSettings& light) {
                                  return !is_grey(light.intensity) ||
                                         !is_grey(light.power.value_or(Rgb(1))) ||
-                                        !light.picture.empty();
+                                        !light.image.empty();
                                },
                            .complaint = spot_complaint,
                            .make = make_spot_light};
