@@ -8,11 +8,12 @@ namespace vdbeam {
 /// not copied: a literal, or the table's own.
 struct LightType {
   std::string_view name;
-  static const LightType distant, point, spot, environment, sky;
+  static const LightType distant, point, spot, environment, sky, atmosphere, sun;
   bool operator==(const LightType&) const = default;
 };
 inline constexpr LightType LightType::distant{"distant"}, LightType::point{"point"},
-    LightType::spot{"spot"}, LightType::environment{"environment"}, LightType::sky{"sky"};
+    LightType::spot{"spot"}, LightType::environment{"environment"}, LightType::sky{"sky"},
+    LightType::atmosphere{"atmosphere"}, LightType::sun{"sun"};
 
 /// A phase function, by its name in the table of phase functions (src/phase/phase_table.cpp). The
 /// name is not copied: a literal, or the table's own.

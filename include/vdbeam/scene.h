@@ -2,9 +2,11 @@
 
 #include "vdbeam/camera_settings.h"
 #include "vdbeam/emission_settings.h"
+#include "vdbeam/fog_settings.h"
 #include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
 #include "vdbeam/layer_settings.h"
+#include "vdbeam/light_settings.h"
 #include "vdbeam/phase_settings.h"
 #include "vdbeam/surface_settings.h"
 #include "vdbeam/vec.h"
@@ -24,6 +26,7 @@ namespace vdbeam {
 
 struct VolumeSettings {
   std::string name;    ///< in Cryptomatte; empty: volume0, volume1, ...
+  FogSettings fog;     ///< what stands for a file
   std::string file;    ///< path, frame pattern already substituted
   bool present = true; ///< false: this frame lies outside its sequence; nothing is there
   std::string density = "density"; ///< grid name
@@ -39,7 +42,7 @@ struct VolumeSettings {
   std::string mask;       ///< names of grids whose values multiply the density; empty: none
   std::string color_grid; ///< a vec3 grid, or "r,g,b", that multiplies the albedo; "auto"; empty
   NoiseSettings noise;    ///< displaces density and emission
-  std::optional<Vec3d> box_lower; ///< clipping box [world]
+  std::optional<Vec3d> box_lower; ///< clipping box [world]; of a shape its box, see FogSettings
   std::optional<Vec3d> box_upper;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -49,30 +52,6 @@ struct VolumeSettings {
   bool absorbs_or_scatters() const { return extinction * max_component(extinction_scale) > 0; }
   /// Something absorbs or scatters, or nothing else is there to look at.
   bool needs_density() const { return present && (absorbs_or_scatters() || !glows()); }
-};
-
-enum class DirectLight { automatic, sampled, photons };
-
-struct LightSettings {
-  LightType type = LightType::distant;
-  Vec3d direction{0, -1, 0};        ///< distant, spot: direction in which the light travels
-  Rgb irradiance{1, 1, 1};          ///< distant: on a plane that faces the light [W m^-2]
-  double angular_radius = 0;        ///< distant: half angle of the disc, degrees
-  Vec3d position{0, 0, 0};          ///< point, spot
-  Rgb intensity{1, 1, 1};           ///< point, spot [W sr^-1]
-  double cone_angle = 30;           ///< spot: half angle where the light ends, degrees
-  double cone_falloff = 5;          ///< spot: width of the smooth edge inside it, degrees
-  Rgb radiance{1, 1, 1};            ///< environment: constant, or the image's factor; sky: factor
-  Rgb zenith{0.07f, 0.19f, 0.52f};  ///< sky: radiance straight up
-  Rgb horizon{0.44f, 0.56f, 0.72f}; ///< sky: radiance at the horizon
-  Rgb ground{0.15f, 0.15f, 0.145f}; ///< sky: radiance from below the horizon
-  std::string image;                ///< environment: lat-long EXR or HDR, empty for constant
-  /// Into which images are converted; no key: the working space.
-  ColorSpace color_space = ColorSpace::rec709;
-  double rotation = 0;               ///< environment: about the up axis, degrees
-  bool visible = true;               ///< to the camera; a hidden light still lights the medium
-  std::string group;                 ///< of lights that share a layer; empty: none
-  std::optional<DirectLight> direct; ///< overrides render.direct for this light
 };
 
 enum class PhotonStore { fluence, scatter };

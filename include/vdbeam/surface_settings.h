@@ -28,8 +28,11 @@ struct MaterialSettings {
   Rgb absorption{0, 0, 0}; ///< dielectric: absorption coefficient inside [1/world]
   /// dielectric: volumes end at its surface. What absorbs is solid in any case.
   bool solid = false;
-  Rgb radiance{1, 1, 1};  ///< emissive [W m^-2 sr^-1]
-  bool two_sided = false; ///< emissive: shines from the back as well
+  Rgb radiance{1, 1, 1};        ///< emissive [W m^-2 sr^-1]
+  std::optional<Rgb> power;     ///< emissive: of all of the surface, in place of radiance [W]
+  std::optional<double> kelvin; ///< emissive: its colour is multiplied by that of a black body
+  double exposure = 0;          ///< emissive: its strength is multiplied by 2^exposure
+  bool two_sided = false;       ///< emissive: shines from the back as well
   /// Colour space of the colours above, to which the texture is converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;
 };

@@ -18,11 +18,27 @@ void add_placement(KeyTable& table, std::array<double, 12> S::*transform) {
 
 void add_volume(KeyTable& table) {
   using V = VolumeSettings;
+  using F = FogSettings;
   table.section(SceneSection::volume);
+  table.add(
+      "shape", &F::shape,
+      "source of the density: a file, or a formula in the box from box_lower to box_upper: 1 "
+      "in the box; 1 in the ellipsoid that the box encloses; exponential decay with the height "
+      "y above its bottom");
   table.add("file", &V::file, "VDB file; ####, %04d or $F4 stands for the frame number")
       .file(InputKind::volume)
-      .required();
-  table.add("density", &V::density, "name of the density grid").always_written();
+      .required()
+      .types({"file"});
+  table.add("density", &V::density, "name of the density grid").always_written().types({"file"});
+  table.add("scale_height", &F::scale_height, "height over which the density falls to 1/e")
+      .unit("world")
+      .types({"height"})
+      .above(0);
+  table
+      .add("least_density", &F::least_density,
+           "least density; there is no fog at heights where the formula gives less")
+      .types({"height"})
+      .inside(0, 1);
   table.add("extinction", &V::extinction, "extinction coefficient where the density is 1")
       .unit("1 / world")
       .at_least(0)
@@ -33,32 +49,44 @@ void add_volume(KeyTable& table) {
            "single-scattering albedo: the fraction of the extinction that scatters, per channel")
       .within(0, 1)
       .always_written();
-  table.add("color_grid", &V::color_grid,
-            R"(colour grid that multiplies the albedo, or three scalar grids ("r,g,b"); "auto": )"
-            R"("Cd", "color" or "albedo"; "": none)");
+  table
+      .add("color_grid", &V::color_grid,
+           R"(colour grid that multiplies the albedo, or three scalar grids ("r,g,b"); "auto": )"
+           R"("Cd", "color" or "albedo"; "": none)")
+      .types({"file"});
   table.add("name", &V::name, R"(name in Cryptomatte; "": volume0, volume1, ...)").keeps_world();
   add_placement(table, &V::transform);
 
-  table.add("add", &V::add, R"(grids added to the density, "a, b"; "": none)");
-  table.add("mask", &V::mask, R"(grids that multiply the density, "a, b"; "": none)");
+  table.add("add", &V::add, R"(grids added to the density, "a, b"; "": none)").types({"file"});
+  table.add("mask", &V::mask, R"(grids that multiply the density, "a, b"; "": none)")
+      .types({"file"});
   using D = DensityRemap;
-  table.add("density_scale", &D::scale, "factor of the density");
-  table.add("density_offset", &D::offset, "added to densities above 0, after density_scale");
+  table.add("density_scale", &D::scale, "factor of the density").types({"file"});
+  table.add("density_offset", &D::offset, "added to densities above 0, after density_scale")
+      .types({"file"});
   table.add("density_min", &D::least, "smaller densities become 0, after density_offset")
-      .at_least(0);
+      .at_least(0)
+      .types({"file"});
   table.add("density_max", &D::most, "larger densities are reduced to this, after density_offset")
       .above(0)
-      .absent("none");
+      .absent("none")
+      .types({"file"});
   table.add("density_power", &D::power, "exponent of the density, applied after density_max")
-      .above(0);
-  table.add("density_curve", &D::curve,
-            R"(curve of the density, "x:y x:y ...", linear in between, applied last; "": none)");
-  table.add(
-      "interpolation", &V::interpolation,
-      "interpolation of density and emission between voxels; cubic takes ten times the memory");
+      .above(0)
+      .types({"file"});
+  table
+      .add("density_curve", &D::curve,
+           R"(curve of the density, "x:y x:y ...", linear in between, applied last; "": none)")
+      .types({"file"});
+  table
+      .add("interpolation", &V::interpolation,
+           "interpolation of density and emission between voxels; cubic takes ten times the memory")
+      .types({"file"});
   table
       .add("box_lower", &V::box_lower,
-           "lower corner of a clipping box; nothing outside is rendered")
+           "lower corner of a clipping box; nothing outside is rendered. Of a shape: lower corner "
+           "of its "
+           "box, before the transform; none: the box from -1 to 1")
       .unit("world")
       .absent("none");
   table.add("box_upper", &V::box_upper, "upper corner of the clipping box")
@@ -79,11 +107,14 @@ void add_volume(KeyTable& table) {
   table.add("noise_seed", &N::seed, "seed of the noise").at_least(0);
 
   using W = VelocitySettings;
-  table.add("velocity", &W::grid,
-            R"(velocity grid, or three grids of its components ("vx,vy,vz"); "auto", "none")");
-  table.add("velocity_fps", &W::fps, "frames per second of the velocity").above(0);
-  table.add("velocity_scale", &W::scale, "factor of the velocity");
-  table.add("velocity_units", &W::units, "unit of length of velocities, per second");
+  table
+      .add("velocity", &W::grid,
+           R"(velocity grid, or three grids of its components ("vx,vy,vz"); "auto", "none")")
+      .types({"file"});
+  table.add("velocity_fps", &W::fps, "frames per second of the velocity").above(0).types({"file"});
+  table.add("velocity_scale", &W::scale, "factor of the velocity").types({"file"});
+  table.add("velocity_units", &W::units, "unit of length of velocities, per second")
+      .types({"file"});
 
   using P = PhaseSettings;
   table.section(SceneSection::phase);
@@ -171,50 +202,22 @@ void add_mesh(KeyTable& table) {
       .at_least(0);
   table.add("solid", &M::solid, "exclude volumes from the inside; always so where absorption > 0");
   table.add("radiance", &M::radiance, "emitted radiance").unit("W / m^2 / sr").at_least(0);
+  table
+      .add("power", &M::power,
+           "radiant power of the whole surface without its texture, instead of radiance")
+      .unit("W")
+      .at_least(0)
+      .absent("none");
+  table
+      .add("kelvin", &M::kelvin,
+           "colour temperature: factor of the colour of a black body, with luminance 1")
+      .unit("kelvin")
+      .within(500, 50000)
+      .absent("none");
+  table.add("exposure", &M::exposure, "exposure: factor of 2^exposure")
+      .unit("stops")
+      .within(-100, 100);
   table.add("two_sided", &M::two_sided, "emit from the back too");
-}
-
-void add_light(KeyTable& table) {
-  using L = LightSettings;
-  table.section(SceneSection::light);
-  table.add("type", &L::type, "kind of light").required();
-  table.add("direction", &L::direction, "direction in which the light travels").always_written();
-  table.add("irradiance", &L::irradiance, "irradiance on a plane that faces the light")
-      .unit("W / m^2")
-      .at_least(0)
-      .always_written();
-  table.add("angular_radius", &L::angular_radius, "angular radius of the disc (the sun: 0.27)")
-      .unit("degrees")
-      .within(0, 90);
-  table.add("position", &L::position, "position").unit("world").always_written();
-  table.add("intensity", &L::intensity, "radiant intensity").unit("W / sr").at_least(0);
-  table.add("cone_angle", &L::cone_angle, "half angle of the cone")
-      .unit("degrees")
-      .above_up_to(0, 90);
-  table.add("cone_falloff", &L::cone_falloff, "width of the soft edge, inside the cone")
-      .unit("degrees")
-      .within(0, 90);
-  table
-      .add("radiance", &L::radiance,
-           "radiance from all directions; with an image or for a sky: a factor")
-      .unit("W / m^2 / sr")
-      .at_least(0)
-      .always_written();
-  table.add("zenith", &L::zenith, "radiance straight up").unit("W / m^2 / sr").at_least(0);
-  table.add("horizon", &L::horizon, "radiance at the horizon").unit("W / m^2 / sr").at_least(0);
-  table.add("ground", &L::ground, "radiance of the ground below the horizon")
-      .unit("W / m^2 / sr")
-      .at_least(0);
-  table
-      .add("image", &L::image,
-           "lat-long EXR or HDR image; "
-           ": constant")
-      .file(InputKind::picture);
-  table.add("rotation", &L::rotation, "rotation about the camera's up axis").unit("degrees");
-  table.add("visible", &L::visible,
-            "visible to the camera; a hidden light still lights the scene and leaves A at 0");
-  table.add("group", &L::group, "light group; the lights of a group share the layer light_NAME");
-  table.add("direct", &L::direct, "method for single scattering, instead of render.direct");
 }
 
 void add_layer(KeyTable& table) {
@@ -335,7 +338,7 @@ std::vector<SceneKey> make_table() {
   add_volume(table);
   add_emission(table);
   add_mesh(table);
-  add_light(table);
+  add_light_keys(table);
   add_layer(table);
   add_render(table);
   std::vector<SceneKey> keys;

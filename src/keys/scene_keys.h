@@ -40,7 +40,7 @@ enum class KeyKind {
 };
 
 /// Kind of file that a key of the kind `file` names.
-enum class InputKind { none, volume, picture, mesh, camera };
+enum class InputKind { none, volume, picture, mesh, camera, profile };
 
 /// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a
 /// boolean), a number, a text or choice, or a list of numbers.
@@ -117,6 +117,11 @@ std::vector<std::string> key_names(SceneSection section);
 std::string section_name(SceneSection section);
 /// The path of one key in a scene, e.g. "volume.0.phase.g".
 std::string key_path(const SceneKey& key, std::size_t index);
+/// The key that says what a table of the section is, and so which other keys it takes: `type`, of
+/// volumes `shape`; null where there is none.
+const SceneKey* type_key(SceneSection section);
+/// Whether the section's table of this index, as it is, takes the key.
+bool takes_key(const Scene& scene, std::size_t index, const SceneKey& key);
 /// How many times the section is there in a scene.
 std::size_t section_count(const Scene& scene, SceneSection section);
 

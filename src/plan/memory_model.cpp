@@ -182,7 +182,9 @@ private:
     const double rays = PhotonPass::shadow_rays_per_pixel(moves) * static_cast<double>(pixels_);
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < scene_.lights.size() && !(bounds.lower.x > bounds.upper.x); ++i)
-      if (scene_.lights[i].type == LightType::distant && plan_.shadow_ray_lights[i])
+      if ((scene_.lights[i].type == LightType::distant ||
+           scene_.lights[i].type == LightType::sun) &&
+          plan_.shadow_ray_lights[i])
         bytes += ShadowLattice::bytes(Boxf{Vec3f(bounds.lower), Vec3f(bounds.upper)},
                                       Vec3f(normalize(scene_.lights[i].direction)) * -1.0f, rays);
     bytes *= std::max<std::uint64_t>(1, volumes_.moments);

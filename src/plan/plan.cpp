@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace vdbeam {
@@ -69,8 +70,11 @@ private:
   bool runs(Stage stage) const { return estimator_.stages.contains(stage); }
 
   void add_medium() {
-    add(Stage::read, !scene_.volumes.empty(),
+    const bool files = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
+                                   [](const VolumeSettings& volume) { return !volume.fog.made(); });
+    add(Stage::read, files,
         scene_.volumes.empty()    ? "no volumes"
+        : !files                  ? "no volume has a file: their densities are formulas"
         : !scene_.moments.empty() ? "density, emission and velocity grids"
         : needs_.glows            ? "density and emission grids only"
                                   : "density grids only");

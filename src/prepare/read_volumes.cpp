@@ -46,10 +46,11 @@ std::string colors_text(const VolumeSettings& volume) {
                                                  static_cast<int>(volume.emission.color_space));
 }
 
-/// The box that a volume is clipped to, and what places it there.
+/// The box that a volume is clipped to, and what places it there; of a volume without a file its
+/// shape, which is placed afterwards.
 std::string box_text(const VolumeSettings& volume) {
-  if (!volume.box_lower || !volume.box_upper)
-    return "";
+  if (volume.fog.made() || !volume.box_lower || !volume.box_upper)
+    return fog_text(volume);
   const Vec3d &a = *volume.box_lower, &b = *volume.box_upper;
   std::string text = fmt::format("|{} {} {} {} {} {}", a.x, a.y, a.z, b.x, b.y, b.z);
   for (const double x : volume.transform)
@@ -68,7 +69,7 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   edits.to_world = Affine::from_matrix(volume.transform).after(grid.index_to_world);
   if (density)
     edits.remap = volume.remap;
-  if (volume.box_lower && volume.box_upper)
+  if (!volume.fog.made() && volume.box_lower && volume.box_upper)
     edits.box = Boxd{*volume.box_lower, *volume.box_upper};
   return edits;
 }
@@ -142,7 +143,8 @@ bool stands_still(const VolumeSettings& volume, const ReadVolume& read) {
 
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion) {
   const Affine placed = Affine::from_matrix(volume.transform);
-  if (!volume.box_lower || !volume.box_upper || !(std::abs(placed.determinant()) > 0))
+  if (volume.fog.made() || !volume.box_lower || !volume.box_upper ||
+      !(std::abs(placed.determinant()) > 0))
     return std::nullopt;
   Boxd box = placed.inverse().bounds({*volume.box_lower, *volume.box_upper});
   const Vec3d noise(volume.noise.amplitude);
@@ -279,7 +281,8 @@ void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& pr
   const bool wanted = !scene.moments.empty() || asks_for_layer(scene, "motion");
   if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
     read.velocity = previous->volumes[i].velocity;
-  if (!wanted || !volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
+  if (!wanted || !volume.present || volume.fog.made() || volume.velocity.grid == "none" ||
+      volume.velocity.scale == 0)
     return;
   const std::string identity = fmt::format(
       "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,

@@ -32,6 +32,9 @@ DensityGrid read_emission_source(const VolumeSettings& volume, const std::string
                                  const std::optional<WantedBox>& wanted, const StopToken& stop,
                                  std::uint64_t& grids_read);
 
+/// What decides the density of a volume without a file, as text; "" for others.
+std::string fog_text(const VolumeSettings& volume);
+
 /// The settings of a volume's noise, as text.
 std::string noise_text(const VolumeSettings& volume);
 

@@ -87,7 +87,7 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
 }
 
 /// Data of a grid's shape for camera and extinction.
-struct VolumeShape {
+struct VolumeOutline {
   std::string grid;
   std::vector<Vec3d> points; ///< a body around them holds all that is to be seen
   double mean_depth = 0;     ///< of a mean line along the longest side, at extinction 1
@@ -153,10 +153,10 @@ std::vector<std::vector<GridSummary>> read_summaries(const std::string& path) {
   return summaries;
 }
 
-VolumeShape find_shape(const std::string& path,
-                       const std::vector<std::vector<GridSummary>>& summaries,
-                       const FramingWishes& wishes, std::vector<std::string>& notes) {
-  VolumeShape shape;
+VolumeOutline find_shape(const std::string& path,
+                         const std::vector<std::vector<GridSummary>>& summaries,
+                         const FramingWishes& wishes, std::vector<std::string>& notes) {
+  VolumeOutline shape;
   for (const std::vector<GridSummary>& grids : summaries) {
     std::vector<std::string> grid_notes;
     const GridSummary& grid = choose_grid(grids, wishes, path, grid_notes);
@@ -290,7 +290,7 @@ Scene make_default_scene(const std::string& path,
                          const FramingWishes& wishes) {
   Scene scene;
   scene.path = path;
-  const VolumeShape shape = find_shape(path, summaries, wishes, scene.notes);
+  const VolumeOutline shape = find_shape(path, summaries, wishes, scene.notes);
   const Vec3d up = choose_up(path, summaries, wishes, scene.notes);
   frame_camera(scene, shape.points, up, wishes);
 

@@ -25,6 +25,7 @@ constexpr InputRule rules[] = {
     {InputKind::picture, "pictures", 16 * gib},
     {InputKind::mesh, "mesh files", 16 * gib},
     {InputKind::camera, "camera files", 16 * gib},
+    {InputKind::profile, "photometric files", 16 << 20},
 };
 
 /// Calls visit(table, index) for each table of a section.

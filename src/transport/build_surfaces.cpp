@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace vdbeam {
 namespace {
@@ -39,6 +40,15 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     check(least_stretch(surfaces[i].to_render.inverse()) > reach / farthest, i,
           "a million million times smaller, in some direction, than");
+}
+
+/// The material of a lamp whose power is given [W]: radiance times pi times the area of its sides.
+std::unique_ptr<Material> material_of_power(MaterialSettings material, double world_area,
+                                            double scale) {
+  const double sides = material.two_sided ? 2 : 1;
+  material.radiance = Rgb(Vec3d(*material.power) / (std::numbers::pi * world_area * sides));
+  material.power.reset();
+  return make_material(material, scale);
 }
 
 } // namespace
@@ -94,6 +104,10 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
   check_sizes(placed);
   const double reach = static_cast<double>(length(medium.center) + medium.radius);
   surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach, previous);
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    if (settings[i].material.power)
+      surfaces->materials[i] = material_of_power(
+          settings[i].material, surfaces->set->area(i) / (space.scale * space.scale), space.scale);
   for (std::size_t i = 0; i < settings.size(); ++i)
     if (surfaces->materials[i]->is_solid())
       surfaces->solids.push_back(surfaces->set->bounds(i));

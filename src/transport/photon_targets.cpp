@@ -239,7 +239,7 @@ void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& u
       const LightContext context{up, world.space, world.targets[static_cast<std::size_t>(target)],
                                  target == 0 ? &notes : nullptr,
                                  target == 0 ? nullptr : aims[0].light.get()};
-      aims.push_back({kind.make(light, context), target, target, 1});
+      aims.push_back({make_light(light, context), target, target, 1});
     }
     share_out(world, aims);
     world.lights.add(std::make_unique<AimedLight>(std::move(aims)),

@@ -73,10 +73,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{VOLUME "phase = { type = 'henyey_greenstein', anisotropy = 0.5 }\n",
                  "s.toml:3: unknown key volume.0.phase.anisotropy; did you mean g?"},
         BadScene{
-            "[[light]]\ntype = 'distant'\nkelvin = 5000\n",
-            "s.toml:3: unknown key light.0.kelvin; colour and strength of a light are one key: "
-            "irradiance of a distant light, intensity of a point or spot light, radiance of an "
-            "environment or sky, e.g. irradiance = [5, 4, 3]"},
+            "[[light]]\ntype = 'distant'\ncolor = [1, 0.5, 0]\n",
+            "s.toml:3: unknown key light.0.color; colour and strength of a light are one key: "
+            "irradiance of a distant light, intensity or power of a point or spot light, radiance "
+            "of "
+            "an environment or sky, e.g. irradiance = [5, 4, 3]; kelvin and exposure multiply it"},
         BadScene{"[[light]]\ntype = 'distant'\nelevation = 50\n",
                  "s.toml:3: unknown key light.0.elevation; direction = [x, y, z] is the way that a "
                  "distant or spot light travels"},
@@ -154,16 +155,18 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"beams\"; did you "
                  "mean beam?"},
         BadScene{
-            "[[light]]\ntype = 'sun'\n",
-            "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
-            "did you mean distant?"},
-        BadScene{"[[light]]\ntype = 'dome'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"dome\"; did you mean environment?"},
-        BadScene{"[[light]]\ntype = 'area'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"area\"; a light with an area is a [[mesh]] with material = { type = "
-                 "\"emissive\", radiance = 10 }"},
+            "[[light]]\ntype = 'directional'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere or "
+            "sun, got \"directional\"; did you mean distant?"},
+        BadScene{
+            "[[light]]\ntype = 'dome'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"dome\"; did you mean environment?"},
+        BadScene{
+            "[[light]]\ntype = 'area'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"area\"; a light with an area is a [[mesh]] with material = { type = "
+            "\"emissive\", radiance = 10 }"},
         BadScene{"[[mesh]]\ntype = 'plane'\n",
                  "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"plane\"; did you "
                  "mean quad?"},

@@ -39,7 +39,7 @@ def scene_with(key, path, owner=None):
     """A scene in which the key names the file."""
     line = f'{key.name} = "{path}"'
     if owner:
-        line = f'type = "{owner}"\n{line}'
+        line = f'{"shape" if key.section == "volume" else "type"} = "{owner}"\n{line}'
     around = AROUND.get(key.section, f"[{key.section}]\n{{line}}\n")
     rest = "".join(text for name, text in SURROUNDINGS.items() if name != key.section.split(".")[0])
     return around.format(line=line) + rest + REST
@@ -104,7 +104,7 @@ class Targets:
         return name, headers.damaged(name, (self.sound / name).read_bytes(), rng)
 
     def file(self, kind, rng):
-        """A damaged volume, mesh, picture or camera behind a key of a scene, or as an argument."""
+        """A damaged volume, mesh, picture, camera or profile behind a key of a scene, or as an argument."""
         name, data = self.damaged(kind, rng)
         files = {name: data}
         beside = {".bin": name.replace("buffer", "parts").replace(".bin", ".gltf"), ".mtl": "mesh.obj"}

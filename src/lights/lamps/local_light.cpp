@@ -1,4 +1,4 @@
-#include "lights/local_light.h"
+#include "lights/lamps/local_light.h"
 
 namespace vdbeam {
 namespace {
@@ -26,17 +26,20 @@ IncidentSample LocalLight::sample_incident(const Vec3f& point, float, float) con
     return {{0, 0, 1}, 0, {}, 0};
   const Vec3d wi = to / distance;
   const double clamped = std::max(distance, nearest);
-  const double factor = share(-wi) / (clamped * clamped);
+  const Vec3d factor = share(-wi) / (clamped * clamped);
   return {Vec3f(wi), static_cast<float>(distance), Rgb(intensity_ * factor), 0};
 }
 
+LocalLight::Drawn LocalLight::draw(double place, float v) const {
+  return {cone_.sample(static_cast<float>(place), v), cone_.solid_angle()};
+}
+
 EmittedPhoton LocalLight::emit(double place, Rng& rng) const {
-  const float u = static_cast<float>(place), v = rng.uniform();
-  const Vec3d direction = cone_.sample(u, v);
+  const auto [direction, solid_angle] = draw(place, rng.uniform());
   Vec3d origin;
   if (sphere_.radius < 0 || !advance_to_region(position_, direction, sphere_, origin))
     return {{Vec3f(position_), Vec3f(direction)}, {}};
-  const double factor = share(direction) * cone_.solid_angle();
+  const Vec3d factor = share(direction) * solid_angle;
   return {{Vec3f(origin), Vec3f(direction)}, Rgb(intensity_ * factor)};
 }
 

@@ -22,8 +22,16 @@ protected:
   /// emits and reaches the region.
   LocalLight(const LightSettings& settings, const LightContext& context, const Cone& emission_cone);
 
-  /// Fraction of the full intensity that is emitted along `direction`, in [0, 1].
-  virtual double share(const Vec3d& direction) const = 0;
+  /// Factor of the intensity along `direction`, per channel.
+  virtual Vec3d share(const Vec3d& direction) const = 0;
+
+  /// A direction for a photon, and the reciprocal of the density with which it was drawn [sr].
+  struct Drawn {
+    Vec3d direction;
+    double solid_angle;
+  };
+  /// Evenly in the emission cone. `place` as in Light::emit, `v` uniform in [0, 1).
+  virtual Drawn draw(double place, float v) const;
 
   static Vec3d render_position(const LightSettings& settings, const LightContext& context) {
     return context.space.point(settings.position);
