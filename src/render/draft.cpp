@@ -50,7 +50,7 @@ struct RasterMap {
         step_y(static_cast<double>(draft.height) / full.height), overscan(full.overscan),
         overscan_of_draft(draft.overscan) {}
 
-  /// Of the place `x` in pixels from the left edge.
+  /// Place in the draft of a place `x`, in pixels from the left edge.
   double x(double x) const { return (x - overscan) * step_x + overscan_of_draft - 0.5; }
   double y(double y) const { return (y - overscan) * step_y + overscan_of_draft - 0.5; }
 };

@@ -56,7 +56,7 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
   set_deadline();
 }
 
-/// Of the window.
+/// Makes the film of the window.
 Film PassLoop::make_film() const {
   std::optional<DeepFilm> deep;
   if (deep_layout_)

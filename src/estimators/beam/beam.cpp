@@ -66,7 +66,8 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
                   map.groups() > 0 ? &groups : nullptr);
     return GroupedLight(sum, groups);
   };
-  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along, &blur}, image, statistics);
+  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along, &blur}, image,
+              statistics);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
