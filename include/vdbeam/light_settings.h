@@ -12,7 +12,7 @@ namespace vdbeam {
 /// How single scattering of a light is found: by shadow rays, or from photons.
 enum class DirectLight { automatic, sampled, photons };
 
-/// A [[light]] of a scene, in world units; docs/scene.md gives every key, its unit, range and
+/// A [[light]] of a scene, in world units; docs/reference/scene.md has unit, range and
 /// default. Each kind of light reads the fields whose comments name it, and those that name none.
 struct LightSettings {
   LightType type = LightType::distant;
