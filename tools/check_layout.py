@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the rules of the source tree that no compiler checks; docs/architecture.md explains them.
+"""Checks the rules of the source tree that no compiler checks; docs/developer/architecture.md explains them.
 
 Prints one line per violation, "file:line: what", and exits 1 where there is one.
 """

@@ -75,7 +75,7 @@ def error(image, references):
 
 
 def row(name, work, results):
-    """Of one renderer's (seconds, MRSE, bias) for each seed."""
+    """Row of one renderer's (seconds, MRSE, bias) for each seed."""
     seconds, mrse, bias = (sum(column) / len(results) for column in zip(*results))
     return f"| {name} | {work} | {seconds:.1f} | {mrse:.2g} | {mrse * seconds:.2g} | {100 * bias:+.2f} % |"
 

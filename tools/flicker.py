@@ -5,7 +5,7 @@ A reference of every frame is rendered by the path estimator with numbers of its
 files are there. Then the frames are rendered with each combination of render.seeds (per_frame,
 correlated) and of the settings in --variant, for several seeds, and compared by `vdbeam compare -f`.
 The result is a table in Markdown: MRSE, temporal error (`vdbeam compare --help` defines it), their
-ratio (temporal / (2 MRSE): 1 where the frames' errors are independent), bias, what tells of jumps, and
+ratio (temporal / (2 MRSE): 1 where the frames' errors are independent), bias, measures of jumps, and
 processor seconds. A jump shows as a temporal error of one pair of frames far above the median of all
 (`worst pair`), or as a mean brightness that changes otherwise than the reference's (`brightness jump`).
 
@@ -53,7 +53,7 @@ def processor_seconds():
 
 
 def jumps(frames):
-    """Of one seed's frames: the worst pair's temporal error over the median, and the largest change of
+    """For one seed's frames: the worst pair's temporal error over the median, and the largest change of
     the bias from one frame to the next."""
     temporal = [frame["temporal"] for frame in frames[1:]]
     changes = [abs(b["bias"] - a["bias"]) for a, b in zip(frames, frames[1:])]

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks the C++ sources: tools/lint.sh [--format | --tidy] [FILE...]; both and all files by default.
+# Checks the sources: tools/lint.sh [--format | --tidy] [FILE...]; both and all files by default.
+# --format checks layout, the style of the text and the format of C++ files.
 # Needs clang-format and clang-tidy 14 (apt-get install clang-format clang-tidy); --tidy also needs a
 # configured release build (tools/test.sh). Changes nothing.
 set -euo pipefail
@@ -18,6 +19,8 @@ fi
 
 status=0
 if ((format)); then
+  python3 tools/check_layout.py || status=1
+  python3 tools/check_style.py || status=1
   "$(command -v clang-format-14 || echo clang-format)" --dry-run -Werror "${files[@]}" || status=1
 fi
 if ((tidy)); then

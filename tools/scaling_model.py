@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How a shot scales over machines, on paper: the table of docs/farm.md.
+"""How a shot scales over machines, on paper: the table of docs/how-to/farm.md.
 
 Every assumption is an option. All machines start at once, share one file server, and do nothing
 else; a frame is split by passes only where there are more machines than frames.
@@ -22,7 +22,7 @@ def arguments(words=None):
     add("--volume-mb", type=float, default=400.0, help="VDB of a frame")
     add("--brick-seconds", type=float, default=12.0, help="one machine reads and bricks a VDB")
     add("--image-bytes", type=float, default=20.0, help="per pixel of the finished EXR")
-    add("--film-bytes", type=float, default=160.0, help="per pixel of a part and of a checkpoint")
+    add("--film-bytes", type=float, default=184.0, help="per pixel of a part and of a checkpoint")
     add("--checkpoint", type=float, default=300.0, help="seconds between checkpoints")
     add("--server-gb", type=float, default=5.0, help="GB/s of the file server")
     add("--link-gb", type=float, default=1.0, help="GB/s of a machine's network")

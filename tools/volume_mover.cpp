@@ -62,7 +62,7 @@ public:
         seconds_(seconds), in_index_(in_index),
         staggered_(velocity.getGridClass() == openvdb::GRID_STAGGERED) {}
 
-  /// Of the point `index`.
+  /// Position of the point `index`.
   Vec3d at(const Vec3d& index) const {
     const Vec3d world = lattice_.indexToWorld(index),
                 at = velocity_.transform().worldToIndex(world);

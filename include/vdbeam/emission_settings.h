@@ -6,12 +6,12 @@
 
 namespace vdbeam {
 
-/// How the brightness of a black body follows its temperature.
+/// Dependence of a black body's brightness on its temperature.
 enum class EmissionLaw { planck, stefan_boltzmann, none };
 
 /// Light that a volume emits: j(x) = scale * color * intensity(x) * blackbody(x) [radiance /
 /// world], where intensity is 1 without an intensity grid and blackbody is 1 without a temperature
-/// grid (docs/physics.md).
+/// grid (docs/theory/transport.md).
 struct EmissionSettings {
   std::string intensity;   ///< grid name; empty: none
   std::string temperature; ///< grid name; empty: none

@@ -2,12 +2,12 @@
 
 namespace vdbeam {
 
-/// A frame of a sequence, and the moment at which it is looked at. Every whole frame is looked at
-/// at its own time, so an `int` is a FrameTime; a shutter that is open for a while sees other
-/// moments of the same frame.
+/// A frame of a sequence and the time at which animated keys are evaluated. A whole frame is
+/// evaluated at its own time, so an `int` converts to a FrameTime; motion samples of an open
+/// shutter have other times of the same frame.
 struct FrameTime {
-  int number = 1;  ///< which frame: in file names, and as the key of random numbers
-  double time = 1; ///< when animated keys are evaluated [frames]
+  int number = 1;  ///< number of the frame, for file names and random numbers
+  double time = 1; ///< time of animated keys [frames]
 
   constexpr FrameTime() = default;
   constexpr FrameTime(int frame) : number(frame), time(frame) {} ///< of a whole frame

@@ -21,11 +21,11 @@ struct ImageChannel {
 struct Image {
   int width = 0;
   int height = 0;
-  /// Where the picture lies in the whole one, for one that was cut out: its top left pixel, and the
-  /// whole one's size (0: it is whole).
+  /// For a region of an image: its top left pixel in the whole image, and the size of the whole
+  /// image (0: this is the whole image).
   int x = 0, y = 0;
   int full_width = 0, full_height = 0;
-  /// Of R, G and B in every layer; nullopt where they are not linear colours of known primaries.
+  /// Primaries of R, G and B in every layer; nullopt if they are not linear or unknown.
   std::optional<Chromaticities> primaries = Chromaticities();
   std::vector<ImageChannel> channels;
   /// String attributes; "timeCode" ("01:02:03:04") becomes one of OpenEXR's own type.

@@ -21,8 +21,8 @@ std::uint64_t write_deep_exr(const DeepImage& deep, const Image& attributes,
 Image read_image(const std::string& path);
 
 /// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` says how
-/// highlights are shown: "filmic" rolls them off, "srgb" clips them (docs/output.md). Throws
-/// InputError for another view.
+/// highlights are shown: "filmic" rolls them off, "srgb" clips them (docs/reference/output.md).
+/// Throws InputError for another view.
 void write_png(const Image& image, const std::string& path, double exposure = 0,
                const std::string& view = "filmic");
 

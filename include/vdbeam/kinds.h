@@ -8,11 +8,12 @@ namespace vdbeam {
 /// not copied: a literal, or the table's own.
 struct LightType {
   std::string_view name;
-  static const LightType distant, point, spot, environment, sky;
+  static const LightType distant, point, spot, environment, sky, atmosphere, sun;
   bool operator==(const LightType&) const = default;
 };
 inline constexpr LightType LightType::distant{"distant"}, LightType::point{"point"},
-    LightType::spot{"spot"}, LightType::environment{"environment"}, LightType::sky{"sky"};
+    LightType::spot{"spot"}, LightType::environment{"environment"}, LightType::sky{"sky"},
+    LightType::atmosphere{"atmosphere"}, LightType::sun{"sun"};
 
 /// A phase function, by its name in the table of phase functions (src/phase/phase_table.cpp). The
 /// name is not copied: a literal, or the table's own.
@@ -25,9 +26,8 @@ inline constexpr PhaseType PhaseType::isotropic{"isotropic"},
     PhaseType::henyey_greenstein{"henyey_greenstein"}, PhaseType::rayleigh{"rayleigh"},
     PhaseType::two_lobe{"two_lobe"}, PhaseType::mie{"mie"};
 
-/// What a surface looks like, by its name in the table of materials
-/// (src/materials/material_table.cpp); docs/physics.md has the models. The name is not copied: a
-/// literal, or the table's own.
+/// A material, by its name in the table of materials (src/materials/material_table.cpp); its model
+/// is in docs/theory/surfaces.md. The name is not copied: a literal, or the table's own.
 struct MaterialType {
   std::string_view name;
   static const MaterialType diffuse, mirror, conductor, dielectric, emissive, holdout,

@@ -5,24 +5,24 @@
 
 namespace vdbeam {
 
-/// How the numbers of a layer are stored: as docs/output.md says, as halves where they can hold the
-/// values, or as floats.
+/// Storage of a layer: automatic (docs/reference/output.md), halves where they can hold the values,
+/// or floats.
 enum class LayerPrecision { automatic, half, single };
 
-/// How an EXR is compressed.
+/// Compression of an EXR.
 enum class Compression { zip, zips, piz, rle, none, dwaa, dwab };
 
-/// Whether the layers of an EXR share one part, or have one each.
+/// Parts of an EXR: one for all layers, or one for each.
 enum class ImageParts { one, layers };
 
-/// After whose renderer the layers of an EXR are named (docs/output.md).
+/// Naming convention of the layers of an EXR (docs/reference/output.md).
 enum class LayerNames { vdbeam, arnold, cycles };
 
-/// A layer of the picture beside its colours (docs/output.md).
+/// A layer of the image beside its colours (docs/reference/output.md).
 struct LayerSettings {
   std::string name;
   LayerPrecision precision = LayerPrecision::automatic;
-  /// Of its part, where layers have parts of their own; absent: that of the picture.
+  /// Compression of its part, if layers have parts of their own; absent: that of the image.
   std::optional<Compression> compression = std::nullopt;
 };
 

@@ -5,7 +5,7 @@
 namespace vdbeam {
 
 /// Error of an image v against a reference r, over all pixels and the channels R, G, B, in linear
-/// RGB. Definitions: docs/physics.md.
+/// RGB. Definitions: docs/theory/error-estimate.md.
 struct ImageError {
   double rmse = 0;   ///< sqrt(mean((v - r)^2))
   double mrse = 0;   ///< mean((v - r)^2 / (r + 0.01)^2)
@@ -20,8 +20,8 @@ struct ImageError {
 ImageError image_error(const Image& image, const Image& reference);
 /// The same, with FLIP.
 ImageError compare_images(const Image& image, const Image& reference);
-/// Error of an image v against the truth, of which `a` and `b` are two independent, unbiased and
-/// noisy pictures, free of their noise on average:
+/// Error of an image v against the truth, estimated from two independent, unbiased and noisy
+/// images `a` and `b` of it; their noise cancels on average:
 ///   mrse = mean((v - a)(v - b) / (m + 0.01)^2),  rmse^2 and relmse with the same product,
 ///   bias = mean(v) / mean(m) - 1.
 /// m is the mean of a and b, over 5 x 5 pixels where their noise is more than 0.01 as an MRSE, so

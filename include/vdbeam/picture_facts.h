@@ -2,14 +2,15 @@
 
 namespace vdbeam {
 
-/// Numbers that describe what a picture shows, so that a wrong one is noticed.
+/// Numbers that describe an image, so that a wrong one is noticed.
 struct PictureFacts {
-  /// Of the medium, along the deepest of a grid of camera rays, in the channel with most.
+  /// Optical depth of the medium along the deepest of a grid of camera rays, in the largest
+  /// channel.
   double optical_depth = 0;
-  double opacity = 0; ///< mean over the pixels: of volumes, surfaces and caught shadows; NaN: there
-                      ///< is no layer alpha
-  double black = 0;   ///< share of the pixels without any light
-  double over_one = 0; ///< share of the pixels with a channel above 1
+  /// Mean over the pixels: of volumes, surfaces and caught shadows. NaN: there is no layer alpha.
+  double opacity = 0;
+  double black = 0;    ///< fraction of the pixels without any light
+  double over_one = 0; ///< fraction of the pixels with a channel above 1
 };
 
 } // namespace vdbeam

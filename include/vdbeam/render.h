@@ -27,11 +27,11 @@ struct RenderResult {
   RenderPlan plan;
   std::vector<std::string> notes; ///< for the user: repairs, empty grids, choices made
   std::string stopped_by;         ///< "passes", "time", "target_error", "stop"
-  PictureFacts picture;           ///< of a whole picture; not of a quick look
+  PictureFacts picture;           ///< of a whole image; not of a quick look
   int resumed_passes = 0;         ///< passes that came from a checkpoint
-  bool quick_look = false;        ///< not one pass was finished; the image is for the eye only
-  /// Where the time limit left no time for a pass, the factor by which the picture was rendered in
-  /// fewer pixels each way, before it was enlarged; else 0.
+  bool quick_look = false;        ///< no pass was finished; the image is for viewing only
+  /// Drafts, for which the time limit left no time for a pass: the factor by which the resolution
+  /// was reduced each way before the image was enlarged. Else 0.
   int draft = 0;
 };
 
@@ -40,30 +40,30 @@ struct PassRange {
   int first = 0, last = 0;
 };
 
-/// A file from which a render that was ended goes on, bit for bit (docs/sequences.md).
+/// A file from which an interrupted render resumes, bit for bit (docs/how-to/sequences.md).
 struct CheckpointSettings {
   std::string path;   ///< empty: none is written
-  double seconds = 0; ///< written whenever so much time has gone by; 0: not by time
-  int passes = 0;     ///< written whenever so many passes are done; 0: not by passes
+  double seconds = 0; ///< interval between checkpoints [s]; 0: not by time
+  int passes = 0;     ///< interval between checkpoints in passes; 0: not by passes
   bool resume = true; ///< begin with what is in the file, if it is of this scene
 };
 
-/// What of a frame is rendered, and the files that passes go to.
+/// The part of a frame to render, and the files that passes go to.
 struct FrameSettings {
   std::optional<PassRange> pass_range; ///< exactly these instead of those of the scene's stop rule
   std::optional<PixelRegion> region;   ///< only this part; its pixels are those of the whole image
   std::string partial; ///< where the passes go as a partial image, for merge_partials
   /// Written at intervals and when stopped, removed by nobody but the caller.
   CheckpointSettings checkpoint;
-  /// Of the time that the scene's stop rule gives, what preparing the frame has taken already.
+  /// Part of the stop rule's time that preparing the frame has taken already [s].
   double seconds_used = 0;
   /// The true image (R, G, B), for errors in the pass records; same size as the scene's.
   const Image* reference = nullptr;
-  /// A second one, of noise that is independent of the first's: errors are then free of both.
+  /// A second, independent one: removes the noise of both from the errors.
   const Image* second_reference = nullptr;
 };
 
-/// By which the caller follows a render and ends it; all optional. They are called on the rendering
+/// Callbacks and flags to observe and stop a render; all optional. They are called on the rendering
 /// thread.
 struct RenderHooks {
   /// After each pass.
@@ -98,12 +98,12 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
 RenderResult render(const Scene& scene, const FrameSettings& frame = {},
                     const RenderHooks& hooks = {});
 
-/// How merge_partials joins.
+/// Settings of merge_partials.
 struct MergeSettings {
-  bool allow_gaps = false;   ///< join also where passes are missing
-  std::optional<int> passes; ///< passes 0 to passes - 1 must be there, and no others
-  std::string partial;       ///< write the joined passes as a partial image too; empty: no
-  std::string deep;          ///< write the deep picture too, where the parts hold one; empty: no
+  bool allow_gaps = false;   ///< merge although passes are missing
+  std::optional<int> passes; ///< require exactly the passes 0 to passes - 1
+  std::string partial;       ///< also write the merged passes as a partial image; empty: no
+  std::string deep;          ///< also write the deep image, if the parts hold one; empty: no
 };
 
 /// Joins partial images of one scene, frame and region into the image of all their passes, bit for

@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What a render may consist of (docs/architecture.md).
+/// Stages of a render (docs/developer/architecture.md).
 enum class Stage {
   read,
   majorants,
@@ -38,7 +38,7 @@ enum class Stage {
 };
 inline constexpr std::size_t stage_count = 22;
 
-/// A stage as plans and reports call it, e.g. "photon importance".
+/// Name of a stage in plans and reports, e.g. "photon importance".
 constexpr std::string_view stage_name(Stage stage) {
   constexpr std::array<std::string_view, stage_count> names{"read",
                                                             "majorants",
@@ -89,44 +89,44 @@ struct PlanStage {
   std::string reason; ///< one clause
 };
 
-/// A part of the method, and whether a frame's passes make use of it.
+/// A feature of the method, and whether a frame's passes use it.
 struct FeatureChoice {
   std::string_view name; ///< "forward peak", ...
-  std::string_view key;  ///< of the scene file, which forces it; empty: none
+  std::string_view key;  ///< key of the scene file that controls it; empty: none
   bool on = false;
   std::string reason; ///< one clause: what it does, or why it is left out
 };
 
-/// A mesh or a texture of a scene, as it is found before it is rendered.
+/// A mesh or texture of a scene, as found before rendering.
 struct SurfaceFile {
   std::string path;
   std::uint64_t triangles = 0; ///< of a mesh
   int width = 0, height = 0;   ///< of a texture
-  std::uint64_t bytes = 0;     ///< of memory, about: the most that it takes, while it is read
+  std::uint64_t bytes = 0;     ///< estimated peak memory while it is read
 };
 
-/// What is decided about a render before its first pass, as a value. Estimators follow it.
+/// Decisions about a render before its first pass, as a value. Estimators follow it.
 struct RenderPlan {
-  /// Of the estimator that renders; "auto" where that is not known before the volumes are read.
+  /// Name of the estimator that renders; "auto" if it is not known before the volumes are read.
   std::string_view estimator;
   std::string choice;            ///< why it was chosen, one clause; empty where the scene names it
   std::vector<PlanStage> stages; ///< all of them, in the order of Stage
-  /// All parts of the method with what was chosen once the volumes were read; empty before.
+  /// All features with the choices made once the volumes were read; empty before.
   std::vector<FeatureChoice> features;
-  /// What passes are: those at which something may change, up to the last that was asked for; empty
-  /// before the volumes are read.
+  /// Specifications of the passes at which something may change, up to the last pass; empty before
+  /// the volumes are read.
   std::vector<PassSpec> schedule;
-  /// Per light of the scene: single scattering is found by shadow rays. What the other lights send
-  /// is left to photons, or to scattered rays that leave the scene.
+  /// Per light of the scene: whether shadow rays sample its single scattering. Light of the others
+  /// is carried by photons, or found by scattered rays that leave the scene.
   std::vector<bool> shadow_ray_lights;
-  /// The mean of the passes is the true picture; else its bias vanishes only in the limit.
+  /// Whether the mean of the passes has no bias; otherwise its bias vanishes only in the limit.
   bool unbiased = false;
-  /// Estimates of these parts alone; all that a frame takes is in its MemoryPlan.
+  /// Estimated memory of these parts [bytes]; MemoryPlan has that of a whole frame.
   std::uint64_t photon_bytes = 0, film_bytes = 0;
-  /// Of meshes while they are read, the most that they take, and of textures.
+  /// Peak memory of meshes while they are read, and of textures.
   std::uint64_t surface_bytes = 0;
   std::vector<SurfaceFile> surface_files; ///< each once; only make_plan looks for them
-  std::uint64_t deep_bytes = 0; ///< of a deep picture's samples, a third of the most there can be
+  std::uint64_t deep_bytes = 0; ///< of a deep image's samples: a third of their greatest number
 
   bool needs(Stage stage) const {
     for (const PlanStage& s : stages)

@@ -2,9 +2,11 @@
 
 #include "vdbeam/camera_settings.h"
 #include "vdbeam/emission_settings.h"
+#include "vdbeam/fog_settings.h"
 #include "vdbeam/frame_time.h"
 #include "vdbeam/kinds.h"
 #include "vdbeam/layer_settings.h"
+#include "vdbeam/light_settings.h"
 #include "vdbeam/phase_settings.h"
 #include "vdbeam/surface_settings.h"
 #include "vdbeam/vec.h"
@@ -18,11 +20,13 @@
 
 namespace vdbeam {
 
-/// What the user asked for, as plain values in world units; docs/scene.md gives every key, its
-/// unit, range and default. `load_scene` fills it from a file, programs may fill it by hand.
+/// The settings of a scene, as plain values in world units; docs/reference/scene.md gives unit,
+/// range and default of each key. `load_scene` fills it from a file; programs may fill it
+/// themselves.
 
 struct VolumeSettings {
   std::string name;    ///< in Cryptomatte; empty: volume0, volume1, ...
+  FogSettings fog;     ///< what stands for a file
   std::string file;    ///< path, frame pattern already substituted
   bool present = true; ///< false: this frame lies outside its sequence; nothing is there
   std::string density = "density"; ///< grid name
@@ -38,7 +42,7 @@ struct VolumeSettings {
   std::string mask;       ///< names of grids whose values multiply the density; empty: none
   std::string color_grid; ///< a vec3 grid, or "r,g,b", that multiplies the albedo; "auto"; empty
   NoiseSettings noise;    ///< displaces density and emission
-  std::optional<Vec3d> box_lower; ///< nothing outside of this box is seen [world]
+  std::optional<Vec3d> box_lower; ///< clipping box [world]; of a shape its box, see FogSettings
   std::optional<Vec3d> box_upper;
   /// Row-major affine 3x4 matrix applied after the grid's own index-to-world map.
   std::array<double, 12> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -50,42 +54,17 @@ struct VolumeSettings {
   bool needs_density() const { return present && (absorbs_or_scatters() || !glows()); }
 };
 
-enum class DirectLight { automatic, sampled, photons };
-
-struct LightSettings {
-  LightType type = LightType::distant;
-  Vec3d direction{0, -1, 0};        ///< distant, spot: the way the light travels
-  Rgb irradiance{1, 1, 1};          ///< distant: on a plane that faces the light [W m^-2]
-  double angular_radius = 0;        ///< distant: half angle of the disc, degrees
-  Vec3d position{0, 0, 0};          ///< point, spot
-  Rgb intensity{1, 1, 1};           ///< point, spot [W sr^-1]
-  double cone_angle = 30;           ///< spot: half angle where the light ends, degrees
-  double cone_falloff = 5;          ///< spot: width of the smooth edge inside it, degrees
-  Rgb radiance{1, 1, 1};            ///< environment: constant, or the image's factor; sky: factor
-  Rgb zenith{0.07f, 0.19f, 0.52f};  ///< sky: radiance straight up
-  Rgb horizon{0.44f, 0.56f, 0.72f}; ///< sky: radiance at the horizon
-  Rgb ground{0.15f, 0.15f, 0.145f}; ///< sky: radiance from below the horizon
-  std::string image;                ///< environment: lat-long EXR or HDR, empty for constant
-  /// Into which images are converted; no key: the working space.
-  ColorSpace color_space = ColorSpace::rec709;
-  double rotation = 0;               ///< environment: about the up axis, degrees
-  bool visible = true;               ///< to the camera; a hidden light still lights the medium
-  std::string group;                 ///< of lights that share a layer; empty: none
-  std::optional<DirectLight> direct; ///< overrides render.direct for this light
-};
-
 enum class PhotonStore { fluence, scatter };
-/// Which of a light path's collisions become photons: those that the camera sees, or all alike;
-/// automatic is the first, but for a scene file in which only the camera moves.
+/// Which collisions of a light path become photons: by importance for the camera, or all with the
+/// same probability; automatic: by view, unless only the camera moves in the scene file.
 enum class PhotonThinning { automatic, view, even };
-/// Whether the forward peak of the phase function is taken out of multiple scattering, by ever less
-/// from pass to pass (docs/physics.md, "Forward peaks").
+/// Whether multiple scattering uses delta-M truncation (docs/theory/beam.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
 /// Whether `beam` gathers photons where walks from the camera ray arrive, not along it; automatic:
-/// from the pass on from which a pilot tells that it pays (docs/physics.md, "Final gathering").
+/// from the pass on at which a pilot predicts a lower error (docs/theory/beam.md).
 enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
-/// Whether frames of a sequence draw numbers of their own or the same ones (docs/sequences.md).
+/// Whether the frames of a sequence use new random numbers or the same ones.
 enum class SeedPolicy { per_frame, correlated };
 enum class KernelShape { constant, epanechnikov, biweight };
 
@@ -94,7 +73,7 @@ struct RenderSettings {
   std::optional<int> passes;            ///< the first of these three met ends the frame
   std::optional<double> time;           ///< seconds
   std::optional<double> target_error;   ///< MRSE
-  std::optional<int> min_passes;        ///< before which target_error ends no frame
+  std::optional<int> min_passes;        ///< fewest passes before target_error may end the frame
   std::optional<std::uint64_t> photons; ///< stored per pass; absent: automatic
   PhotonStore store = PhotonStore::fluence;
   DirectLight direct = DirectLight::automatic;
@@ -105,15 +84,15 @@ struct RenderSettings {
   int neighbours = 0;    ///< adaptive kernel, photons per kernel; 0: automatic
   double min_radius = 0; ///< world units; 0: automatic
   double max_radius = 0; ///< world units; 0: automatic
-  double alpha = 0.6;    ///< radius shrinking (Knaus and Zwicker 2011), in (0, 1]
+  double alpha = 0.6;    ///< radius reduction (Knaus and Zwicker 2011), in (0, 1]
   ForwardPeak forward_peak = ForwardPeak::automatic;       ///< of scattering (beam, march)
   PhotonThinning thinning = PhotonThinning::automatic;     ///< which collisions are stored (beam)
   FinalGathering final_gather = FinalGathering::automatic; ///< walks from camera rays (beam)
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
-  double bias_rays = 1.0 / 128;   ///< fraction of the camera rays that tell the bias
-  std::optional<double> clamp; ///< most that the medium may send to a pixel in one pass [radiance]
-  double step = 1;             ///< march: step length in voxels
+  double bias_rays = 1.0 / 128;   ///< fraction of the camera rays path traced to estimate the bias
+  std::optional<double> clamp;    ///< greatest radiance of the medium in a pixel of one pass
+  double step = 1;                ///< march: step length in voxels
   std::uint64_t seed = 1;
   SeedPolicy seeds = SeedPolicy::correlated;
   int threads = 0; ///< 0: all that the machine grants
@@ -121,24 +100,24 @@ struct RenderSettings {
 
 struct Scene {
   std::string path; ///< where it came from, for messages
-  /// The scene at moments between the shutter's opening and closing, in their order; empty where
-  /// nothing moves or the shutter is open for no time. Passes see one of them each.
+  /// The scene at the motion samples of an open shutter, in order; empty if nothing moves or the
+  /// shutter is closed. Each pass renders one of them.
   std::vector<Scene> moments;
-  /// The scene one frame later, for the layer `motion`; empty where that is not asked for, or
-  /// nothing is animated.
+  /// The scene one frame later, for the layer `motion`; empty without that layer or without
+  /// animation.
   std::vector<Scene> next;
-  FrameTime frame; ///< which frame of a sequence it is
+  FrameTime frame; ///< frame of a sequence
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;
   std::vector<SurfaceSettings> surfaces;
   std::vector<LightSettings> lights;
   RenderSettings render;
-  std::vector<LayerSettings> layers; ///< empty: those that every picture has
+  std::vector<LayerSettings> layers; ///< empty: the default layers
   bool black = false;                ///< a volume's file is missing and the frame is to be black
   std::vector<std::string> notes;    ///< for the user: what load_scene chose or found odd
 
-  /// A volume's settings let it glow, in this frame or in another.
+  /// Whether any volume can emit light, in this frame or another.
   bool glows() const {
     for (const VolumeSettings& volume : volumes)
       if (!volume.emission.intensity.empty() || !volume.emission.temperature.empty())

@@ -7,8 +7,8 @@
 
 namespace vdbeam {
 
-/// Reads a scene file (TOML; docs/scene.md) or makes a scene from a bare VDB. `overrides` are
-/// "key.path=value" strings, applied last. The number of `frame` replaces ####, %04d and $F4 in
+/// Reads a scene file (TOML; docs/reference/scene.md) or makes a scene from a bare VDB. `overrides`
+/// are "key.path=value" strings, applied last. The number of `frame` replaces ####, %04d and $F4 in
 /// paths; animated keys are evaluated at its time. Throws InputError "file:line: key ..." if this
 /// is not a valid scene.
 Scene load_scene(const std::string& path, const FrameTime& frame = {},
@@ -21,7 +21,7 @@ std::string scene_template(const std::string& vdb_path, const std::string& folde
 /// Checks ranges and consistency of a scene that a program has filled. Throws InputError.
 void validate_scene(const Scene& scene);
 
-/// 64-bit hash of everything that changes the picture, as 16 hex digits: all keys but
+/// 64-bit hash of everything that changes the image, as 16 hex digits: all keys except
 /// render.threads, and the contents, not the names, of the files. Throws InputError for a file that
 /// cannot be read.
 std::string scene_hash(const Scene& scene);

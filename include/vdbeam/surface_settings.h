@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What a texture shows beyond its edges.
+/// Texture lookup beyond the edges of the image.
 enum class TextureWrap { repeat, mirror, clamp };
 
 struct MaterialSettings {
@@ -18,7 +18,7 @@ struct MaterialSettings {
   /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: 0.8,
   /// or 1 where there is a texture.
   std::optional<Rgb> albedo;
-  /// diffuse, shadow_catcher, emissive: a picture that albedo or radiance are multiplied by; ""
+  /// diffuse, shadow_catcher, emissive: image that multiplies albedo or radiance; "": none
   std::string texture;
   TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
@@ -28,9 +28,12 @@ struct MaterialSettings {
   Rgb absorption{0, 0, 0}; ///< dielectric: absorption coefficient inside [1/world]
   /// dielectric: volumes end at its surface. What absorbs is solid in any case.
   bool solid = false;
-  Rgb radiance{1, 1, 1};  ///< emissive [W m^-2 sr^-1]
-  bool two_sided = false; ///< emissive: shines from the back as well
-  /// Of the colours above, to which the texture's are converted; not a key of its own.
+  Rgb radiance{1, 1, 1};        ///< emissive [W m^-2 sr^-1]
+  std::optional<Rgb> power;     ///< emissive: of all of the surface, in place of radiance [W]
+  std::optional<double> kelvin; ///< emissive: its colour is multiplied by that of a black body
+  double exposure = 0;          ///< emissive: its strength is multiplied by 2^exposure
+  bool two_sided = false;       ///< emissive: shines from the back as well
+  /// Colour space of the colours above, to which the texture is converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;
 };
 
@@ -43,9 +46,9 @@ struct SurfaceSettings {
   std::string name; ///< in Cryptomatte; empty: mesh0, mesh1, ...
   SurfaceShape shape = SurfaceShape::file;
   std::string file;         ///< path, frame pattern already substituted
-  bool file_normals = true; ///< file: its normals, if any, tell what curved surface it stands for
-  /// file, without normals: triangles that meet at this angle at most, in degrees, stand for a
-  /// curved surface; 0: they are flat.
+  bool file_normals = true; ///< file: shade with the file's normals, if any
+  /// file, without normals: triangles that meet at this angle or less [degrees] share a normal;
+  /// 0: flat.
   double smooth_angle = 0;
   MaterialSettings material;
   std::string group;   ///< of a surface that shines, as LightSettings::group

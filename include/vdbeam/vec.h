@@ -46,7 +46,7 @@ struct Vec3 {
 
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
-/// Linear RGB, Rec.709 primaries.
+/// Linear RGB in the scene's working space (Rec.709 unless image.working_space says otherwise).
 using Rgb = Vec3<float>;
 
 template <class T>

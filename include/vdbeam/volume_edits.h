@@ -8,11 +8,11 @@
 
 namespace vdbeam {
 
-/// In what a velocity grid measures lengths: the world, or the grid's index space. Automatic: the
-/// world, but for files of Mantaflow, which have 2.5 voxels per second to the unit.
+/// Unit of length of a velocity grid: the world, or the grid's index space. Automatic: the world,
+/// except for files of Mantaflow, whose unit is 2.5 voxels per second.
 enum class VelocityUnits { automatic, world, index };
 
-/// How a volume moves, for motion blur.
+/// Velocity of a volume, for motion blur.
 struct VelocitySettings {
   /// A vec3 grid, or three of floats ("vx,vy,vz"); "auto": found by its name; "none": it stands
   /// still.
@@ -20,13 +20,13 @@ struct VelocitySettings {
   double fps = 24;  ///< frames per second: velocities are lengths per second
   double scale = 1; ///< factor of the velocities
   VelocityUnits units = VelocityUnits::automatic;
-  double time = 0; ///< by which the volume is moved from the moment that its file shows [seconds]
+  double time = 0; ///< time of the motion sample after the moment of the file [seconds]
 };
 
-/// What a grid is between its lattice points.
+/// Interpolation of a grid between its lattice points.
 enum class Interpolation { linear, cubic };
 
-/// What becomes of a grid's values v > 0: x = scale * v + offset; 0 where x < least or x <= 0,
+/// Remapping of a grid's values v > 0: x = scale * v + offset; 0 where x < least or x <= 0,
 /// otherwise curve(min(x, most) ^ power).
 struct DensityRemap {
   double scale = 1;
@@ -41,10 +41,10 @@ struct DensityRemap {
   }
 };
 
-/// Noise by which a volume is displaced: what is at x comes from x + amplitude n(x / size).
+/// Displacement of a volume by noise: the value at x is taken from x + amplitude n(x / size).
 struct NoiseSettings {
-  double amplitude = 0; ///< no point moves farther along an axis [world of the VDB]; 0: none
-  double size = 1;      ///< of the noise's largest features [world of the VDB]
+  double amplitude = 0; ///< greatest displacement along an axis [world of the VDB]; 0: none
+  double size = 1;      ///< size of the largest features [world of the VDB]
   int octaves = 3;      ///< each half as large and half as strong as the one before
   std::uint64_t seed = 1;
 };

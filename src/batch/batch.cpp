@@ -122,7 +122,7 @@ Batch::Reading Batch::load_aside(int frame, const SharedLoaded& before, bool alo
         return load(frame, previous, alone, *watch);
       });
   Reading reading{task->get_future(), watch};
-  // Of all threads one waits here, and has no part in reading.
+  // One thread waits here and takes no part in reading.
   tbb::task_arena arena(alone ? tbb::task_arena::automatic : 1, alone ? 1 : 0);
   arena.enqueue([task] { (*task)(); });
   return reading;
@@ -189,7 +189,7 @@ void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& o
 /// Renders or skips one frame.
 void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome) {
   const std::string name = title(index);
-  const auto tell = [&](const std::string& text) {
+  const auto announce = [&](const std::string& text) {
     say(fmt::format("{}{}{}: {}", name, name.empty() ? "" : ": ", outcome.output, text));
   };
   if (loaded.error)
@@ -200,19 +200,19 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
     outcome.reason = "its finished image is there";
     renderer_.remove_side_files(outcome.frame);
     renderer_.remove_dead_files(outcome.frame);
-    return tell(outcome.reason);
+    return announce(outcome.reason);
   }
   if (loaded.frame.scene.black) {
     outcome.reason = "a volume's file is missing; the image is black";
     renderer_.write_black(loaded.frame);
-    return tell(outcome.reason);
+    return announce(outcome.reason);
   }
   if (!options_.frame.parts.empty()) {
     renderer_.join_parts(loaded.frame);
-    return tell(fmt::format("joined from {} parts", options_.frame.parts.size()));
+    return announce(fmt::format("joined from {} parts", options_.frame.parts.size()));
   }
   if (!loaded.note.empty() && loaded.note != "is not there")
-    tell("rendered again: " + loaded.note);
+    announce("rendered again: " + loaded.note);
   if (!renderer_.render_frame(loaded.frame, name, farm_, index))
     outcome.status = "interrupted";
 }
@@ -229,7 +229,7 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
   } catch (const std::exception& error) {
     outcome.seconds = watch.seconds();
     fail(index, error, outcome);
-    if (frames_.size() == 1) { // the program has its own way to tell it
+    if (frames_.size() == 1) { // the program reports it itself
       finish();
       throw;
     }

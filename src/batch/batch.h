@@ -43,7 +43,7 @@ private:
   };
   using SharedLoaded = std::shared_ptr<const Loaded>;
 
-  /// What the thread that waits for a frame and the one that reads it know of each other.
+  /// State shared by the thread that reads a frame and the one that waits for it.
   struct Watch {
     std::atomic<bool> give_up = false;
     std::atomic<double> limit = std::numeric_limits<double>::infinity(); ///< of the wait [seconds]

@@ -14,7 +14,7 @@ struct FrameOutcome {
   double seconds = 0; ///< wall clock, from when it was ready
 };
 
-/// What became of a batch; frames that were not come to are missing.
+/// Result of a batch, without frames that were not begun.
 struct BatchSummary {
   std::string scene;
   std::vector<int> frames; ///< all that were asked for
@@ -23,7 +23,7 @@ struct BatchSummary {
   std::vector<int> with_status(const std::string& status) const;
   /// "24 frames: 20 done, 3 skipped, 1 failed", and a line for each failure.
   std::string text() const;
-  /// docs/sequences.md. Throws FrameError.
+  /// docs/how-to/sequences.md. Throws FrameError.
   void write(const std::string& path) const;
 };
 

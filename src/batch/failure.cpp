@@ -11,8 +11,7 @@
 namespace vdbeam::cli {
 namespace {
 
-const char* const out_of_memory = "not enough memory; a lower --resolution or fewer photons need "
-                                  "less";
+const char* const out_of_memory = "not enough memory; use a lower --resolution or fewer photons";
 
 } // namespace
 
@@ -26,8 +25,7 @@ Failure describe(const std::exception& error) {
     return {one_line(fmt::format("{}: {}", file->path1().string(), file->code().message())),
             ExitCode::bad_input};
   if (const auto* system = dynamic_cast<const std::system_error*>(&error))
-    return {one_line(fmt::format("the system refuses what rendering needs: {}; look at its limits "
-                                 "(ulimit -a)",
+    return {one_line(fmt::format("the system refused a resource: {}; check its limits (ulimit -a)",
                                  system->code().message())),
             ExitCode::frame_failed};
   return {one_line(fmt::format("internal error: {}", error.what())), ExitCode::internal_error};

@@ -95,9 +95,9 @@ void FileClaims::claim(const Claim& claim) {
     return;
   const bool to_stdout = claim.output && claim.path() == standard_output;
   if (to_stdout)
-    throw InputError(fmt::format("{} -: {} is written to the standard output as well; give one of "
-                                 "them a file",
-                                 *claim.name, *other.name));
+    throw InputError(
+        fmt::format("{} -: {} also writes to the standard output; give one of them a file",
+                    *claim.name, *other.name));
   const Claim& output = claim.output ? claim : other;
   const Claim& rest = claim.output ? other : claim;
   throw InputError(one_line(fmt::format("{} {}: is the same file as {} {}; give another name",

@@ -16,7 +16,7 @@ namespace vdbeam::cli {
 /// output. Two paths are the same file where they lead to the same inode (through links, hard
 /// links, "./" and ".."), or, for files that are not there yet, to the same name in the same
 /// folder. Names that differ only in the case of their letters count as the same there: some file
-/// systems do not tell them apart.
+/// systems do not distinguish them.
 class FileClaims {
 public:
   /// `name` stands for the file in messages, e.g. "the scene". Inputs may be the same file. Throws
@@ -45,8 +45,8 @@ public:
              const std::vector<int>& frames);
 
 private:
-  /// Of a million frames each file has one: texts are shared, and the path is put together again
-  /// where it is asked for.
+  /// One per file and frame; there may be millions: texts are shared, and the path is put
+  /// together on demand.
   struct Claim {
     const std::string *name, *pattern; ///< of texts_
     std::optional<int> frame;          ///< none: the pattern is the path

@@ -52,7 +52,7 @@ std::string estimators_text(const RenderResult& result) {
   return text;
 }
 
-/// What a picture shows, so that one that went wrong is noticed in the log.
+/// Description of an image for the log, so that a wrong one is noticed.
 std::string picture_text(const PictureFacts& facts) {
   if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
     return {}; // of a part of the passes
@@ -86,9 +86,9 @@ std::string stop_text(const RenderResult& result, const std::string& checkpoint,
   if (result.quick_look)
     return "interrupted before the first pass was finished" +
            (snapshot.empty() ? snapshot : fmt::format("; {} is a quick look", snapshot));
-  return fmt::format("interrupted after {}; the same command goes on from {}, which also shows "
-                     "the image so far",
-                     passes_text(result.passes.back().pass), checkpoint);
+  return fmt::format(
+      "interrupted after {}; the same command resumes from {}, which opens as the image so far",
+      passes_text(result.passes.back().pass), checkpoint);
 }
 
 /// Bars and time left are about the passes that are asked for.
@@ -155,7 +155,7 @@ std::string FrameRenderer::why_no_part(const std::string& path, const LoadedFram
   if (info.header.full_width != size.width || info.header.full_height != size.height ||
       info.header.width > size.raster_width() || info.header.height > size.raster_height())
     return "has another size";
-  read_film(path, info); // all of it: the header does not tell a truncated file
+  read_film(path, info); // all of it: the header does not reveal a truncated file
   return "";
 }
 
@@ -240,7 +240,7 @@ void FrameRenderer::write_preview(const Image& image, int frame) const {
 void FrameRenderer::write_snapshot(const Image& image, int frame) const {
   const std::string file = path(Output::snapshot, frame);
   if (const std::string why = why_not_replaceable(file, Output::snapshot); !why.empty())
-    throw FrameError(why + ", and stays as it is");
+    throw FrameError(why + ", and is left unchanged");
   write_image(image, file, {.links = Links::replace});
 }
 
@@ -370,10 +370,10 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     return false;
   }
   if (result.quick_look)
-    throw FrameError(fmt::format("{}: the time limit of {} ended the frame before its first pass "
-                                 "was finished: the image is a quick look, rough and for the eye "
-                                 "only; give it more time or fewer pixels",
-                                 output(loaded.frame()), format_duration(*scene.render.time)));
+    throw FrameError(
+        fmt::format("{}: the time limit of {} ended the frame before its first pass: the image is "
+                    "a quick look, for viewing only; allow more time or render fewer pixels",
+                    output(loaded.frame()), format_duration(*scene.render.time)));
   progress.finish(end_text(result, output(loaded.frame())));
   return true;
 }

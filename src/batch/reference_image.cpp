@@ -18,8 +18,7 @@ std::optional<Image> read_reference(const char* option, const std::string& path,
     throw InputError(fmt::format("{}: excludes image.overscan", option));
   Image reference = read_image(path);
   if (reference.width != size.width || reference.height != size.height)
-    throw InputError(fmt::format("{} {}: is {}x{}, but the picture is {}x{}; use "
-                                 "--resolution {}x{}",
+    throw InputError(fmt::format("{} {}: is {}x{}, but the image is {}x{}; use --resolution {}x{}",
                                  option, path, reference.width, reference.height, size.width,
                                  size.height, reference.width, reference.height));
   for (const char* channel : {"R", "G", "B"})

@@ -11,7 +11,7 @@ std::string still_note(const SceneDocument& document, const std::string& scene,
                        const std::vector<int>& frames) {
   if (frames.size() < 2 || document.depends_on_frame())
     return {};
-  std::string note = fmt::format("{}: nothing depends on the frame: all {} pictures show the same",
+  std::string note = fmt::format("{}: nothing depends on the frame: all {} images will be the same",
                                  scene, frames.size());
   for (const SceneFile& file : document.files()) {
     const std::string pattern = frame_pattern_of(file.pattern);

@@ -78,7 +78,7 @@ private:
 
   double along_axis(const Vec3d& direction) const;
   Vec3d panorama_direction(double px, double py) const;
-  /// Of a position in the picture, in units of the window.
+  /// Position in the image, in units of the window.
   double window_x(double px) const;
   double window_y(double py) const;
 

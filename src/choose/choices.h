@@ -11,11 +11,11 @@ struct KernelTrialResult;
 /// How the passes of a frame are rendered: chosen once, before the first pass, as a pure function
 /// of the estimator's input (by counts, never by a clock).
 struct Choices {
-  std::string_view estimator;       ///< of the passes that do not gather finally
+  std::string_view estimator;       ///< of passes without final gathering
   PeakOrders peak;                  ///< of phase functions, which photons live without
   PhotonPlan photons;               ///< lights, light paths, photons and kernels
-  std::optional<GatherPlan> gather; ///< of passes that gather finally; empty: there are none
-  /// What tried kernels found; null: none were tried.
+  std::optional<GatherPlan> gather; ///< of final gathering; empty: no such passes
+  /// Result of the kernel pilot; null without one.
   std::shared_ptr<const KernelTrialResult> trial;
 
   bool gathers_finally(int pass) const { return gather && pass >= gather->first; }

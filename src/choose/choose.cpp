@@ -20,14 +20,14 @@ namespace {
 /// the probability of those that it sees best.
 constexpr float least_importance = 1.0f / 1024;
 /// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these;
-/// where passes are small, of twice the share up to so many.
+/// where passes are small, of twice the share up to this number.
 constexpr double trial_share = 0.125;
 constexpr double few_trial_paths = 5000, most_trial_paths = 40000;
 constexpr int trial_maps = 6;
-/// Paths that tell how many photons guided paths leave, and where.
+/// Paths that measure how many photons guided paths store, and where.
 constexpr std::uint64_t guided_pilot_paths = 1024;
 /// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie
-/// about what is chosen in the end, so that little is extrapolated (docs/decisions.md).
+/// about what is chosen in the end, so that little is extrapolated (research-log/decisions.md).
 constexpr double trial_neighbours = 600;
 constexpr double wide_over_narrow = 4;
 /// A narrow kernel holds at most this share of a map, so that a wide one fits.
@@ -127,7 +127,7 @@ void follow_scene(const EstimatorInput& input, const SceneChoices& scene, Choice
 }
 
 /// Chooses the neighbours at which the error of trial pictures in narrow and wide kernels is least,
-/// and whether light is gathered finally.
+/// and whether to use final gathering.
 void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices& choices) {
   PhotonPlan& plan = choices.photons;
   const World& world = input.world;

@@ -22,8 +22,8 @@ namespace {
 constexpr int compared_passes = 16;
 /// Names random numbers that neither passes nor other pilots draw.
 constexpr int first_trial_pass = -200;
-/// Each pixel is rendered this often, and in small pictures, of which there are few pixels, so
-/// often that as many rays tell of the noise as in large ones, within a limit.
+/// Renders of each pixel: at least this many, and more in small images, so that their noise is
+/// measured by the same number of rays, within a limit.
 constexpr int fewest_trial_passes = 2, most_trial_passes = 16;
 constexpr std::size_t wanted_trial_rays = 1000;
 /// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths. Forecasts
@@ -32,11 +32,11 @@ constexpr std::size_t wanted_trial_rays = 1000;
 constexpr double safe_lead = 1.25;
 
 // Processor time [ns] of what a pass consists of, fitted to 39 scenes, in which the ratio of the
-// two estimators came out right within 30 % (docs/decisions.md). Only ratios count.
+// two estimators came out right within 30 % (research-log/decisions.md). Only ratios count.
 constexpr double time_of_ray = 10000, time_of_shadow_ray = 5000, time_of_query = 8000,
                  time_of_light_collision = 150, time_of_photon = 2000, time_of_walks = 20000,
                  time_of_walk_collision = 80;
-/// By which the sum of these overestimates a pass of `beam` against one of `path`.
+/// Correction of the sum of these, which overestimates a pass of `beam` relative to one of `path`.
 constexpr double beam_share = 0.56;
 
 int trial_passes_of(std::size_t pixels) {
@@ -44,7 +44,7 @@ int trial_passes_of(std::size_t pixels) {
                                      std::size_t{most_trial_passes}));
 }
 
-/// The variance of a picture of which these are independent ones, weighted: mean over the pixels.
+/// Weighted variance of independent images of the same scene: mean over the pixels.
 double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
   const auto count = static_cast<float>(images.size());
   double sum = 0;
@@ -62,8 +62,8 @@ double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage
 }
 
 /// The spread of all that does not come from photons, in a pass of `beam`; counts its rays. Edges
-/// are seen by one ray here, by four in the picture (tile_shading.cpp): a little too much noise, in
-/// a little too little time.
+/// are seen by one ray here, by four in the picture (tile_shading.cpp), so noise is slightly
+/// overestimated and time underestimated.
 double spread_beside_photons(const EstimatorInput& input, const PhotonPass& photons,
                              const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
   const EstimatorInput in = input.in(photons.world());
@@ -106,7 +106,7 @@ double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>
   return spread(pixels, images);
 }
 
-/// By which factor the error of `path` is greater than that of photons after the same time.
+/// Error of `path` over that of photons after the same time.
 double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& passes,
                        const EstimatorInput& path_input) {
   const Choices& choices = passes.choices();
@@ -163,7 +163,7 @@ std::optional<std::string> why_photons_are_rare(const EstimatorInput& input) {
   const double collisions = collisions_of_light_paths(input);
   if (!(collisions > most_collisions) || input.stopped())
     return std::nullopt;
-  return fmt::format("a light path has some {:.1g} collisions, too many to trace photons",
+  return fmt::format("a light path has about {:.1g} collisions, too many to trace photons",
                      collisions);
 }
 
@@ -187,14 +187,14 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
   if (!choices.trial || choices.trial->pixels.empty())
     return {type, "without a kernel pilot there is nothing to compare", 0, std::move(passes)};
   if (!sees_directly(photon_input.world))
-    return {type, "path may miss light that mirrors or glass focus", 0, std::move(passes)};
+    return {type, "path may miss caustics", 0, std::move(passes)};
   const double lead = lead_of_photons(photon_input, *passes, path_input);
   if (lead < 1 / safe_lead && !photon_input.stopped())
     return {
         EstimatorType::path,
-        fmt::format("in as much time {} would have {:.2g} times its error", type.name, 1 / lead),
+        fmt::format("at equal time {} has {:.2g} times its predicted error", type.name, 1 / lead),
         lead, nullptr};
-  std::string reason = fmt::format("in as much time path would have {:.2g} times its error", lead);
+  std::string reason = fmt::format("at equal time path has {:.2g} times its predicted error", lead);
   if (choices.gather && choices.gather->first > 0)
     reason += fmt::format("; gather goes on after {} passes", choices.gather->first);
   return {type, std::move(reason), lead, std::move(passes)};
@@ -203,7 +203,7 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
 // It reads the keys of beam, and is planned as beam; the choice is made before the first pass.
 const EstimatorKind auto_estimator{
     .name = "auto",
-    .help = "gather, beam or path, whichever a short trial forecasts the smallest error for",
+    .help = "gather, beam or path: the one with the smallest error predicted by a pilot",
     .unbiased = false,
     .stages = gather_stages,
     .keys = {},

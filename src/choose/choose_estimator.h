@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What `estimator = "auto"` stands for in a scene.
+/// The estimator that `estimator = "auto"` chooses in a scene.
 struct EstimatorChoice {
   EstimatorType type = EstimatorType::beam; ///< of the first pass
   std::string reason;                       ///< one clause
@@ -20,11 +20,11 @@ struct EstimatorChoice {
 /// where nobody sees them. Asking takes a few light paths.
 std::optional<std::string> why_photons_are_rare(const EstimatorInput& input);
 
-/// Of the estimators that gather photons and `path` the one whose picture has the smaller error for
-/// the same work, as far as a short trial shows: the kernel pilot's forecast of noise and bias
-/// against the spread of a few pixels that are path traced twice. Work is counted in collisions and
-/// photons, not by a clock, so that every machine chooses the same. `photon_input`, `path_input`:
-/// with the plans of the two; they must outlive the estimator.
+/// Chooses between the estimators that gather photons and `path`: the one with the smaller error
+/// for the same work, by a short trial: the kernel pilot's forecast of noise and bias against the
+/// spread of a few pixels that are path traced twice. Work is counted in collisions and photons,
+/// not by a clock, so that every machine chooses the same. `photon_input`, `path_input`: with the
+/// plans of the two; they must outlive the estimator.
 EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
                                  const EstimatorInput& path_input);
 

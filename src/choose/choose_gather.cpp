@@ -13,12 +13,13 @@ namespace vdbeam {
 
 namespace {
 
-/// Passes before the first that gathers finally, at least and at most, unless it is the very first.
+/// Least and greatest number of passes before the first of final gathering, unless it is the first.
 constexpr int fewest_passes_before = 4, most_passes_before = 512;
-/// The two are compared after as many times the passes before, and after no fewer than so many.
+/// Forecasts are compared at this multiple of the passes before the switch, and at a minimum
+/// number.
 constexpr int compared_passes = 8;
 
-/// Variance of what a camera ray gathers finally, weighted as MRSE is: means over the pixels.
+/// Variance of the final gather of a camera ray, weighted as in MRSE: means over the pixels.
 struct GatherNoise {
   double walks = 0; ///< of the walks of a ray, among the same photons
   double maps = 0;  ///< of the mean of two such values, among all maps

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the conditions of features look at.
+/// Facts for the conditions of features.
 struct FeatureFacts {
   const EstimatorInput& input;
   const EstimatorKind& kind;
@@ -25,7 +25,7 @@ struct FeatureFacts {
   bool needs(Stage stage) const { return input.plan.needs(stage); }
 };
 
-/// What keeps a feature from being used, and where.
+/// A condition that excludes a feature, with its reason.
 struct FeatureCondition {
   bool (*excludes)(const FeatureFacts& facts);
   std::string_view clause; ///< why, as it ends "off: ..."
@@ -52,7 +52,7 @@ extern const Feature view_importance_feature, path_guide_feature, kernel_pilot_f
     forward_peak_feature, final_gather_feature, shadow_lattice_feature, boundary_share_feature,
     hidden_lights_feature, edges_feature, branches_feature;
 
-/// Whether the scene has light gathered finally wherever that can be, whatever a pilot forecasts.
+/// Whether the scene demands final gathering wherever possible, whatever a pilot predicts.
 bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings);
 
 /// Why a feature cannot be used; empty where nothing excludes it.

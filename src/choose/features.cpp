@@ -9,10 +9,6 @@ namespace {
 
 using Facts = FeatureFacts;
 
-/// Distance of a lamp from the medium, in radii of the medium, from which on shadow rays to it are
-/// no noisier than others: its light within the medium changes by a factor of 25 at most.
-constexpr double nearest_lamp = 0.5;
-
 bool stores_scattered_flux(const Facts& facts) {
   return facts.input.settings.store == PhotonStore::scatter;
 }
@@ -29,8 +25,8 @@ bool gathers_along_rays(const Facts& facts) {
   return facts.kind.name != EstimatorType::automatic.name && !is_forced(facts);
 }
 
-/// Light of the peak alone is seen by shadow rays, or straight through the medium where it comes
-/// from all around alike; photons of other lights would lose it.
+/// Removing the peak is valid only if every light has shadow rays or is a constant sky; otherwise
+/// light that is scattered by the peak alone is lost.
 bool has_light_that_loses_its_peak(const Facts& facts) {
   const LightSet& lights = facts.input.world.lights;
   for (std::size_t i = 0; i < lights.size(); ++i)
@@ -49,31 +45,15 @@ bool has_light_that_walks_miss(const Facts& facts) {
   return false;
 }
 
-/// Whether a lamp stands in the medium or close to it.
-bool is_near_medium(const World& world, const Light& light) {
-  Boxd lamp;
-  if (light.surface() >= 0)
-    lamp = world.surfaces->set->bounds(static_cast<std::size_t>(light.surface()));
-  else if (light.position())
-    lamp.extend(*light.position());
-  else
-    return false;
-  const Boxf& medium = world.medium.bounds;
-  const Vec3d gap = max(lamp.lower - Vec3d(medium.upper), Vec3d(medium.lower) - lamp.upper);
-  const double distance = length(max(gap, Vec3d(0)));
-  return distance < nearest_lamp * static_cast<double>(world.region.radius);
-}
-
-/// Close to a lamp a shadow ray's value has no bound, and a small light is met by chance only: rare
-/// and bright values, which a pilot would miss.
+/// A small light without shadow rays is met by chance only: rare and bright values, which a pilot
+/// would miss.
 bool has_light_that_pilots_miss(const Facts& facts) {
   if (is_forced(facts))
     return false;
-  const World& world = facts.input.world;
+  const LightSet& lights = facts.input.world.lights;
   for (std::size_t l = 0; l < facts.input.plan.shadow_ray_lights.size(); ++l) {
-    const LightTraits& traits = world.lights.traits(l);
-    if (facts.sampled_lights[l] ? is_near_medium(world, world.lights[l])
-                                : !traits.surrounds || traits.wants_shadow_rays)
+    const LightTraits& traits = lights.traits(l);
+    if (!facts.sampled_lights[l] && (!traits.surrounds || traits.wants_shadow_rays))
       return true;
   }
   return false;
@@ -92,7 +72,7 @@ bool has_no_sharp_peak(const Facts& facts) {
 }
 
 constexpr std::string_view by_scattered_flux = "photons store scattered flux (render.store)";
-constexpr std::string_view by_bounces = "render.max_bounces counts every scattering";
+constexpr std::string_view by_bounces = "render.max_bounces limits the scattering events";
 
 } // namespace
 
@@ -105,7 +85,8 @@ bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settin
 
 const Feature view_importance_feature{.name = "view importance",
                                       .key = "render.thinning",
-                                      .help = "photons are stored where the camera sees them",
+                                      .help =
+                                          "photons are stored by their importance for the camera",
                                       .stage = Stage::photon_importance,
                                       .conditions = {}};
 
@@ -115,38 +96,38 @@ constexpr FeatureCondition path_guide_conditions[] = {{stores_scattered_flux, by
 const Feature path_guide_feature{
     .name = "path guide",
     .key = "",
-    .help = "light paths begin, split and end by what they bring to the picture",
+    .help = "light paths are started, split and ended by their importance for the image",
     .stage = Stage::photon_importance,
     .conditions = path_guide_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.photons.guide != nullptr; },
-    .unused = "the pilot left too few photons to learn from"};
+    .unused = "the pilot stored too few photons to estimate importance"};
 
 const Feature kernel_pilot_feature{
     .name = "kernel pilot",
     .key = "render.neighbours",
-    .help = "kernels are as wide as noise and bias of trial maps ask for",
+    .help = "the kernel width balances noise and bias, measured on small photon maps",
     .stage = Stage::kernel_pilot,
     .conditions = {},
     .used = [](const Facts&, const Choices& choices) { return choices.trial != nullptr; },
-    .unused = "photons are too few for a trial"};
+    .unused = "there are too few photons for a pilot"};
 
 namespace {
 constexpr FeatureCondition forward_peak_conditions[] = {
     {[](const Facts& facts) { return facts.input.settings.forward_peak != ForwardPeak::automatic; },
-     "render.forward_peak keeps it"},
+     "render.forward_peak is \"kept\""},
     {stores_scattered_flux, by_scattered_flux},
     {limits_bounces, by_bounces},
     {[](const Facts& facts) { return facts.input.world.medium.isotropic(); },
      "phase functions are isotropic"},
     {[](const Facts& facts) { return facts.input.world.medium.colored(); },
-     "a grid of colours changes the albedo from place to place"},
+     "a colour grid varies the albedo"},
     {has_light_that_loses_its_peak,
-     "photons alone bring a light that does not shine from all around"}};
+     "a light other than a constant sky is sampled by photons only"}};
 }
 const Feature forward_peak_feature{
     .name = "forward peak",
     .key = "render.forward_peak",
-    .help = "light paths live in a medium without the forward peak of its phase functions",
+    .help = "multiple scattering uses delta-M truncation of the forward peak",
     .stage = Stage::photons,
     .conditions = forward_peak_conditions};
 
@@ -159,22 +140,23 @@ constexpr FeatureCondition final_gather_conditions[] = {
      "render.final_gather is \"never\""},
     {stores_scattered_flux, by_scattered_flux},
     {limits_bounces, by_bounces},
-    {has_light_that_walks_miss, "photons alone bring a light of one point or direction"},
+    {has_light_that_walks_miss, "a point or directional light is sampled by photons only"},
     {has_light_that_pilots_miss,
-     "a lamp in or near the medium, or a small light, makes walks too noisy to forecast"}};
+     "a small light without shadow rays makes the pilot's noise estimate unreliable"}};
 }
 const Feature final_gather_feature{
     .name = "final gathering",
     .key = "render.estimator",
-    .help = "photons are gathered where walks from the camera rays arrive",
+    .help = "photons are gathered at the end of random walks from the camera ray",
     .stage = Stage::photons,
     .conditions = final_gather_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
-    .unused = "the pilot forecasts a smaller error along camera rays, or had too few photons"};
+    .unused = "the pilot predicts a smaller error for gathering along camera rays, or had too few "
+              "photons"};
 
 namespace {
 constexpr FeatureCondition shadow_lattice_conditions[] = {
-    {shoots_no_photons, "the estimator shoots no photons"},
+    {shoots_no_photons, "the estimator traces no photons"},
     {[](const Facts& facts) { return facts.input.world.medium.empty(); }, "there is no medium"},
     {[](const Facts& facts) { return facts.input.world.medium.chromatic; },
      "extinction differs between channels"}};
@@ -182,7 +164,7 @@ constexpr FeatureCondition shadow_lattice_conditions[] = {
 const Feature shadow_lattice_feature{
     .name = "shadow lattice",
     .key = "",
-    .help = "shadow rays go where lights of one direction reach the medium",
+    .help = "shadow rays of directional lights are placed by a coarse shadow map",
     .stage = Stage::shadow_rays,
     .conditions = shadow_lattice_conditions,
     .used = [](const Facts& facts, const Choices&) { return !has_no_narrow_light(facts); },
@@ -190,12 +172,12 @@ const Feature shadow_lattice_feature{
 
 namespace {
 constexpr FeatureCondition boundary_share_conditions[] = {
-    {stores_scattered_flux, "photons of scattered flux lie in the medium, wherever it is"}};
+    {stores_scattered_flux, "photons of scattered flux need no boundary correction"}};
 }
 const Feature boundary_share_feature{
     .name = "boundary correction",
     .key = "",
-    .help = "kernels count with the part of them that lies inside the medium",
+    .help = "kernel weights are divided by the fraction of the kernel inside the medium",
     .stage = Stage::photons,
     .conditions = boundary_share_conditions};
 
@@ -204,16 +186,16 @@ constexpr FeatureCondition hidden_lights_conditions[] = {
     {[](const Facts& facts) { return facts.input.settings.photons.has_value(); },
      "render.photons is given"},
     {[](const Facts& facts) { return facts.sampled_lights == facts.input.shadow_ray_lights(); },
-     "shadow rays reach every light that they look for"}};
+     "shadow rays reach every light"}};
 }
 const Feature hidden_lights_feature{
     .name = "hidden lights",
     .key = "render.photons",
-    .help = "more light paths, for lights that no shadow ray reaches",
+    .help = "more light paths for lights that no shadow ray reaches",
     .stage = Stage::photons,
     .conditions = hidden_lights_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.trial == nullptr; },
-    .unused = "kernels were tried for the light paths that there are"};
+    .unused = "the kernel pilot fixed the number of light paths"};
 
 namespace {
 constexpr FeatureCondition edges_conditions[] = {
@@ -222,22 +204,22 @@ constexpr FeatureCondition edges_conditions[] = {
 const Feature edges_feature{
     .name = "refined edges",
     .key = "",
-    .help = "several rays look at pixels where opacity or depth is uneven",
+    .help = "pixels on edges of opacity or depth get several camera rays",
     .stage = Stage::photons,
     .conditions = edges_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
-    .unused = "only passes that gather finally refine them"};
+    .unused = "only final gathering refines edges"};
 
 namespace {
 constexpr FeatureCondition branches_conditions[] = {
     {[](const Facts& facts) { return facts.kind.shoots_photons(); },
-     "photons carry the light: only probes of the bias walk"},
-    {has_no_sharp_peak, "no phase function has a peak that is sharp enough"},
-    {has_no_narrow_light, "no light with shadow rays has a single direction"}};
+     "photons carry the light; only bias probes are path traced"},
+    {has_no_sharp_peak, "no phase function has a sharp enough peak"},
+    {has_no_narrow_light, "no directional light has shadow rays"}};
 }
 const Feature branches_feature{.name = "branches",
                                .key = "",
-                               .help = "walks of the path tracer branch towards narrow lights",
+                               .help = "paths branch towards lights of small angular size",
                                .stage = std::nullopt,
                                .conditions = branches_conditions};
 

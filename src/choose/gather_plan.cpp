@@ -37,8 +37,8 @@ double GatherPlan::error_after(double passes_along) const {
 }
 
 float GatherPlan::regression_radius(int pass) const {
-  // Of a render that ends some passes on, after twice those that there are; each takes the time of
-  // about one and a half.
+  // Assumes that the render will be twice as long as it is now, and that a pass of walks costs 1.5
+  // passes of beam.
   return RegressionTrial::radii[best_radius(2 * 1.5 * (pass - first + 1))];
 }
 

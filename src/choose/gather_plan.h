@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What regression over pixels (PixelRegression) does to a picture, by its radius.
+/// Effect of regression over pixels (PixelRegression) on an image, by its radius.
 struct RegressionTrial {
   static constexpr std::array<float, 10> radii = {0,    0.05f, 0.1f, 0.25f, 0.5f,
                                                   0.7f, 1,     1.4f, 2,     2.8f}; ///< [pixels]
@@ -17,7 +17,7 @@ struct RegressionTrial {
   double blur_of(std::size_t radius) const;
 };
 
-/// How passes gather finally (FinalGather).
+/// Plan of final gathering (FinalGather).
 struct GatherPlan {
   int first = 0;            ///< pass from which on they do
   double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
@@ -27,11 +27,11 @@ struct GatherPlan {
   double time_of_walks = time_in_the_open;
 
   /// Measured on clouds of all depths, and where walks meet surfaces, from which paths go on
-  /// (docs/decisions.md).
+  /// (research-log/decisions.md).
   static constexpr double time_in_the_open = 0.7, time_among_surfaces = 1.5;
 
-  /// Mean square error of what photons bring to a picture, after the time of so many passes that
-  /// gather along camera rays; with the best radius, or with one of the trial's.
+  /// Mean square error of the photons' light after the time of `passes_along` passes that gather
+  /// along camera rays; with the best radius, or with one of the trial's.
   double error_after(double passes_along) const;
   double error_after(double passes_along, std::size_t radius) const;
   /// The radius [pixels] of a pass: smaller from pass to pass, so that its bias vanishes as noise

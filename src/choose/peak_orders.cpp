@@ -10,19 +10,20 @@ namespace vdbeam {
 
 namespace {
 
-/// The first order takes no larger share than this for a peak. With more, light that is scattered
-/// twice by small angles, towards which one looks at a sun through the medium, is too dark.
+/// Largest fraction of the scattering that the first order may remove. With more, light that is
+/// scattered twice by small angles, towards which one looks at a sun through the medium, is too
+/// dark.
 constexpr float largest_first_peak = 0.6f;
-/// The same of passes that gather finally (docs/decisions.md).
+/// The same for final gathering.
 constexpr float largest_peak_of_gather = 0.55f;
 
 /// In media of this typical depth without the peak or more, the first order is the lowest; in
 /// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
-/// few times, and the truncation of each scattering shows (docs/decisions.md).
+/// few times, and the truncation of each scattering shows (research-log/decisions.md).
 constexpr double depth_of_lowest_order = 24;
 constexpr int most_order_for_thinness = 8;
 
-/// The lowest order that takes no larger share than this of any phase function for a peak.
+/// The lowest order that removes at most this fraction of the scattering of any phase function.
 int lowest_order(const Medium& medium, float largest_peak) {
   int lowest = least_truncation_order;
   while (lowest < most_truncation_order &&

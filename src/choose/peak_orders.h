@@ -4,11 +4,11 @@
 
 namespace vdbeam {
 
-/// By which truncation of phase functions the forward peak is taken out of a medium
-/// (similar_medium), for the first passes.
+/// Orders of the delta-M truncation of a medium's phase functions (similar_medium) in the first
+/// passes.
 struct PeakOrders {
   bool taken_out = false;
-  /// Of passes that gather along rays, and of passes that gather finally, whose kernels blur so
+  /// For passes that gather along rays, and for passes of final gathering, whose kernels blur so
   /// little that truncation would be most of the bias. What is beyond a whole number is the share
   /// of passes of one order more.
   double along_rays = 0, of_gather = 0;

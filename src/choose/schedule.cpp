@@ -16,13 +16,13 @@ struct OrderGrowth {
   int passes_of_first_order;
   int factor; ///< the order grows by one when the number of passes has grown by this factor
 };
-/// Measured on backlit and on Mie clouds (docs/decisions.md): the bias of order 4 along rays is
-/// under the noise of 64 passes; of walks one order more halves the squared bias, so that it falls
-/// as fast as the noise.
+/// Measured on backlit and on Mie clouds (research-log/decisions.md): the bias of order 4 along
+/// rays is under the noise of 64 passes; of walks one order more halves the squared bias, so that
+/// it falls as fast as the noise.
 constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_gather{16, 2};
 
-/// The order of one pass of two is so much higher. A greater step would show the bias of truncation
-/// with less noise, and cost more noise of the picture.
+/// The order of every second pass is higher by this step. A greater step would show the bias of
+/// truncation with less noise, and cost more noise of the picture.
 constexpr int order_step = 2;
 
 } // namespace

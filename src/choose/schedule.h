@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What pass `pass` (from 0) of a frame is. A pure function.
+/// The specification of pass `pass` (from 0) of a frame. A pure function.
 PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pass);
 
 /// The specifications of those passes at which something may change, up to the last that is asked
@@ -14,13 +14,13 @@ PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pa
 std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& settings);
 
 /// The truncation order of a pass; 0 where no peak is taken out. It grows by one whenever the
-/// number of passes has tripled, or doubled where light is gathered finally, so that the estimate
-/// stays consistent (docs/physics.md, "Forward peaks"). One pass of two takes less out, so that the
-/// difference shows the bias that is left.
+/// number of passes has tripled, or doubled for final gathering, so that the estimate
+/// stays consistent (docs/theory/beam.md, "Forward peaks"). One pass of two takes less out, so that
+/// the difference shows the bias that is left.
 int peak_order(const PeakOrders& first, int pass, bool gathers_finally);
 
 /// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
-/// out some of its noise (docs/decisions.md).
+/// out some of its noise (research-log/decisions.md).
 inline constexpr double neighbours_of_gather = 0.5;
 
 /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).

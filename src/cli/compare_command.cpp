@@ -35,7 +35,7 @@ struct Pair {
   Image image, reference;
 };
 
-/// What is wrong with a pair is told with the files' names.
+/// Errors about a pair name both files.
 template <class F>
 auto naming(const std::string& image, const std::string& reference, F&& compare) {
   try {
@@ -176,9 +176,10 @@ CommandRun add_compare(CLI::App& app) {
       ->required()
       ->option_text("REFERENCE");
   app.add_option("--second", options->second,
-                 "A second reference, independent of the first: errors free of their noise")
+                 "A second, independent reference: removes the references' noise from the errors")
       ->option_text("REFERENCE");
-  app.add_option("-f,--frames", options->frames, "Two sequences: these frames of a.####.exr")
+  app.add_option("-f,--frames", options->frames,
+                 "Compare these frames of two sequences (a.####.exr)")
       ->option_text("RANGE");
   app.add_flag("--json", options->json, "Print JSON");
   app.footer(R"(In linear RGB, v the image and r the reference:
@@ -189,7 +190,7 @@ CommandRun add_compare(CLI::App& app) {
   FLIP    mean FLIP difference at 67 pixels per degree
 With a second reference, independent of the first and unbiased like it (two renders by path with
 other seeds), products (v - a)(v - b) take the place of squares, so that their noise does not count.
-The standard error tells how far to trust the MRSE: references with fireflies leave it uncertain.
+The standard error says how far to trust the MRSE; fireflies in the references increase it.
 Of a sequence the means over its frames, and its temporal error, what one sees as flicker:
   mean((dv - dr)^2 / (r + 0.01)^2), dv and dr the change from one frame to the next, r the mean of
   both references. Frames whose noise is independent have twice their MRSE.

@@ -31,7 +31,7 @@ const char* const examples = R"(Examples:
   vdbeam farm slurm smoke.toml -f 1-100 -o out/s.####.exr --job s.sbatch && sbatch s.sbatch
   vdbeam farm slurm smoke.toml -f 1-100 -o s.####.exr --passes 64 --splits 4 --job s.sh && bash s.sh
   vdbeam farm openjd smoke.toml -f 1-100 -o out/smoke.####.exr --chunk 5 --job smoke.json
-docs/farm.md says more, also for OpenCue, Deadline and HTCondor.)";
+docs/how-to/farm.md describes OpenCue, Deadline and HTCondor too.)";
 
 /// Tasks of an array that Slurm takes unless its administrator allows more (MaxArraySize).
 constexpr int usual_array_limit = 1000;
@@ -81,8 +81,8 @@ int reference_count(const std::vector<std::string>& also) {
 }
 
 /// Memory for the frame that needs most, of the first, the middle and the last one. What such a
-/// frame lacks is told when its turn comes, as `vdbeam render` does; only where all of them lack
-/// something is it an error now.
+/// frame lacks is reported when its turn comes, as by `vdbeam render`; it is an error now only if
+/// all of them lack something.
 void plan_memory(FarmJob& job, const SceneDocument& document, int references) {
   job.memory_mib = job.merge_memory_mib = 0;
   std::exception_ptr first_error;
@@ -113,9 +113,9 @@ Scene first_scene(const SceneDocument& document, const std::vector<int>& frames)
   return document.scene_at(frames.front());
 }
 
-/// Tells at once which frames lack a file. Simulations may still be writing them, so it is no
-/// error; a job that is to do something else about them (--also=--missing=hold) is not told.
-void tell_missing(const FarmOptions& options, const SceneDocument& document,
+/// Notes which frames lack a file. A simulation may still be writing them, so it is no error; a job
+/// that handles missing files (--also=--missing=hold) gets no note.
+void note_missing(const FarmOptions& options, const SceneDocument& document,
                   const std::vector<int>& frames) {
   if (!document.depends_on_frame()) // what one frame has, all have
     return;
@@ -134,7 +134,7 @@ void tell_missing(const FarmOptions& options, const SceneDocument& document,
     }
   }
   if (!lacking.empty())
-    log("note: {} of {} frames ({}) cannot be rendered as long as it stays so: {}", lacking.size(),
+    log("note: {} of {} frames ({}) cannot be rendered until this is fixed: {}", lacking.size(),
         frames.size(), format_frame_range(lacking), reason);
 }
 
@@ -161,11 +161,11 @@ void check_job_file(const std::string& path) {
   const std::string text = read_text(path, longest);
   const JobFile found = text.empty() ? JobFile::ours : judge_job(text);
   if (found == JobFile::changed)
-    throw InputError(one_line(path) + ": has been changed since vdbeam farm wrote it; give --job "
-                                      "another name, or remove it");
+    throw InputError(one_line(path) + ": has been edited since vdbeam farm wrote it; give --job "
+                                      "another name, or remove the file");
   if (found == JobFile::other)
-    throw InputError(one_line(path) + ": is there already and is no job file by vdbeam farm; give "
-                                      "--job another name");
+    throw InputError(one_line(path) +
+                     ": exists and was not written by vdbeam farm; give --job another name");
 }
 
 /// Refuses a job whose tasks `vdbeam render` would refuse, by that command's own checks.
@@ -214,11 +214,11 @@ FarmJob make_job(const FarmOptions& options) {
   const RenderSettings render = first_scene(document, job.frames).render;
   job.passes = render.passes.value_or(0);
   if (job.splits > 1 && (!render.passes || render.time || render.target_error))
-    throw InputError("--splits: a frame can be cut in parts where its end is a number of passes "
-                     "and nothing else; say e.g. --passes 64");
+    throw InputError("--splits: only a number of passes can be split, not a time or an error; add "
+                     "e.g. --passes 64");
   check_clashes(job, document);
   check_job_file(job.job_file);
-  tell_missing(options, document, job.frames);
+  note_missing(options, document, job.frames);
   if (render.threads > 0)
     job.threads = render.threads;
   if (!options.time_limit.empty())
@@ -244,7 +244,7 @@ int run_farm(const FarmOptions& options, const FarmEngine& engine) {
     file.write(text.data(), text.size());
     file.commit();
     if (replaces)
-      log("note: {}: the job file that was there is replaced", options.job.job_file);
+      log("note: {}: the existing job file is replaced", options.job.job_file);
   }
   const int tasks = task_count(job);
   const auto counted = [](auto count, const char* noun) {
@@ -254,8 +254,8 @@ int run_farm(const FarmOptions& options, const FarmEngine& engine) {
       counted(tasks * job.splits, "task"), job.splits > 1 ? " and " + counted(tasks, "merge") : "",
       counted(job.threads, "thread"), job.memory_mib, engine.how_to_submit(job));
   if (tasks > usual_array_limit)
-    log("note: Slurm takes arrays of {} tasks unless MaxArraySize was raised; --chunk {} "
-        "makes few enough",
+    log("note: Slurm's default limit is {} tasks per array (MaxArraySize); --chunk {} stays below "
+        "it",
         usual_array_limit,
         (static_cast<int>(job.frames.size()) + usual_array_limit - 1) / usual_array_limit);
   return 0;
@@ -267,21 +267,21 @@ void declare(CLI::App& app, FarmOptions& options) {
   app.add_option("-f,--frames", options.frames, "Frames: 7, 1-24, 1-100x2, 1,5,9-12")
       ->required()
       ->option_text("RANGE");
-  app.add_option("-o,--output", job.output, "Images that the tasks write")
-      ->required()
-      ->option_text("FILE");
+  app.add_option("-o,--output", job.output, "Images to write")->required()->option_text("FILE");
   app.add_option("--job", job.job_file, "Job file to write; default: standard output")
       ->option_text("FILE");
   app.add_option("--chunk", job.chunk, "Frames of one task; default 1")
       ->check(CLI::Range(1, 1'000'000))
       ->option_text("N");
-  app.add_option("--splits", job.splits, "Parts of a frame, by passes, merged when all are there")
+  app.add_option("--splits", job.splits, "Split each frame into N parts by passes, and merge them")
       ->check(CLI::Range(1, 1000))
       ->option_text("N");
-  app.add_option("--running", job.running, "Tasks that may run at once; default: no limit")
+  app.add_option("--running", job.running,
+                 "Greatest number of tasks running at once; default: no limit")
       ->check(CLI::Range(1, 1'000'000))
       ->option_text("N");
-  app.add_option("--time-limit", options.time_limit, "Time of one task, e.g. 2h")->option_text("T");
+  app.add_option("--time-limit", options.time_limit, "Time limit of a task, e.g. 2h")
+      ->option_text("T");
   app.add_option("--memory", options.memory_mib, "Memory of one task; default: from the plan")
       ->option_text("MIB");
   app.add_option("--checkpoint", options.checkpoint, "Time between checkpoints; default 300s")
@@ -290,11 +290,11 @@ void declare(CLI::App& app, FarmOptions& options) {
       ->check(CLI::ExistingDirectory)
       ->option_text("FOLDER");
   app.add_option("--also", options.also,
-                 "One more option of vdbeam render, e.g. --also=--missing=hold")
+                 "Additional option of vdbeam render, e.g. --also=--missing=hold")
       ->take_all()
       ->allow_extra_args(false)
       ->option_text("OPTION");
-  app.add_option("--program", job.program, "vdbeam on the farm's machines; default: vdbeam")
+  app.add_option("--program", job.program, "Path of vdbeam on the farm's machines; default: vdbeam")
       ->option_text("PATH");
   app.footer(examples);
 }

@@ -42,7 +42,7 @@ void add_shape(const GridSummary& grid, std::vector<std::string>& lines) {
         fmt::format("{}: voxels are {:.3g} times longer than wide", grid.name, high / low));
 }
 
-/// What can colour the volume.
+/// Note about a grid that can colour the volume.
 std::string color_text(const std::vector<GridSummary>& grids) {
   for (const char* name : color_grid_names)
     for (const GridSummary& grid : grids)

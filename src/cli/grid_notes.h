@@ -13,7 +13,7 @@ bool is_scalar(const GridSummary& grid);
 /// Which of these grids of a file `vdbeam render FILE` would show and how, or why none.
 std::string rendered_text(const std::string& file, const std::vector<GridSummary>& grids);
 
-/// What in these grids a user should know before rendering, one line each.
+/// Notes about these grids before rendering, one line each.
 std::vector<std::string> suspicious(const std::vector<GridSummary>& grids);
 
 } // namespace vdbeam::cli

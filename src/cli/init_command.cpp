@@ -35,8 +35,7 @@ int run_init(const InitOptions& options) {
   claims.output("-o", options.output);
   std::error_code error;
   if (!options.force && fs::exists(options.output, error))
-    throw InputError(
-        one_line(fmt::format("-o {}: is there already; --force replaces it", options.output)));
+    throw InputError(one_line(fmt::format("-o {}: exists; --force replaces it", options.output)));
   const std::string text =
       scene_template(options.volume, fs::path(options.output).parent_path().string());
   AtomicFile file(options.output);
@@ -58,7 +57,7 @@ CommandRun add_init(CLI::App& app) {
       ->option_text("VDB");
   app.add_option("-o,--output", options->output, "Scene file to write; default: standard output")
       ->option_text("FILE.toml");
-  app.add_flag("--force", options->force, "Replace a file that is there");
+  app.add_flag("--force", options->force, "Replace an existing file");
   app.footer(R"(Examples:
   vdbeam init cloud.vdb -o cloud.toml
   vdbeam init 'smoke/smoke.####.vdb' -o smoke.toml)");

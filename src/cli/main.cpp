@@ -48,13 +48,14 @@ int fail(const std::string& line, ExitCode code) {
 
 /// Options and commands; exits by exception, as CLI11 does.
 int run(int argc, char** argv) {
-  CLI::App app("vdbeam: clouds and smoke from OpenVDB files, by the beam radiance estimate",
-               "vdbeam");
+  CLI::App app(
+      "vdbeam: clouds, smoke and fire from OpenVDB files, by photon mapping and path tracing",
+      "vdbeam");
   app.footer(footer);
   app.require_subcommand(1);
   app.formatter(std::make_shared<cli::HelpFormatter>()); // the commands inherit it
   app.set_version_flag("-v,--version", version_text,
-                       "Print the versions of vdbeam and its libraries");
+                       "Print the versions of vdbeam and its main libraries");
   app.set_help_flag("-h,--help", "Print this help");
   app.add_flag_callback(
       "--help-scene", [] { throw CLI::CallForVersion(key_tables_text(cli::text_columns()), 0); },

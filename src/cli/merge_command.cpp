@@ -63,18 +63,18 @@ CommandRun add_merge(CLI::App& app) {
       ->required()
       ->option_text("FILE");
   app.add_option("--passes", options->settings.passes,
-                 "Passes that must be there: 0 to N - 1; default: from 0 to the last there is")
+                 "Require passes 0 to N - 1; default: 0 to the last one present")
       ->option_text("N");
-  app.add_flag("--allow-gaps", options->settings.allow_gaps, "Join also where passes are missing");
+  app.add_flag("--allow-gaps", options->settings.allow_gaps, "Merge although passes are missing");
   app.add_option("--partial", options->settings.partial,
-                 "Also write a partial image of all passes, for merging in a tree")
+                 "Also write the merged passes as a partial image, for merging in a tree")
       ->option_text("FILE.exr");
-  app.add_option("--preview", options->preview, "Also write an 8-bit sRGB picture")
+  app.add_option("--preview", options->preview, "Also write an 8-bit sRGB preview")
       ->option_text("FILE.png");
-  app.add_option("--exposure", options->exposure, "Stops that brighten the preview")
+  app.add_option("--exposure", options->exposure, "Exposure of the preview, in stops")
       ->option_text("STOPS");
   add_view(app, options->view);
-  app.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  app.add_flag("-q,--quiet", options->quiet, "Print errors only");
   app.footer(R"(The image is bit for bit that of an undivided render of the same passes.
 
 Examples:

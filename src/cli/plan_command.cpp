@@ -51,7 +51,7 @@ nlohmann::ordered_json memory_json(const MemoryPlan& memory) {
           {"peak", memory.peak()}};
 }
 
-/// What each part takes in each phase, and in all.
+/// Table of the memory of each part in each phase, and the sums.
 std::string memory_text(const MemoryPlan& plan) {
   const auto row = [](const std::string& name, std::uint64_t a, std::uint64_t b, std::uint64_t c) {
     const auto text = [](std::uint64_t n) {
@@ -82,7 +82,7 @@ std::string features_text(const RenderPlan& plan) {
   return text;
 }
 
-/// What the passes are, as a table; nothing where no pilot ran.
+/// Table of the passes; empty if no pilot ran.
 std::string schedule_text(const RenderPlan& plan) {
   if (plan.schedule.empty())
     return {};
@@ -128,8 +128,8 @@ int run_plan(const PlanOptions& options) {
   const MemoryPlan memory = plan_memory(scene);
   const bool fits = memory.peak() <= granted_memory();
   if (!options.no_pilot && !fits)
-    log("note: the frame does not fit in the memory of this machine, so the volumes were not read "
-        "and features and schedule are left out");
+    log("note: the frame does not fit into this machine's memory, so volumes were not read; "
+        "features and schedule are omitted");
   if (!options.no_pilot && fits) {
     RenderPlan chosen = choose_plan(scene);
     plan.estimator = chosen.estimator;
@@ -157,10 +157,10 @@ int run_plan(const PlanOptions& options) {
 CommandRun add_plan(CLI::App& app) {
   const auto options = std::make_shared<PlanOptions>();
   options->scene.declare(app);
-  app.add_option("-f,--frame", options->frame, "Frame; default: the first on disk")
+  app.add_option("-f,--frame", options->frame, "Frame number; default: the first on disk")
       ->option_text("N");
   app.add_flag("--no-pilot", options->no_pilot,
-               "Read headers only: leave out what is chosen once the volumes are read");
+               "Run no pilots and read no large volumes: omit features and schedule");
   app.add_flag("--json", options->json, "Print JSON, with all settings");
   app.footer(R"(Examples:
   vdbeam plan cloud.toml

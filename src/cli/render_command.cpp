@@ -76,7 +76,7 @@ std::vector<int> choose_frames(const RenderOptions& options, const SceneDocument
     return {is_vdb_file(options.scene.path()) ? frame_of_name(options.scene.path()) : 1};
   const std::vector<int> there = document.frames_on_disk();
   throw InputError(one_line(
-      fmt::format("{}: the volume is a sequence: say which frames, e.g. -f {}",
+      fmt::format("{}: the volume is a sequence; give a range of frames, e.g. -f {}",
                   options.scene.path(), there.empty() ? "1-24" : format_frame_range(there))));
 }
 
@@ -86,9 +86,9 @@ void check_options(const RenderOptions& options) {
   if (!exr && frame.pass_range)
     throw InputError(one_line("-o " + frame.files.output + ": a partial image must be an .exr"));
   if (!exr && options.batch.skip_existing)
-    throw InputError(one_line("-o " + frame.files.output +
-                              ": --skip-existing needs an .exr; other files do not tell what "
-                              "they show"));
+    throw InputError(
+        one_line("-o " + frame.files.output +
+                 ": --skip-existing needs an .exr; other files do not record scene and frame"));
   if (!frame.parts.empty() && (frame.pass_range || !exr))
     throw InputError("--from-parts: excludes --pass-range, and -o must be an .exr");
   if (!frame.merged.empty() && (!frame.pass_range || !options.batch.skip_existing))
@@ -117,7 +117,7 @@ void check_clashes(const RenderOptions& options, const SceneDocument& document,
   claims.render(files, frames);
 }
 
-/// Refuses what is wrong with every frame. What only some of them lack is told when their turn
+/// Refuses what is wrong with every frame. What only some of them lack is reported when their turn
 /// comes, so that the others are rendered.
 void check_scenes(const RenderOptions& options, const SceneDocument& document,
                   const std::vector<int>& frames) {
@@ -178,7 +178,7 @@ int run_render(RenderOptions& options) {
     log("note: {}", note);
   if (frame.exposure != 0 && files.preview.empty() &&
       output_format(files.output).extension == ".exr" && !frame.quiet)
-    log("note: --exposure brightens only a --preview or a .png; there is none");
+    log("note: --exposure affects only a --preview or a .png; there is none");
   handle_signals();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }
@@ -200,68 +200,67 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, E& target,
 void add_batch_options(CLI::App& app, RenderOptions& options) {
   BatchOptions& batch = options.batch;
   app.add_option("--pass-range", options.pass_range,
-                 "Render these passes, from 0, into a partial EXR for vdbeam merge")
+                 "Render passes A to B, counted from 0, into a partial EXR for vdbeam merge")
       ->option_text("A-B");
   app.add_option("--region", options.region,
-                 "Render only the pixels from x0,y0 up to but without x1,y1")
+                 "Render only the pixels with x0 <= x < x1 and y0 <= y < y1")
       ->option_text("X0,Y0,X1,Y1");
   app.add_option("--checkpoint", options.checkpoint,
-                 "Save the passes so far every so often: 300s, 5m, or a number of passes")
+                 "Save a checkpoint at this interval: 300s, 5m, or a number of passes")
       ->option_text("T|N");
-  app.add_flag("--no-resume", options.no_resume, "Do not go on from a checkpoint");
+  app.add_flag("--no-resume", options.no_resume, "Do not resume from a checkpoint");
   app.add_flag("--skip-existing", batch.skip_existing,
-               "Leave frames alone whose finished image of this scene is there");
+               "Skip frames whose finished image of this scene exists");
   app.add_option(
          "--skip-merged", batch.frame.merged,
-         "With --pass-range and --skip-existing: leave also frames alone whose merged image "
-         "of this scene is there")
+         "With --pass-range and --skip-existing: also skip frames whose merged image exists")
       ->option_text("FILE.exr");
-  app.add_option("--from-parts", batch.frame.parts,
-                 "Join partial images of this scene instead of rendering, and remove them; once "
-                 "for each part")
+  app.add_option(
+         "--from-parts", batch.frame.parts,
+         "Merge this partial image instead of rendering, then remove it; repeat for each part")
       ->take_all()
       ->allow_extra_args(false)
       ->option_text("PARTIAL");
-  app.add_flag("--overwrite", options.overwrite,
-               "Render all frames, whatever --skip-existing says");
+  app.add_flag("--overwrite", options.overwrite, "Render all frames; overrides --skip-existing");
   add_choice<bool>(app, "--on-error", batch.stop_on_error, {{"continue", false}, {"stop", true}},
-                   "What a failed frame does to the others; default: continue");
+                   "After a failed frame, render the others or stop; default: continue");
   add_choice<MissingFile>(
       app, "--missing", batch.missing,
       {{"error", MissingFile::error}, {"black", MissingFile::black}, {"hold", MissingFile::hold}},
-      "A frame without its volume fails, is black, or shows the one before");
+      "A frame whose volume file is missing fails, is black, or holds the previous file; default: "
+      "error");
   app.add_option("--summary", batch.frame.files.summary,
-                 "Write what became of the frames as JSON; - is stdout")
+                 "Write the result of each frame as JSON; - is stdout")
       ->option_text("FILE.json");
   add_choice<FarmFormat>(
       app, "--progress", batch.farm,
       {{"plain", FarmFormat::plain}, {"openjd", FarmFormat::openjd}, {"alf", FarmFormat::alf}},
-      "Progress on stdout as farm engines parse it");
+      "Format of progress lines on stdout, for farm engines; default: plain (none)");
 }
 
 void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
   options->scene.declare(app);
   app.add_option("-o,--output", options->batch.frame.files.output,
                  "Image to write: " + output_extensions() +
-                     "; default: the scene's name, .exr, here")
+                     "; default: NAME.exr of the scene, in the current folder")
       ->option_text("FILE");
   app.add_option("-f,--frames", options->frames, "Frames: 7, 1-24, 1-100x2, 1,5,9-12")
       ->option_text("RANGE");
   app.add_option("--preview", options->batch.frame.files.preview,
-                 "Also write an 8-bit sRGB picture")
+                 "Also write an 8-bit sRGB preview")
       ->option_text("FILE.png");
-  app.add_option("--exposure", options->batch.frame.exposure, "Stops that brighten the preview")
+  app.add_option("--exposure", options->batch.frame.exposure, "Exposure of the preview, in stops")
       ->option_text("STOPS");
   add_view(app, options->batch.frame.view);
   app.add_option("--reference", options->batch.frame.files.reference,
-                 "The true image: errors against it go to the report")
+                 "Reference image; the report gives the error against it")
       ->option_text("FILE.exr");
   app.add_option("--second-reference", options->batch.frame.files.second_reference,
-                 "Another, of other noise: errors free of both")
+                 "A second, independent reference: removes the references' noise from the error")
       ->option_text("FILE.exr");
   app.add_option("--report", options->batch.frame.files.report, "Write a JSON report; - is stdout")
       ->option_text("FILE.json");
-  app.add_flag("-q,--quiet", options->batch.frame.quiet, "Say nothing but errors");
+  app.add_flag("-q,--quiet", options->batch.frame.quiet, "Print errors only");
   add_batch_options(app, *options);
   group_options(app, "Output",
                 {"-o", "--preview", "--exposure", "--region", "--reference", "--second-reference",

@@ -25,15 +25,16 @@ bool is_number(const std::string& text) {
 /// The options that set one key, in the order of --help.
 const std::vector<ShorthandRow>& shorthand_table() {
   static const std::vector<ShorthandRow> table{
-      {"--passes", "render.passes", "N", "Passes to render"},
-      {"--time", "render.time", "T", "Rendering time: seconds, or like 90s, 5m, 1h30m"},
-      {"--target-error", "render.target_error", "E", "Estimated error (MRSE) to reach"},
-      {"--min-passes", "render.min_passes", "N", "Passes before --target-error may end a frame"},
+      {"--passes", "render.passes", "N", "Number of passes"},
+      {"--time", "render.time", "T", "Time limit of a frame: seconds, or like 90s, 5m, 1h30m"},
+      {"--target-error", "render.target_error", "E", "Stop at this estimated error (MRSE)"},
+      {"--min-passes", "render.min_passes", "N",
+       "Fewest passes before --target-error may end a frame"},
       {"--estimator", "render.estimator", "NAME", join_words(choice_names<EstimatorType>(), "or")},
       {"--clamp", "render.clamp", "L",
-       "Dim pixels of passes above this radiance; the report tells what it took"},
-      {"--seed", "render.seed", "N", "Random numbers"},
-      {"--threads", "render.threads", "N", "Threads; never changes the picture"}};
+       "Clamp the pixels of each pass to this radiance; the report gives the light removed"},
+      {"--seed", "render.seed", "N", "Seed of the random numbers"},
+      {"--threads", "render.threads", "N", "Number of threads; does not change the image"}};
   return table;
 }
 
@@ -64,7 +65,7 @@ void SceneOptions::declare(CLI::App& app) {
       ->option_text("SCENE|VDB");
   for (const ShorthandRow& row : shorthand_table())
     declare_shorthand(app, row);
-  app.add_option("--resolution", resolution_, "Size of the picture in pixels")
+  app.add_option("--resolution", resolution_, "Size of the image in pixels")
       ->option_text("WxH")
       ->group("Scene");
   app.add_option("--set", sets_, "Set any key of the scene; may be repeated")

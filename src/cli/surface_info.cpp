@@ -34,7 +34,7 @@ Boxd bounds_of(const Mesh& mesh) {
 
 std::string uv_text(const Mesh& mesh) {
   if (mesh.uvs.empty())
-    return "no: a texture cannot be shown on it";
+    return "none: textures cannot be used";
   constexpr float infinity = std::numeric_limits<float>::infinity();
   float least_u = infinity, most_u = -infinity, least_v = infinity, most_v = -infinity;
   for (const Uv& uv : mesh.uvs) {
@@ -74,12 +74,12 @@ std::string values(std::size_t count) {
   return count == 1 ? "1 value" : fmt::format("{} values", count);
 }
 
-/// What its numbers are taken for.
+/// Interpretation of its numbers.
 std::string colors_text(const Image& image, const std::string& extension) {
   if (extension == ".png")
     return "sRGB, made linear: 8 or 16 bits per channel, Rec.709 primaries";
   if (!image.primaries)
-    return "not known to be linear: R, G and B are taken as they are";
+    return "unknown: R, G and B are used unchanged";
   const std::array spaces{ColorSpace::rec709, ColorSpace::rec2020, ColorSpace::acescg,
                           ColorSpace::aces2065_1};
   const std::array names{"Rec.709 (rec709)", "Rec.2020 (rec2020)", "ACEScg (acescg)",
@@ -87,7 +87,7 @@ std::string colors_text(const Image& image, const std::string& extension) {
   for (std::size_t i = 0; i < spaces.size(); ++i)
     if (image.primaries->is_near(chromaticities_of(spaces[i])))
       return fmt::format("linear, with the primaries of {}", names[i]);
-  return "linear, with primaries of its own";
+  return "linear, with custom primaries";
 }
 
 } // namespace
@@ -95,7 +95,7 @@ std::string colors_text(const Image& image, const std::string& extension) {
 std::string mesh_info(const std::string& path) {
   const Mesh mesh = read_mesh(path, {.uvs = true, .normals = true});
   const Boxd bounds = bounds_of(mesh);
-  const char* normals = mesh.normals.empty() ? "no: triangles are flat without smooth_angle"
+  const char* normals = mesh.normals.empty() ? "none: triangles are flat without smooth_angle"
                                              : "yes: they shade it unless file_normals = false";
   std::string text = fmt::format(
       "{}\n  triangles     {}\n  vertices      {}\n  bounds        {} to {}\n  size          {}\n"
@@ -138,12 +138,12 @@ std::string picture_info(const std::string& path) {
     all.above_one += range.above_one;
   }
   if (all.above_one > 0)
-    text += fmt::format("  as albedo     {} above 1, taken for 1; lamps and skies keep them\n",
+    text += fmt::format("  as albedo     {} above 1, clamped to 1; lights and skies keep them\n",
                         values(all.above_one));
   if (all.negative > 0)
     text += fmt::format("  looks wrong   {} below 0, taken for 0\n", values(all.negative));
   if (all.others > 0)
-    text += fmt::format("  looks wrong   {}: infinite, or no numbers\n", values(all.others));
+    text += fmt::format("  looks wrong   {}: infinite or NaN\n", values(all.others));
   return text;
 }
 

@@ -4,13 +4,14 @@
 
 namespace vdbeam::cli {
 
-/// What `vdbeam info` tells of a mesh file. Throws InputError and FrameError as reading it does.
+/// Description of a mesh file for `vdbeam info`. Throws InputError and FrameError as reading it
+/// does.
 std::string mesh_info(const std::string& path);
 
 /// Whether the name of a file says that it is a picture.
 bool is_picture_file(const std::string& path);
 
-/// What `vdbeam info` tells of a picture: a texture, or a sky. Throws InputError.
+/// Description of an image (a texture or a sky) for `vdbeam info`. Throws InputError.
 std::string picture_info(const std::string& path);
 
 } // namespace vdbeam::cli

@@ -95,7 +95,7 @@ std::string sequence_of(const std::vector<std::string>& files) {
   return fmt::format("{} -f {}", pattern, format_frame_range(frames_on_disk(pattern)));
 }
 
-/// What sets the key that an unknown option means in other programs ("--samples"); empty where it
+/// Option for a key that an unknown option sets in other programs ("--samples"); empty if it
 /// means none, and for commands that take no scene.
 std::string option_meant_by(const std::string& option, const CLI::App& command) {
   if (!command.get_option_no_throw("--set"))
@@ -160,14 +160,14 @@ std::string spread_value(const Place& place, const std::vector<std::string>& wor
   return {};
 }
 
-/// What a command cannot use: an option that it does not have, or one file too many.
+/// Error for an unknown option, or one file too many.
 std::string surplus_words(const Place& place, const std::vector<std::string>& words,
                           const std::vector<std::string>& surplus) {
   const auto option = std::find_if(surplus.begin(), surplus.end(), is_option);
   if (option != surplus.end()) {
     const std::string name = option->substr(0, option->find('='));
     std::string meant = option_meant_by(name, *place.command);
-    // Of single letters every one is near to every other.
+    // A single letter is close to every other.
     if (const auto near = nearest_word(name, option_names(*place.command));
         near && name.size() > 2 && meant.empty())
       meant = *near;
@@ -205,7 +205,7 @@ std::string missing_word(const Place& place) {
 }
 
 /// A value that is missing or that its option does not take. CLI11's text names the option; what it
-/// could be is told as help tells it.
+/// could be is described as in the help.
 std::string value_error(const CLI::App& command, const CLI::ParseError& error) {
   const std::string text = error.what();
   const CLI::Option* option = nullptr;
@@ -250,7 +250,7 @@ std::string usage_error(const CLI::App& program, const std::vector<std::string>&
   if (std::any_of(surplus.begin(), surplus.end(), is_option))
     return one_line(surplus_words(place, words, surplus));
   if (const auto names = command_names(*place.command); !names.empty())
-    return fmt::format("{0}: which command? {1}; {0} --help tells what they do", place.name,
+    return fmt::format("{0}: which command? {1}; {0} --help describes them", place.name,
                        join_words(names, "or"));
   if (dynamic_cast<const CLI::RequiredError*>(&error))
     if (const std::string text = missing_word(place); !text.empty())

@@ -17,7 +17,7 @@ void add_view(CLI::App& app, std::string& view) {
         fmt::format("{}{}: {}", descriptions.empty() ? "" : "; ", entry.name, entry.description);
   }
   view = names.front();
-  app.add_option("--view", view, "View transform of 8-bit pictures. " + descriptions)
+  app.add_option("--view", view, "View transform of 8-bit images. " + descriptions)
       ->check(CLI::IsMember(names))
       ->option_text(words);
 }

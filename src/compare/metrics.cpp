@@ -15,7 +15,7 @@ namespace vdbeam {
 namespace {
 
 constexpr double mrse_offset = 0.01;
-/// Of two references, as MRSE of their mean: with more, pixels are weighed by their surroundings.
+/// Noise of the mean of two references (as MRSE) above which pixels are weighted by a local mean.
 constexpr double noise_that_weighs = 0.003;
 constexpr double worst_fraction = 0.001; ///< of the pixels, left out of relMSE
 

@@ -12,8 +12,8 @@
 namespace vdbeam::cli {
 namespace {
 
-/// What the signal handler writes. Whoever finds it held does without: the handler skips a beat,
-/// the program a change.
+/// Line that the signal handler writes. Whoever finds it held does without: the handler skips a
+/// beat, the program a change.
 std::array<char, 512> text;
 std::size_t length = 0;
 std::atomic_flag held = ATOMIC_FLAG_INIT;

@@ -9,7 +9,7 @@
 
 namespace vdbeam::cli {
 
-/// What a farm engine parses on stdout.
+/// Progress lines on stdout for farm engines.
 enum class FarmFormat { plain, openjd, alf };
 
 /// Prints how far a whole batch is, in one engine's words, each line flushed:
@@ -30,8 +30,8 @@ private:
   double last_ = -1; ///< percent
 };
 
-/// Tells on stderr how a frame comes along: a bar on a terminal; elsewhere, and under TERM=dumb, a
-/// line at the start, one at the end, and at most one in ten seconds between them, each flushed.
+/// Reports the progress of a frame on stderr: a bar on a terminal; elsewhere, and under TERM=dumb,
+/// a line at the start, one at the end, and at most one in ten seconds between them, each flushed.
 class Progress {
 public:
   /// `title` begins each line, e.g. "frame 7 (3/24)".

@@ -8,7 +8,7 @@ namespace vdbeam::cli {
 /// and TERM is neither unset nor "dumb".
 bool is_smart_terminal(int descriptor);
 
-/// Columns of the terminal now, which a user may change at any time; 80 where it does not tell.
+/// Columns of the terminal now, which a user may change at any time; 80 if unknown.
 int terminal_columns(int descriptor);
 /// Columns for text on stdout that people read: those of the terminal, 80 to 120.
 std::size_t text_columns();

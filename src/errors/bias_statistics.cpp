@@ -66,9 +66,9 @@ double mean_truncation(const PassHistory& history) {
   return sum / total_passes(history);
 }
 
-/// Adds to the kernels' bias that of the truncation, as the passes of a batch tell it that take
-/// more of the peak out than others: linear regression. A batch whose passes do not differ tells
-/// nothing and weighs nothing. `mean`: truncation of all passes.
+/// Adds the bias of the truncation to the kernels' bias, by linear regression over the passes of a
+/// batch, which differ in their truncation. A batch whose passes do not differ has no
+/// weight. `mean`: truncation of all passes.
 void add_truncation(const PassHistory& history, std::size_t batch, double mean,
                     Differences& biases) {
   constexpr double least_variation = 0.01;
@@ -158,8 +158,8 @@ std::pair<double, double> common_square(const std::vector<Batch>& batches,
   return {value, std::max(error, std::sqrt(all.squares) / all_weights)};
 }
 
-/// What the truncation of the forward peak adds to the square of the kernels' bias, and its
-/// standard error; NaN where passes do not tell.
+/// Contribution of the truncation of the forward peak to the squared bias, and its
+/// standard error; NaN if unknown.
 std::pair<double, double> truncation_square(const PassHistory& passes) {
   const PassHistory history = passes.with_several_passes_per_batch();
   const std::size_t count = history.batches();

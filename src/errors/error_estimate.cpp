@@ -16,14 +16,14 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
 /// that has all of a pixel's light would weigh as if the pixel were black.
 constexpr double least_mean = 0.4;
-/// What weights that are themselves estimated leave uncertain.
+/// Uncertainty because weights are estimated themselves.
 constexpr double least_spread = 0.03;
-/// How far, as a fraction, the square of the bias may be from what narrower kernels tell, and how
-/// much of it, as a fraction of the noise, they may not show at all.
+/// Relative error of the squared bias estimated by narrower kernels, and the bias that they may
+/// miss altogether, as a fraction of the noise.
 constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
 /// The positive part of a noisy square is too large on average. It is shrunk by this many times its
-/// squared error over itself: 1 as James and Stein do. What only path-traced rays tell, or the
-/// truncation, counts where it stands out.
+/// squared error over itself: 1 as James and Stein do. Bias found by path-traced rays alone,
+/// or by the truncation, counts only if it is significant.
 constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
 /// Standard deviation, relative to the known error, that the bias not yet seen has beforehand.
 /// Without it the interval of a few rays ends at tens of times the error.
@@ -189,9 +189,9 @@ SquaredBias average(const SquaredBias& first, const SquaredBias& second) {
   return {(a * first.value + b * second.value) / (a + b), 1 / std::sqrt(a + b)};
 }
 
-/// What the widths of kernels and the probes tell together, each weighted by how well it knows.
+/// The squared bias from kernels of other widths and from probes, weighted by their precision.
 /// Where only probes are, small values are noise more likely than bias. `t`: quantile of the
-/// batches by which standard errors are told.
+/// batches that give the standard errors.
 SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
   const bool probed = std::isfinite(bias.mrse) && std::isfinite(bias.mrse_error);
   if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
@@ -214,6 +214,8 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
     const double expected = expected_rest * (noise + result.value);
     if (rest.error > 0 && expected > 0)
       result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));
+  } else if (!probed) { // nobody looks for it
+    result.error = std::hypot(result.error, expected_rest * (noise + result.value));
   }
   return result;
 }

@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// Estimate of the error of the mean of the passes (docs/physics.md, "Errors").
+/// Estimate of the error of the mean of the passes (docs/theory/error-estimate.md, "Errors").
 struct ErrorEstimate {
   double mrse;        ///< expected MRSE: noise plus, where it is known, squared bias
   double low, high;   ///< 95 % interval of the picture's MRSE
@@ -27,16 +27,16 @@ struct NoiseStatistics {
 /// Correction and spread of the noise. `batches` 0 where there are fewer than 3.
 NoiseStatistics noise_statistics(const PassHistory& history);
 
-/// Statistics of the bias, as MRSE but for `bias`; NaN where there is too little to tell. Each has
+/// Statistics of the bias, as MRSE except `bias`; NaN with too little data. Each has
 /// its standard error.
 struct BiasStatistics {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double mrse = unknown, mrse_error = unknown; ///< all of it, squared
   double bias = unknown, bias_error = unknown; ///< of the mean brightness, relative to it
   double blur = unknown, blur_error = unknown; ///< what of `mrse` comes from the width of kernels
-  /// What of `mrse` whole regions have in common and the width of kernels does not explain.
+  /// The part of `mrse` that whole regions share and the width of kernels does not explain.
   double hidden = unknown, hidden_error = unknown;
-  /// What the truncation of the forward peak adds to `blur`.
+  /// Contribution of the truncation of the forward peak to `blur`.
   double truncation = unknown, truncation_error = unknown;
 };
 

@@ -8,8 +8,8 @@ namespace vdbeam {
 
 namespace {
 
-/// A blur of so many standard errors is taken off by half, and so is one whose standard error is
-/// this share of the mean: weights that followed the noise would be too large.
+/// A blur of this many standard errors is subtracted by half, and so is a blur whose standard error
+/// is this share of the mean: weights that followed the noise would be too large.
 constexpr double half_believed = 2, half_believed_share = 0.1;
 /// The least share of a pixel's mean that is left without its blur.
 constexpr double least_unblurred = 0.25;

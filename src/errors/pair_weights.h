@@ -18,8 +18,8 @@ struct Differences {
 /// taken off it, or dark pixels beside a bright rim would seem to have less error than they have.
 class PairWeights {
 public:
-  /// `blurs`: by batch, the bias of the kernels as their blur tells it; empty weights where nobody
-  /// measured it. Both must outlive this.
+  /// `blurs`: by batch, the bias of the kernels estimated from their blur; empty weights if it
+  /// was not measured. Both must outlive this.
   PairWeights(const PassHistory& history, const std::vector<Differences>& blurs);
 
   /// For the batches i and j, and value k of the followed pixels (R, G, B of each).

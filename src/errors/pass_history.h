@@ -8,7 +8,7 @@
 
 namespace vdbeam {
 
-/// Without so many batches nothing can be told of their spread.
+/// Fewest batches that give a variance.
 inline constexpr std::size_t fewest_batches = 3;
 
 /// History of the passes at some of the pixels: sums over up to 16 batches of successive passes.
@@ -44,7 +44,7 @@ public:
   const float* probe_sums(std::size_t batch) const { return sums(batch) + 3 * pixels_.size(); }
   /// Number of probes of each followed pixel.
   const float* probes(std::size_t batch) const { return sums(batch) + 6 * pixels_.size(); }
-  /// Likewise of the passes' blur.
+  /// The same for the passes' blur.
   const float* blur_sums(std::size_t batch) const { return sums(batch) + 7 * pixels_.size(); }
   const float* blurs(std::size_t batch) const { return sums(batch) + 10 * pixels_.size(); }
   /// Sums over the batch's passes of what each shows times its truncation (PassImage).
@@ -55,9 +55,9 @@ public:
     return sums(batch)[14 * pixels_.size() + 1];
   }
 
-  /// The same passes in half as many batches of two or three, where batches are single passes: from
-  /// one pass alone nobody can tell what its truncation does. Otherwise, and where the batches
-  /// would be too few, the history as it is.
+  /// The same passes in half the number of batches, of two or three, where batches are single
+  /// passes: a single pass has one truncation order, so its effect cannot be separated. Otherwise,
+  /// and where the batches would be too few, the history as it is.
   PassHistory with_several_passes_per_batch() const;
 
   /// Everything above, for storing: both as long as a multiple of the film's pixels.

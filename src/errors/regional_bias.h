@@ -14,12 +14,12 @@ public:
   /// `differences`: by batch.
   RegionalBias(const PassHistory& history, const std::vector<Differences>& differences);
 
-  /// From products of the sums of different batches, of which noise has none on average; NaN where
+  /// Mean product of different batches' sums, in which independent noise cancels; NaN where
   /// there are too few. The batch `left_out` is not counted; none is with the number of batches.
   double without(std::size_t left_out) const;
 
 private:
-  /// Of one batch and one region.
+  /// Sums over one batch and one region.
   struct Sums {
     double relative[3] = {}; ///< differences to the mean brightness, R, G, B
     double met = 0;          ///< weight of the pixels that differ at all: those that see the medium

@@ -1,6 +1,8 @@
 #include "estimators/surface_fit.h"
 
+#include "estimators/gather/regression.h"
 #include "math/plane_fit.h"
+#include "photons/blur_probe.h"
 
 #include <tbb/parallel_for.h>
 
@@ -40,9 +42,23 @@ void SurfaceFit::set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr) 
     groups_[g][pixel] = seen.smooth.parts()[g];
 }
 
-/// The pixels whose weighted sum is what the plane fitted about a pixel has there.
-std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float widest,
+/// How far a neighbour may lie off the plane of the surface at a pixel, for a fit of this radius.
+float SurfaceFit::farthest_off(int x, int y, float radius) const {
+  const Pixel& pixel = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                               static_cast<std::size_t>(x)];
+  const Vec3d eye = camera_.ray(x + 0.5, y + 0.5).origin;
+  const double pixel_width =
+      camera_.pixel_width(x + 0.5, y + 0.5, length(Vec3d(pixel.position) - eye));
+  return static_cast<float>(farthest_off_plane * pixel_width) * (radius + 0.5f);
+}
+
+/// The pixels whose weighted sum is what the plane fitted about a pixel has there; none where that
+/// is not known.
+std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float radius,
                                                       Shares& shares) const {
+  const float widest = farthest_off(x, y, radius);
+  if (!(widest > 0))
+    return {};
   const auto index = [&](int px, int py) {
     return static_cast<std::size_t>(py) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(px);
@@ -55,7 +71,7 @@ std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float widest
     for (int px = std::max(0, x - reach); px <= std::min(width_ - 1, x + reach); ++px) {
       const Pixel& other = pixels_[index(px, py)];
       const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
-      const float near = 1 - (dx * dx + dy * dy) / ((radius_ + 1) * (radius_ + 1));
+      const float near = 1 - (dx * dx + dy * dy) / ((radius + 1) * (radius + 1));
       if (other.surface != center.surface || !(near > 0))
         continue;
       const float turned = (1 - dot(center.normal, other.normal)) / (1 - least_cosine);
@@ -73,35 +89,39 @@ std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float widest
   return {shares.data(), count};
 }
 
-void SurfaceFit::fit_pixel(int x, int y, PassImage& image) const {
+void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   const Pixel& pixel = pixels_[i];
-  if (pixel.surface < 0)
-    return;
-  const Vec3d eye = camera_.ray(x + 0.5, y + 0.5).origin;
-  const double pixel_width =
-      camera_.pixel_width(x + 0.5, y + 0.5, length(Vec3d(pixel.position) - eye));
-  const auto widest = static_cast<float>(farthest_off_plane * pixel_width) * (radius_ + 0.5f);
-  if (!(widest > 0))
-    return;
   Shares buffer;
-  const std::span<const Share> fitted = shares(x, y, widest, buffer);
-  const auto replace = [&](const auto& light, std::vector<Rgb>& of_image) {
+  std::span<const Share> fitted;
+  if (pixel.surface >= 0)
+    fitted = shares(x, y, radius_, buffer);
+  if (fitted.empty())
+    return;
+  const auto sum_of = [&](const auto& light) {
     Vec3d sum;
     for (const Share& share : fitted)
       sum += Vec3d(light(share.pixel)) * share.weight;
-    of_image[i] += (Rgb(sum) - light(i)) * pixel.factor;
+    return Rgb(sum);
   };
-  replace([&](std::size_t at) { return pixels_[at].light; }, image.background);
+  const auto whole = [&](std::size_t at) { return pixels_[at].light; };
+  const Rgb light = sum_of(whole);
+  image.background[i] += (light - pixel.light) * pixel.factor;
   for (std::size_t g = 0; g < std::min(groups_.size(), image.groups.size()); ++g)
-    replace([&](std::size_t at) { return groups_[g][at]; }, image.groups[g]);
+    image.groups[g][i] +=
+        (sum_of([&](std::size_t at) { return groups_[g][at]; }) - groups_[g][i]) * pixel.factor;
+  if (PixelValue* probe = blur ? blur->find(i) : nullptr) {
+    fitted = shares(x, y, PixelRegression::narrower(radius_), buffer);
+    probe->radiance +=
+        (light - sum_of(whole)) * pixel.factor * PixelRegression::blur_over_difference(radius_);
+  }
 }
 
-void SurfaceFit::apply(const PixelRegion& window, PassImage& image) const {
+void SurfaceFit::apply(const PixelRegion& window, PassImage& image, BlurProbe* blur) const {
   tbb::parallel_for(window.y0, window.y1, [&](int y) {
     for (int x = window.x0; x < window.x1; ++x)
-      fit_pixel(x, y, image);
+      fit_pixel(x, y, image, blur);
   });
 }
 

@@ -10,6 +10,8 @@
 
 namespace vdbeam {
 
+class BlurProbe;
+
 /// What matt surfaces reflect of light that has come by way of other surfaces and the medium has
 /// the noise of a few paths per pixel, but it changes slowly over a surface, per albedo. So each
 /// pixel takes it from a plane that is fitted to the pixels around it which show the same surface
@@ -17,21 +19,23 @@ namespace vdbeam {
 /// straight from lights, with its shadows, stays as it is.
 class SurfaceFit {
 public:
-  /// Of a pass of a world with surfaces. `input` must outlive this.
+  /// Fit for one pass of a world with surfaces. `input` must outlive this.
   SurfaceFit(const EstimatorInput& input, int pass);
 
   /// By how many pixels it reaches to each side.
   static constexpr int reach = 3;
-  /// What a pass takes.
+  /// Memory of a pass per pixel [bytes].
   static constexpr std::size_t bytes_per_pixel();
 
-  /// Of any thread, each pixel by one: a pixel shows a surface through the transmittance `tr`.
+  /// The pixel shows a surface through the transmittance `tr`. Any thread may call it, one per
+  /// pixel.
   void set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr);
   /// The pixel shows several.
   void clear(std::size_t pixel) { pixels_[pixel].surface = -1; }
 
-  /// After all pixels: replaces their light by what is fitted, in the window.
-  void apply(const PixelRegion& window, PassImage& image) const;
+  /// After all pixels: replaces their light by what is fitted, in the window. `blur`, unless it is
+  /// null, takes how much that blurs.
+  void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr) const;
 
 private:
   struct Pixel {
@@ -46,8 +50,9 @@ private:
     double weight;
   };
   using Shares = std::array<Share, (2 * reach + 1) * (2 * reach + 1)>;
-  std::span<const Share> shares(int x, int y, float widest, Shares& shares) const;
-  void fit_pixel(int x, int y, PassImage& image) const;
+  std::span<const Share> shares(int x, int y, float radius, Shares& shares) const;
+  float farthest_off(int x, int y, float radius) const;
+  void fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const;
 
   const Camera& camera_;
   int width_, height_;

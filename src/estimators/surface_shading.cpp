@@ -16,10 +16,10 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
-/// Of a matt surface, whose light is fitted over pixels (SurfaceFit), and shadow rays that look for
-/// lights with an extent beside those of the paths: shadows are not fitted.
+/// Paths of a matt surface, whose light is fitted over pixels (SurfaceFit), and additional shadow
+/// rays towards lights with an extent, since shadows are not fitted.
 constexpr int matt_paths = 2, more_shadow_rays = 6;
-/// Lamps are looked for behind rough glass by as many times more rays, which gather nothing else.
+/// Additional rays that look for lamps behind rough glass and gather nothing else, by this factor.
 constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
 constexpr int most_splits = 1;
@@ -31,8 +31,8 @@ bool go_both_ways(const SpecularBranches& ways) {
          max_component(ways.refracted.weight) > least_share;
 }
 
-/// Of the paths that go on from the first interface, how many take a way with this share of the
-/// light: at least one goes each way.
+/// Number of the paths from the first interface that take a branch with this share of the light; at
+/// least one takes each branch.
 int paths_by_share(const Rgb& share) {
   const long paths = std::lround(paths_per_ray * max_component(share));
   return std::clamp(static_cast<int>(paths), 1, paths_per_ray - 1);
@@ -89,7 +89,7 @@ struct SurfaceShading::Chain {
   bool lamps_found = false; ///< at the next surface, if it is rough glass or metal
   SurfaceRoulette length{};
 
-  /// Leaves a surface one of several ways, all of which are followed.
+  /// Follows one of several branches at a surface; the others are followed too.
   void take_share(const SurfaceVertex& vertex, const MaterialSample& way) {
     leave(vertex, way);
     scale *= max_component(way.weight);
@@ -134,7 +134,7 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   return matt(vertex, camera.ray().direction, path_rng);
 }
 
-/// What a surface shows that is no mirror, glass or polished metal.
+/// Radiance of a surface other than mirror, glass or polished metal.
 template <class PathRng>
 SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direction,
                                  const PathRng& path_rng) const {
@@ -169,7 +169,7 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   return seen;
 }
 
-/// What the surface emits as a light with shadow rays into the medium.
+/// Emission of the surface as a light with shadow rays into the medium.
 GroupedLight SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
   const int light = vertex.light();
   const bool sampled =
@@ -177,8 +177,8 @@ GroupedLight SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
   return {sampled ? vertex.emitted() : Rgb(), group_of(world_, vertex)};
 }
 
-/// What the first surface shows of its surroundings: the mean over a few paths. Glass sends some of
-/// them either way.
+/// Reflected and refracted light of the first surface: the mean over a few paths. Glass sends some
+/// of them either way.
 template <class PathRng>
 GroupedLight SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
                                       RenderStatistics& counts) const {
@@ -210,7 +210,7 @@ GroupedLight SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const
   GroupedLight sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
-    if (i == 0) // by a facet of which no path makes use
+    if (i == 0) // by a facet that no path uses
       reflected = paths_by_share(vertex.both_ways(Carried::radiance, rng).reflected.weight);
     Chain chain{rng, counts, vertex.absorbed()};
     sum += surfaces_.tracer().lights_at_surface(vertex, rng) * chain.throughput /
@@ -276,7 +276,7 @@ GroupedLight SurfaceShading::scatter(const SurfaceVertex& vertex, Chain& chain) 
   return light;
 }
 
-/// What the chain sees from its present segment on, times its throughput.
+/// Radiance of the chain from its present segment on, times its throughput.
 GroupedLight SurfaceShading::follow(Chain chain) const {
   GroupedLight sum;
   DepthProfile profile;
@@ -338,8 +338,8 @@ Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
   return left;
 }
 
-/// What leaves the surface at which the chain ends. `lamps`: transmittance on the way there for
-/// lights with shadow rays over that for others.
+/// Radiance that leaves the surface at which the chain ends. `lamps`: transmittance on the way
+/// there for lights with shadow rays over that for others.
 GroupedLight SurfaceShading::at_end(const SurfaceVertex& vertex, const Rgb& lamps,
                                     Chain& chain) const {
   Rgb emitted(1);

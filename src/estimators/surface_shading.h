@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the photons of a pass scatter into a ray with this profile, which is not empty.
+/// Light that the photons of a pass scatter into a ray with this profile, which is not empty.
 using GatherAlong =
     std::function<GroupedLight(const CameraRay& ray, const DepthProfile& profile, Rng& rng)>;
 
@@ -19,16 +19,16 @@ using GatherAlong =
 /// are gathered along each of its segments: light that glass throws into the medium is seen there
 /// too. At the first two interfaces of glass it goes both ways, reflected and refracted, from then
 /// on one of them at random: the faint reflection of a bright lamp is no matter of chance. At any
-/// other surface path tracing goes on (WalkTracer), which finds all of its light but what mirrors,
-/// glass or the medium, met first of all, send on from lights: caustics, the glow of fog about a
-/// lamp, and whatever becomes of them. Photons that lie on the surface bring these.
+/// other surface path tracing goes on (WalkTracer), which finds all light except paths whose first
+/// event after the light is specular, glossy or in the medium: caustics and light scattered by fog
+/// near lamps, after any number of further bounces. Photons on the surface carry these.
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.
   SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                  const SurfaceLighting& surfaces, GatherAlong gather);
 
-  /// What is seen of the surface at which the camera ray ends: the mean over a few random paths.
+  /// Radiance of the surface at which the camera ray ends: the mean over a few random paths.
   SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
                    RenderStatistics& counts) const;
 

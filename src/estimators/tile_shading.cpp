@@ -230,7 +230,7 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     scratch.statistics.query += watch.seconds();
   });
   if (fit && !input.stopped())
-    fit->apply(wanted(task), image);
+    fit->apply(wanted(task), image, tiles.blur);
   RenderStatistics sums;
   for (const TileScratch& scratch : scratches)
     sums += scratch.statistics;

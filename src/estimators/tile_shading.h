@@ -6,7 +6,9 @@
 
 namespace vdbeam {
 
-/// What a thread keeps from tile to tile.
+class BlurProbe;
+
+/// Buffers that a thread keeps from tile to tile.
 struct TileScratch {
   TileRays rays;
   BeamTile tile;
@@ -32,12 +34,13 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
                const SeenSurface& surface = {}, int rays = 1);
 
-/// What an estimator does with the rays of a tile.
+/// Work of an estimator on the rays of a tile.
 struct TileGather {
   bool refine; ///< edges are seen by several rays (is_uneven)
   /// Adds what the photon map gives to image.indirect, and its counts to scratch.statistics.
   std::function<void(TileScratch& scratch, const RngKey& key)> gather;
-  GatherAlong gather_along; ///< the same for a ray that goes on behind a mirror or glass
+  GatherAlong gather_along;  ///< the same for a ray that goes on behind a mirror or glass
+  BlurProbe* blur = nullptr; ///< takes what the fit of surfaces blurs; null: nobody asks
 };
 
 /// The light of the surfaces in the world of a pass's photons.

@@ -40,9 +40,9 @@ std::vector<std::string> pass_ranges(const FarmJob& job) {
   if (job.splits <= 1)
     return {""};
   if (job.passes < job.splits)
-    throw InputError(fmt::format("--splits {}: a frame has {} passes; say --passes with at least "
-                                 "as many as there are parts",
-                                 job.splits, job.passes));
+    throw InputError(
+        fmt::format("--splits {}: a frame has only {} passes; use at most one part per pass",
+                    job.splits, job.passes));
   std::vector<std::string> ranges;
   int first = 0;
   for (int part = 0; part < job.splits; ++part) {

@@ -50,7 +50,7 @@ std::string shell_word(const std::string& text);
 /// Seconds as an option's value: "300s", "1.5s".
 std::string seconds_text(double seconds);
 
-/// What a task of this plan should be given, in MiB: the frame's planned peak, or what it keeps
+/// Memory to request for a task of this plan [MiB]: the frame's planned peak, or what it keeps
 /// while another one like it is read, whichever is more, and a quarter more.
 std::uint64_t task_memory_mib(const MemoryPlan& plan);
 /// The same for a merge: the film twice.

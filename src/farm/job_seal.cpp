@@ -18,7 +18,7 @@ std::size_t checksum_place(const std::string& text) {
   return fits ? at + checksum.size() : text.npos;
 }
 
-/// Of a text whose own checksum is all zeros.
+/// Checksum of a text in which the checksum itself is replaced by zeros.
 std::string checksum_of(const std::string& text) {
   ContentHash hash;
   hash.add(text.data(), text.size());

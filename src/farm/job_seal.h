@@ -13,7 +13,7 @@ std::string job_mark(const std::string& engine);
 /// The text of a job file with its checksum in the mark.
 std::string sealed_job(std::string text);
 
-/// What a file is that lies where a job file should go.
+/// Kind of an existing file at the path of a job file.
 enum class JobFile { ours, changed, other };
 JobFile judge_job(const std::string& text);
 

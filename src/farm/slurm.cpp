@@ -144,7 +144,7 @@ finish $?
 )sh";
 
 const char* const submit_splits = R"sh(
-# Outside of a task: submits an array for each range of passes, and one that merges them, of which
+# Outside of a task: submits an array for each range of passes, and one that merges them, where
 # each task starts when those of the same number are done.
 if [[ -z ${SLURM_ARRAY_TASK_ID:-} ]]; then
   jobs=()

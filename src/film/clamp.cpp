@@ -20,7 +20,7 @@ ClampTally clamp_pass(PassImage& pass, double limit) {
     const double glow = pass.emission.empty() ? 0 : sum_of(pass.emission[i]);
     const double light = sum_of(medium), all = light + sum_of(pass.background[i]) + glow;
     if (!std::isfinite(all))
-      continue; // the film counts it as 0 and tells
+      continue; // the film counts it as 0 and reports it
     tally.total += all;
     const double largest = static_cast<double>(std::max({medium.x, medium.y, medium.z}));
     if (!(largest > limit))

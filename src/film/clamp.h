@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What clamping took from passes; sums over pixels and the three channels.
+/// Light that clamping removed from passes: sums over pixels and the three channels.
 struct ClampTally {
   double removed = 0;       ///< radiance that was taken away
   double total = 0;         ///< radiance before clamping

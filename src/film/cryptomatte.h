@@ -16,11 +16,11 @@ float object_id(std::string_view name);
 
 /// Adds the layers CryptoObject00 to CryptoObject02, which hold the six objects that cover most of
 /// each pixel as pairs of id and coverage, in R and G, then in B and A, and the attributes that
-/// tell their names. `coverage(object, pixel)` lies in [0, 1].
+/// give their names. `coverage(object, pixel)` lies in [0, 1].
 template <class Coverage>
 void add_cryptomatte(const std::vector<std::string>& names, const Coverage& coverage, Image& image);
 
-/// What the template is made of: the layers' planes, and the attributes.
+/// The layers' planes and the attributes.
 class CryptomatteWriter {
 public:
   static constexpr int ranks = 6;

@@ -8,7 +8,7 @@
 
 namespace vdbeam {
 
-/// What a film holds for a deep picture: sums of light and opacity per piece of the layout, which
+/// Deep part of a film: sums of light and opacity per piece of the layout, which
 /// merge as exactly as those of the flat picture.
 class DeepFilm {
 public:
@@ -33,7 +33,7 @@ public:
   /// `volume` and its opacity.
   DeepImage develop(int passes, int width, int height) const;
 
-  /// What a pass and the film take for each piece.
+  /// Memory of a pass and the film per piece [bytes].
   static constexpr std::size_t bytes_per_piece() {
     return sizeof(float) +
            DeepLayout::values_per_piece * (sizeof(float) + CompensatedSums::bytes_per_value);

@@ -35,7 +35,7 @@ void merge_values(CompensatedSums& sums, const CompensatedSums& other, std::size
     sums.merge(i, other);
 }
 
-/// So many of `size` sums each. Copies of one would touch all of their memory.
+/// Makes `count` arrays of `size` sums each. Copies of one would touch all of their memory.
 std::vector<CompensatedSums> make_sums(std::size_t count, std::size_t size) {
   std::vector<CompensatedSums> sums;
   sums.reserve(count);

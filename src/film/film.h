@@ -53,7 +53,7 @@ public:
     return (glows_ ? 18 : 15) + 3 * groups_.size() + planes_.size() +
            (coverage_.empty() ? 0 : of_cryptomatte);
   }
-  /// What a film takes for each pixel, beside its history.
+  /// Memory of a film per pixel [bytes], without its history.
   static constexpr std::size_t bytes_per_pixel(bool glows = false) {
     return (glows ? 17 : 14) * CompensatedSums::bytes_per_value;
   }
@@ -103,8 +103,8 @@ public:
   double mrse_estimate() const;
   /// The same, corrected for the bias of weighting each pixel by its own noisy mean, with the bias
   /// that probes show (`unbiased`: there is none) and an interval that takes the noise shared by
-  /// pixels into account (docs/physics.md). The corrections change only when a batch of passes is
-  /// complete.
+  /// pixels into account (docs/theory/error-estimate.md). The corrections change only when a batch
+  /// of passes is complete.
   ErrorEstimate error_estimate(bool unbiased) const;
 
 private:

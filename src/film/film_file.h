@@ -12,7 +12,7 @@ namespace vdbeam {
 /// the last one.
 inline constexpr int most_passes = 1'000'000;
 
-/// What a film on disk belongs to.
+/// Identity of a film on disk.
 struct FilmFileInfo {
   Image header;           ///< windows and attributes of the picture, without channels
   std::string pass_hash;  ///< of the scene (vdbeam::pass_hash)
@@ -22,7 +22,7 @@ struct FilmFileInfo {
   std::uint64_t invalid_values = 0;
   double seconds = 0;               ///< spent on rendering them
   bool glows = false;               ///< the film holds emission
-  std::vector<std::string> groups;  ///< of lights that it tells apart
+  std::vector<std::string> groups;  ///< light groups with planes of their own
   std::vector<std::string> objects; ///< whose coverage it holds
   std::vector<std::string> planes;  ///< of layers that it holds
   /// Planes of edges and of pieces of a film that holds a deep picture; 0: it does not.

@@ -16,7 +16,7 @@ Vec3d flat_normal(const Mesh& mesh, std::size_t triangle) {
   return normalize(cross(Vec3d(mesh.positions[b]) - first, Vec3d(mesh.positions[c]) - first));
 }
 
-/// Of unit length, or zero where there is no direction.
+/// The normal at unit length, or zero if it has no direction.
 Vec3d unit_or_zero(const Vec3f& normal) {
   const Vec3d n(normal);
   const double size = length(n);
@@ -27,8 +27,8 @@ bool is_missing(const Vec3f& normal) {
   return normal == Vec3f();
 }
 
-/// All corners of all triangles have the triangle's own normal, within what four digits of a file
-/// tell. A sphere's differ by more unless it has some hundred million triangles.
+/// All corners of all triangles have the triangle's own normal, within four digits of a file.
+/// A sphere's normals differ by more unless it has some hundred million triangles.
 bool all_flat(const Mesh& mesh) {
   constexpr double farthest = 2e-4;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -64,13 +64,12 @@ void take_normals(const std::vector<Vec3f>& normals, const std::string& label, M
     }
   }
   if (missing > 0)
-    mesh.notes.push_back(fmt::format("{}: {} of {} corners of triangles have no normal, or one "
-                                     "that is not finite or has no length: they are shaded as if "
-                                     "the file had none there",
-                                     label, missing, 3 * mesh.triangles.size()));
+    mesh.notes.push_back(
+        fmt::format("{}: {} of {} triangle corners have no valid normal and are shaded without one",
+                    label, missing, 3 * mesh.triangles.size()));
   if (reversed > 0)
-    mesh.notes.push_back(fmt::format("{}: the normals of {} of {} triangles point to the back, as "
-                                     "the order of their vertices has it: they are turned round",
+    mesh.notes.push_back(fmt::format("{}: the normals of {} of {} triangles point to the back (by "
+                                     "the vertex order) and are reversed",
                                      label, reversed, mesh.triangles.size()));
 }
 

@@ -6,13 +6,13 @@
 
 namespace vdbeam {
 
-/// The file that is named by a path of which the end is a URI: this path where there is such a
-/// file, else that in which %20 and the like are decoded.
+/// The file named by a path that ends in a URI: this path if the file exists, else the path with
+/// %20 and the like decoded.
 std::string named_by_uri(const std::string& path);
 
 /// The files that a .gltf file names (`uri`: buffers with its numbers, pictures), as paths, in
-/// their order; not what it holds itself (`data:`). None of other files, and where it cannot be
-/// read, which reading the mesh or camera will complain about.
+/// their order; not what it holds itself (`data:`). Empty for other files and for unreadable ones,
+/// which reading the mesh or camera reports.
 std::vector<std::string> gltf_files(const std::string& path);
 
 /// The files that a file of meshes or cameras names: those of gltf_files, and the libraries of
@@ -23,8 +23,8 @@ std::vector<std::string> files_named_by_model(const std::string& path);
 /// is not a regular file or may not be read.
 std::uint64_t bytes_of_gltf_files(const std::string& path);
 
-/// Tells one state of a file of meshes or cameras from another as file_identity does; a .gltf file
-/// with those that it names.
+/// Identifies a state of a file of meshes or cameras as file_identity does; a .gltf file together
+/// with the files that it names.
 std::string model_identity(const std::string& path);
 
 } // namespace vdbeam

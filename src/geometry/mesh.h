@@ -34,14 +34,14 @@ struct Mesh {
 /// Triangles as a file has them: nothing in it is checked yet.
 struct RawMesh {
   std::vector<Vec3d> positions;
-  std::vector<Uv> uvs;        ///< as many, or none
-  std::vector<Vec3f> normals; ///< as many, of any length, zero where there is none; or none
+  std::vector<Uv> uvs;        ///< one per position, or none
+  std::vector<Vec3f> normals; ///< one per position, of any length, zero if missing; or none
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 /// Drops triangles that have an index beyond the vertices, a vertex that is not finite, or no area,
-/// and tells of them in the notes; recentres the rest. Normals that cannot be used are zero, and
-/// told of too. Throws FrameError where no triangle is left.
+/// and reports them in the notes; recentres the rest. Invalid normals become zero and are
+/// reported too. Throws FrameError where no triangle is left.
 Mesh repair_mesh(const RawMesh& raw, const std::string& label);
 
 } // namespace vdbeam

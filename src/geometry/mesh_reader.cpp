@@ -64,9 +64,9 @@ void check_gltf_normals(const std::string& path) {
     }
 }
 
-/// What sound files of this size can need at most. An OBJ file needs about two bytes per index, of
-/// which assimp makes vertices with all their attributes. On some damaged files assimp never ends,
-/// so the time for a small one is short.
+/// Limits that a sound file of this size cannot exceed. An OBJ file needs about two bytes per
+/// index, and assimp makes a vertex with all attributes of each. On some damaged files assimp never
+/// ends, so the time for a small one is short.
 GuardLimits guard_limits(std::uint64_t file_bytes, const MeshLimits& limits) {
   GuardLimits guard;
   guard.seconds = limits.seconds + time_for(file_bytes);

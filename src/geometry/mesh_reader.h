@@ -8,13 +8,13 @@
 
 namespace vdbeam {
 
-/// What reading a mesh file may take.
+/// Limits of reading a mesh file.
 struct MeshLimits {
   double seconds = 120; ///< of wall-clock time, beside what its size takes (time_for)
   std::uint64_t bytes = free_memory(); ///< of memory
 };
 
-/// What of a mesh file is wanted beyond its triangles.
+/// Data of a mesh file to read beside its triangles.
 struct MeshParts {
   bool uvs = false;     ///< the first texture coordinates, if all of its parts have them
   bool normals = false; ///< if some of its parts have them

@@ -17,7 +17,7 @@
 namespace vdbeam {
 namespace {
 
-/// Of a header or a quick look; more vertices or triangles than anyone has are no more believed.
+/// Limits of reading a header or scanning a file; counts above 2^36 are rejected.
 constexpr GuardLimits limits{.seconds = 20, .cpu_seconds = 20, .bytes = std::uint64_t(1) << 30};
 constexpr std::uint64_t most = std::uint64_t(1) << 36;
 
@@ -41,7 +41,7 @@ MeshSize foretell_ply(std::istream& file) {
   return size;
 }
 
-/// A face of n corners is n - 2 triangles. A vertex with several normals becomes as many.
+/// A face of n corners is n - 2 triangles. A vertex with k normals becomes k vertices.
 MeshSize foretell_obj(std::istream& file) {
   MeshSize size;
   std::uint64_t normals = 0;

@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// How much a mesh file holds, about, as its header or a quick look at its lines tells; 0 where
-/// they cannot be read, which reading the mesh will complain about.
+/// Approximate size of a mesh file, from its header or a scan of its lines; 0 if they cannot be
+/// read: reading the mesh reports that.
 struct MeshSize {
   std::uint64_t vertices = 0, triangles = 0;
   bool normals = false; ///< some of its parts have them

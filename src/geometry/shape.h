@@ -59,11 +59,12 @@ public:
   /// Where `sample` finds a point of a primitive.
   virtual AreaPlace place_of(std::size_t primitive, const Vec3d& point) const = 0;
   virtual bool has_uvs() const { return true; }
-  /// Of a point of a primitive.
+  /// Texture coordinates of a point of a primitive.
   virtual Uv uv(std::size_t primitive, const Vec3d& point) const = 0;
   /// It is shaded as the curved surface that its primitives stand for.
   virtual bool is_smooth() const { return false; }
-  /// Of that surface at a point of a primitive, of any length but 0, towards the front.
+  /// Normal of that curved surface at a point of a primitive, towards the front, of any length but
+  /// 0.
   virtual Vec3d shading_normal(std::size_t primitive, const Vec3d& point) const {
     static_cast<void>(primitive), static_cast<void>(point);
     return {};

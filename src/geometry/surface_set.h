@@ -90,7 +90,7 @@ public:
   double share_before(std::size_t surface, std::size_t primitive) const;
   /// A point of a primitive; the density is that of points drawn on the whole surface.
   SurfacePoint sample(std::size_t surface, std::size_t primitive, const AreaPlace& place) const;
-  /// Of a point of a surface, whether or not it shows a picture.
+  /// Texture coordinates of a point of a surface, with or without a texture.
   Uv uv(const SurfaceHit& hit) const;
   /// Where the latter `sample` finds a point.
   AreaPlace place_of(std::size_t surface, std::size_t primitive, const Vec3d& point) const;

@@ -26,8 +26,8 @@ public:
     time_ = motion.settings.time * meaning.factor;
   }
 
-  /// Points of the density's lattice that lie so many steps apart are about as close to each other
-  /// as those of the velocity's: a divisor of the bricks' width.
+  /// Steps of the density's lattice that make about one step of the velocity's: a divisor of the
+  /// bricks' width.
   int stride() const {
     double step = 0; // in the velocity's lattice
     for (int a = 0; a < 3; ++a) {

@@ -25,7 +25,7 @@ Rgb blackbody_emission(const EmissionSettings& settings, float value) {
 
 namespace {
 
-/// What a value of the grid that tells the colour gives.
+/// Colour of a value of the grid that determines it.
 class ColorLaw {
 public:
   explicit ColorLaw(const EmissionSettings& settings) : settings_(settings) {

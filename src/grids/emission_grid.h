@@ -20,7 +20,7 @@ struct EmissionGrid {
   bool empty() const { return !field || field->empty(); }
 };
 
-/// What a black body of a grid's value sends out, by the settings' law; 0 where the value is 0.
+/// Emission of a black body at a grid's value, by the settings' law; 0 where the value is 0.
 Rgb blackbody_emission(const EmissionSettings& settings, float value);
 
 /// Emission at the voxels of the intensity grid, or of the temperature grid where there is no

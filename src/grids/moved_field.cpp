@@ -151,7 +151,7 @@ private:
                           static_cast<int>(k - range_.lower.z))] = 0;
     }
   }
-  /// Cells were marked generously: most of the others are told apart before they are filled.
+  /// Cells were marked generously: most unneeded ones are dropped before they are filled.
   void drop_targets_of_nothing() {
     constexpr double far = 1e15, slack = 2 * Displacement::near_enough;
     const Boxd anywhere = motion_.bounds({Vec3d(-far), Vec3d(far)});

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What moves a grid: velocities, the time that they act for [seconds], and their settings.
+/// Motion of a grid: velocities, the time that they act for [seconds], and their settings.
 struct Motion {
   const VectorField& velocity;
   const VelocitySettings& settings;

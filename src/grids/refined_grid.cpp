@@ -15,8 +15,8 @@ namespace {
 constexpr int cell_width = DensityField::cell_width;
 constexpr int brick_width = DensityField::brick_width;
 
-/// Old lattice points that a new brick needs along an axis: half as many as it has, and what the
-/// spline reaches beyond.
+/// Old lattice points that a new brick needs along an axis: half of its own number, plus the
+/// support of the spline.
 constexpr int block_width = brick_width / 2 + 4;
 
 /// The spline at a lattice point, and halfway to the next.

@@ -49,7 +49,7 @@ std::optional<ColorSpace> known_space(const std::string& name) {
   return std::nullopt;
 }
 
-/// What may have been meant by a name that there is not: one of ours or of a configuration, if any.
+/// Suggestion for an unknown colour space: one of ours or of a configuration, if any.
 std::string suggestion(const std::string& name, const ocio::ConstConfigRcPtr& config) {
   std::vector<std::string> names;
   for (const auto& [known, space] : known_spaces)

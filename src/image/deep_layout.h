@@ -6,9 +6,9 @@
 
 namespace vdbeam {
 
-/// Where the camera rays of each pixel are cut in pieces, so that light and opacity can be told
-/// apart by depth. Every pixel that is wanted has at least one piece; the first takes what lies
-/// before it too, and the last what lies behind it.
+/// Where the camera rays of each pixel are cut into pieces, so that light and opacity are
+/// accumulated by depth. Every pixel that is wanted has at least one piece; the first takes what
+/// lies before it too, and the last what lies behind it.
 struct DeepLayout {
   std::vector<std::uint32_t> first; ///< per pixel, its first piece; and the number of all pieces
   /// Distances from the camera [world] that bound the pieces: n + 1 for a pixel with n pieces, none

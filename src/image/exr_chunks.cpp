@@ -42,7 +42,7 @@ std::int64_t bytes_per_pixel(const Imf::Header& header) {
   return bytes;
 }
 
-/// What the chunk inflates to, counted up to one byte more than `most`.
+/// Size that the chunk inflates to, counted up to one byte more than `most`.
 std::int64_t inflated_size(const char* chunk, int size, std::int64_t most) {
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK)
@@ -60,8 +60,8 @@ std::int64_t inflated_size(const char* chunk, int size, std::int64_t most) {
   return static_cast<std::int64_t>(stream.total_out);
 }
 
-/// What a chunk of OpenEXR's run-length code unpacks to: a negative count n is followed by -n bytes
-/// as they are, another by one byte that stands for n + 1.
+/// Unpacked size of a chunk of OpenEXR's run-length code: a negative count n is followed by -n
+/// bytes as they are, another by one byte that stands for n + 1.
 std::int64_t unrolled_size(const char* chunk, int size) {
   std::int64_t bytes = 0;
   for (int i = 0; i < size;) {

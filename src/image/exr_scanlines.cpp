@@ -108,7 +108,7 @@ void write_scanlines(const Imf::Header& header, const BandPixels& pixels, Atomic
   file.write(head.data(), head.size());
   std::vector<std::uint64_t> places;
   const std::vector<Imath::Box2i> bands = bands_of(header);
-  // So many bands are in memory at a time.
+  // The number of bands that are in memory at a time.
   const std::size_t at_once =
       2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   std::vector<std::vector<char>> packed(std::min(at_once, bands.size()));
@@ -120,7 +120,7 @@ void write_scanlines(const Imf::Header& header, const BandPixels& pixels, Atomic
       append(packed[i], places, file);
   }
   if (places.size() != chunks)
-    throw std::runtime_error("its blocks of rows are not as many as expected");
+    throw std::runtime_error("it has another number of blocks of rows than expected");
   const std::uint64_t end = file.position();
   const std::size_t table = chunks * sizeof(std::uint64_t);
   file.seek(head.size() - table);

@@ -51,8 +51,8 @@ auto with_exr(const std::string& path, const char* problem, const Body& body) {
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw FrameError(path + ": there is not enough memory for its pixels; free some, or use a "
-                            "smaller picture");
+    throw FrameError(
+        path + ": there is not enough memory for its pixels; free some, or use a smaller image");
   } catch (const std::exception& error) {
     throw Failure(fmt::format("{}: {}: {}", path, problem, one_line(error.what())));
   }

@@ -44,7 +44,7 @@ void check_image(const Image& image, const std::string& path) {
                                    channel.name, channel.data.size(), pixels));
 }
 
-/// Whether halves tell the values as they are: over their range values would become infinite, and a
+/// Whether halves represent the values: over their range values would become infinite, and a
 /// channel that is dark everywhere would lose its digits, at last all of them. Under the least
 /// normal half digits get fewer; 16 times it leaves the brightest values all of theirs and values a
 /// thousand times darker some.
@@ -154,7 +154,7 @@ Imf::Compression compression_named(const std::string& asked) {
   return Imf::ZIP_COMPRESSION;
 }
 
-/// What the scene asks for, kept as an attribute; empty where it does not.
+/// A setting of the scene that is stored as an attribute; empty if absent.
 std::string wish(const Image& image, const char* attribute) {
   const auto found = image.metadata.find(attribute);
   return found == image.metadata.end() ? std::string() : found->second;

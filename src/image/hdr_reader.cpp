@@ -27,7 +27,7 @@ struct HdrHeader {
 [[noreturn]] void damaged(const std::string& path, std::string reason) {
   for (char& c : reason)
     c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-  throw InputError(fmt::format("{}: not a readable Radiance picture: {}", path, reason));
+  throw InputError(fmt::format("{}: not a readable Radiance image: {}", path, reason));
 }
 
 std::string header_line(std::istream& file, const std::string& path) {

@@ -12,8 +12,8 @@ inline constexpr std::int64_t max_image_side = std::int64_t{1} << 20;
 inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 28;
 inline constexpr std::int64_t max_image_values = std::int64_t{1} << 30;
 
-/// Refuses a picture of `bytes` bytes of pixels where its file, of which a byte stands for at most
-/// `most_per_byte` of them, cannot hold that much. Throws InputError.
+/// Refuses an image of `bytes` bytes of pixels if its file cannot hold them, a byte of the file
+/// standing for at most `most_per_byte` of them. Throws InputError.
 void check_size_fits_file(const std::string& path, double bytes, double most_per_byte);
 
 /// A flat EXR of any pixel types, its data window placed in its display window (0 outside); the

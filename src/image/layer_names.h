@@ -6,8 +6,8 @@
 
 namespace vdbeam {
 
-/// Names the image's layers as another renderer does: "arnold" or "cycles" (docs/output.md); layers
-/// that it does not have keep their names.
+/// Names the image's layers as another renderer does: "arnold" or "cycles"
+/// (docs/reference/output.md); layers that it does not have keep their names.
 void rename_layers(Image& image, const std::string& renderer);
 
 /// The other way, for the colours and alpha of a file of Cycles, unless the image has its own.

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What a writer may use besides the image.
+/// Options of a writer.
 struct WriteOptions {
   double exposure = 0;         ///< stops, for 8-bit formats
   std::string view = "filmic"; ///< view transform of 8-bit formats
@@ -20,8 +20,8 @@ struct WriteOptions {
 struct OutputFormat {
   std::string_view extension;   ///< lower case, with its dot
   std::string_view description; ///< for --help
-  /// Every channel and attribute in full: such a file can hold a partial image, and tells what it
-  /// shows.
+  /// Every channel and attribute in full: such a file can hold a partial image, and
+  /// records scene and frame.
   bool complete = false;
   void (*write)(const Image& image, const std::string& path, const WriteOptions& options);
 };

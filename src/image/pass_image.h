@@ -17,7 +17,7 @@ struct PixelValue {
   Rgb radiance;
 };
 
-/// What one pass of an estimator gives: one value per pixel and output, row-major from the top
+/// Result of one pass of an estimator: one value per pixel and output, row-major from the top
 /// left.
 struct PassImage {
   int width = 0, height = 0;
@@ -25,7 +25,7 @@ struct PassImage {
   std::vector<Rgb> indirect;   ///< light that was scattered more often
   std::vector<Rgb> background; ///< lights seen through the volume: Tr * escaped radiance
   std::vector<Rgb> emission;   ///< the medium's own light, Tr * j; empty where nothing glows
-  /// All light of each group of lights (docs/scene.md); empty without groups.
+  /// All light of each group of lights (docs/reference/scene.md); empty without groups.
   std::vector<std::vector<Rgb>> groups;
   std::vector<float> opacity; ///< 1 - Tr of the whole ray (mean over channels)
   /// Opacity times the mean distance [world] at which light is extinguished: the integral of
@@ -35,7 +35,7 @@ struct PassImage {
   /// Per object of the scene, how much of each pixel it covers: what it adds to the opacity of the
   /// ray. Empty where nobody asks for it.
   std::vector<std::vector<float>> coverage;
-  /// What layers ask for beyond that, a plane each (layers/ray_layers.h).
+  /// Additional planes that layers need (layers/ray_layers.h).
   std::vector<std::vector<float>> planes;
   /// Where rays are cut for a deep picture; null where nobody asks for one.
   const DeepLayout* deep_layout = nullptr;
@@ -89,8 +89,8 @@ struct PassImage {
     for (std::size_t g = 0; g < std::min(groups.size(), light.parts().size()); ++g)
       groups[g][pixel] += light.parts()[g];
   }
-  /// Of the pixel's indirect light, `light` was scattered once only: no more than there is but for
-  /// rounding.
+  /// Moves `light`, which was scattered once only, from the pixel's indirect light to its direct
+  /// light; it exceeds the indirect light by rounding at most.
   void move_to_direct(std::size_t pixel, const Rgb& light) {
     direct[pixel] += light;
     for (int c = 0; c < 3; ++c) {
@@ -118,11 +118,11 @@ struct PassImage {
                      [&](float value) { return value * factor; });
     }
   }
-  /// What a pass takes.
+  /// Memory of a pass [bytes].
   static constexpr std::size_t bytes_per_pixel(bool glows) {
     return (glows ? 4 : 3) * sizeof(Rgb) + 2 * sizeof(float);
   }
-  /// What the pixel shows in all.
+  /// Total radiance of the pixel.
   Rgb total(std::size_t pixel) const {
     const Rgb sum = direct[pixel] + indirect[pixel] + background[pixel];
     return emission.empty() ? sum : sum + emission[pixel];

@@ -117,7 +117,7 @@ Image read_guarded_picture(const std::string& path, Image (*read)(const std::str
   } catch (const Error&) {
     throw;
   } catch (const std::exception&) {
-    throw InputError(path + ": the picture is damaged; copy or write it again");
+    throw InputError(path + ": the image is damaged; copy or write it again");
   }
 }
 

@@ -22,7 +22,7 @@ using PngPtr = std::unique_ptr<png_image, FreePng>;
   throw InputError(fmt::format("{}: not a readable PNG: {}", path, reason));
 }
 
-/// What an sRGB value of 8 bits stands for (IEC 61966-2-1).
+/// Linear value of an 8-bit sRGB value (IEC 61966-2-1).
 float decode_srgb(unsigned value) {
   const double x = value / 255.0;
   return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));

@@ -11,7 +11,7 @@
 namespace vdbeam {
 namespace {
 
-/// One line per format that can be read; files are told apart by how they begin.
+/// One line per format that can be read; files are recognised by their first bytes.
 struct InputFormat {
   std::string_view magic;
   Image (*read)(const std::string& path);
@@ -41,7 +41,7 @@ Image read_image(const std::string& path) {
   for (const InputFormat& format : input_formats)
     if (start.starts_with(format.magic))
       return read_guarded_picture(path, format.read);
-  throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr picture, nor a PNG");
+  throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr image, nor a PNG");
 }
 
 } // namespace vdbeam

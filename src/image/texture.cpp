@@ -29,8 +29,8 @@ std::size_t make_finite(Image& image) {
   return count;
 }
 
-void tell(std::vector<std::string>& notes, const std::string& name, std::size_t count,
-          const std::string& what) {
+void add_note(std::vector<std::string>& notes, const std::string& name, std::size_t count,
+              const std::string& what) {
   if (count > 0)
     notes.push_back(
         fmt::format("texture {}: {} {} {}", name, count, count == 1 ? "value" : "values", what));
@@ -57,8 +57,8 @@ Texture::Texture(const Image& image, TextureWrap wrap, float largest, const std:
       large += value > largest;
       texels_[i][c] = value > 0 ? std::min(value, largest) : 0;
     }
-  tell(notes, name, negative, "below 0, taken for 0");
-  tell(notes, name, large, fmt::format("above {:.6g}, taken for that", largest));
+  add_note(notes, name, negative, "below 0, taken for 0");
+  add_note(notes, name, large, fmt::format("above {:.6g}, taken for that", largest));
 }
 
 int Texture::wrapped(int i, int size) const {
@@ -95,8 +95,8 @@ Texture read_texture(const MaterialSettings& material, bool shines,
                      std::vector<std::string>& notes) {
   Image image = read_image(material.texture);
   StopReading::check();
-  tell(notes, material.texture, make_finite(image),
-       "that are infinite, taken for 65504, or no numbers, taken for 0");
+  add_note(notes, material.texture, make_finite(image),
+           "that are infinite, taken for 65504, or no numbers, taken for 0");
   convert_colors(image, chromaticities_of(material.color_space));
   StopReading::check();
   return {image, material.texture_wrap, shines ? largest_radiance : 1, material.texture, notes};

@@ -12,8 +12,9 @@ namespace vdbeam {
 /// A picture on a surface, bilinear between the centres of its texels.
 class Texture {
 public:
-  /// `largest`: what is brighter counts as that. What had to be changed in the picture's values is
-  /// told in the notes, under `name`. Throws InputError for a picture without R, G and B.
+  /// `largest`: what is brighter counts as that. Corrections of the
+  /// values are reported in the notes, under `name`. Throws InputError for a picture without R, G
+  /// and B.
   Texture(const Image& image, TextureWrap wrap, float largest, const std::string& name,
           std::vector<std::string>& notes);
 

@@ -11,7 +11,7 @@ namespace vdbeam {
 namespace {
 
 /// A straight line up to `start`, then a hyperbola that nears 1 and begins with the line's slope;
-/// it tells five stops above white apart.
+/// it still separates five stops above white.
 double roll_off(double x) {
   constexpr double start = 0.35;
   if (x <= start)

@@ -37,6 +37,8 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.layers[index];
   else if constexpr (std::is_same_v<S, NoiseSettings>)
     return scene.volumes[index].noise;
+  else if constexpr (std::is_same_v<S, FogSettings>)
+    return scene.volumes[index].fog;
   else if constexpr (std::is_same_v<S, DensityRemap>)
     return scene.volumes[index].remap;
   else

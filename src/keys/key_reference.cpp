@@ -7,7 +7,7 @@
 namespace vdbeam {
 namespace {
 
-/// What values a key takes: its choices or its kind, range and unit.
+/// Values that a key takes: its choices, or its kind and range.
 std::string values_text(const SceneKey& key, const char* quote) {
   if (key.kind == KeyKind::choice) {
     std::string text;
@@ -44,7 +44,7 @@ std::string choices_text(const SceneKey& key) {
   return text;
 }
 
-constexpr const char* advanced_title = "Advanced keys, whose defaults suit nearly all scenes";
+constexpr const char* advanced_title = "Advanced keys; the defaults suit nearly all scenes";
 
 std::vector<const SceneKey*> keys_of(SceneSection section, bool advanced) {
   std::vector<const SceneKey*> keys;

@@ -12,8 +12,10 @@ namespace {
 using S = SceneSection;
 
 constexpr std::string_view strength =
-    "colour and strength of a light are one key: irradiance of a distant light, intensity of a "
-    "point or spot light, radiance of an environment or sky, e.g. irradiance = [5, 4, 3]";
+    "colour and strength of a light are one key: irradiance of a distant light, intensity or power "
+    "of a point or spot light, radiance of an environment or sky, e.g. irradiance = [5, 4, 3]; "
+    "kelvin "
+    "and exposure multiply it";
 constexpr std::string_view strength_keys = "irradiance intensity radiance";
 constexpr std::string_view aim =
     "direction = [x, y, z] is the way that a distant or spot light travels";
@@ -24,25 +26,33 @@ constexpr std::string_view solid = "solids come from files (.obj, .ply, .gltf, .
 constexpr std::array synonyms{
     KeySynonym{S::light, "color", strength_keys, strength},
     KeySynonym{S::light, "colour", strength_keys, strength},
-    KeySynonym{S::light, "kelvin", strength_keys, strength},
-    KeySynonym{S::light, "temperature", strength_keys, strength},
-    KeySynonym{S::light, "exposure", strength_keys, strength},
+    KeySynonym{S::light, "temperature", "kelvin", ""},
+    KeySynonym{S::light, "color_temperature", "kelvin", ""},
+    KeySynonym{S::light, "stops", "exposure", ""},
+    KeySynonym{S::light, "watts", "power", ""},
+    KeySynonym{S::light, "ies_file", "ies", ""},
+    KeySynonym{S::light, "profile", "ies", ""},
+    KeySynonym{S::light, "photometry", "ies", ""},
+    KeySynonym{S::light, "turbidity", "aerosol", ""},
+    KeySynonym{S::light, "haze", "aerosol", ""},
+    KeySynonym{S::light, "gobo", "image", ""},
+    KeySynonym{S::light, "penumbra", "cone_falloff", ""},
+    KeySynonym{S::light, "softness", "cone_falloff", ""},
     KeySynonym{S::light, "strength", strength_keys, strength},
-    KeySynonym{S::light, "power", strength_keys, strength},
     KeySynonym{S::light, "energy", strength_keys, strength},
     KeySynonym{S::light, "multiplier", strength_keys, strength},
     KeySynonym{S::light, "brightness", strength_keys, strength},
     KeySynonym{S::light, "elevation", "direction", aim},
     KeySynonym{S::light, "azimuth", "direction", aim},
     KeySynonym{S::light, "rotate", "direction rotation",
-               "direction = [x, y, z] is the way that a distant or spot light travels; rotation "
-               "turns an environment"},
+               "direction = [x, y, z] is the direction in which a distant or spot light travels; "
+               "rotation turns an environment"},
     KeySynonym{S::light, "target", "direction", aim},
     KeySynonym{S::light, "angle", "angular_radius cone_angle", ""},
     KeySynonym{S::light, "size", "angular_radius", ""},
     KeySynonym{S::light, "radius", "angular_radius", area_light},
     KeySynonym{S::light, "translate", "position", ""},
-    KeySynonym{S::light, "file", "image", ""},
+    KeySynonym{S::light, "file", "image ies", ""},
     KeySynonym{S::light, "texture", "image", ""},
     KeySynonym{S::light, "map", "image", ""},
 
@@ -111,6 +121,8 @@ constexpr std::array synonyms{
     KeySynonym{S::volume, "density_multiplier", "extinction", ""},
     KeySynonym{S::volume, "grid", "density", ""},
     KeySynonym{S::volume, "path", "file", ""},
+    KeySynonym{S::volume, "type", "shape", ""},
+    KeySynonym{S::volume, "falloff", "scale_height", ""},
     KeySynonym{S::volume, "filename", "file", ""},
     KeySynonym{S::volume, "position", "translate", ""},
     KeySynonym{S::volume, "location", "translate", ""},
@@ -136,7 +148,9 @@ constexpr std::array synonyms{
     KeySynonym{S::material, "colour", "albedo", ""},
     KeySynonym{S::material, "base_color", "albedo", ""},
     KeySynonym{S::material, "emission", "radiance", ""},
-    KeySynonym{S::material, "intensity", "radiance", ""},
+    KeySynonym{S::material, "intensity", "radiance power", ""},
+    KeySynonym{S::material, "temperature", "kelvin", ""},
+    KeySynonym{S::material, "image", "texture", ""},
     KeySynonym{S::material, "index", "ior", ""},
 
     KeySynonym{S::layer, "type", "name", ""},
@@ -144,7 +158,10 @@ constexpr std::array synonyms{
 };
 
 constexpr std::array values{
-    ValueSynonym{S::light, "type", "sun", "distant", ""},
+    ValueSynonym{S::light, "type", "physical_sky", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "nishita", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "hosek_wilkie", "atmosphere", ""},
+    ValueSynonym{S::light, "type", "sun_sky", "atmosphere", ""},
     ValueSynonym{S::light, "type", "directional", "distant", ""},
     ValueSynonym{S::light, "type", "infinite", "distant", ""},
     ValueSynonym{S::light, "type", "dome", "environment", ""},
@@ -157,6 +174,10 @@ constexpr std::array values{
     ValueSynonym{S::light, "type", "disk", "", area_light},
     ValueSynonym{S::light, "type", "sphere", "", area_light},
     ValueSynonym{S::light, "type", "mesh", "", area_light},
+    ValueSynonym{S::volume, "shape", "ball", "sphere", ""},
+    ValueSynonym{S::volume, "shape", "cube", "box", ""},
+    ValueSynonym{S::volume, "shape", "homogeneous", "box", ""},
+    ValueSynonym{S::volume, "shape", "exponential", "height", ""},
     ValueSynonym{S::phase, "type", "hg", "henyey_greenstein", ""},
     ValueSynonym{S::phase, "type", "double_hg", "two_lobe", ""},
     ValueSynonym{S::emission, "law", "blackbody", "planck", ""},

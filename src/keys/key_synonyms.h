@@ -8,18 +8,18 @@
 
 namespace vdbeam {
 
-/// What other programs, or people, call a key or a value of a scene file.
+/// Names of a key or a value in other programs.
 struct KeySynonym {
   SceneSection section;
   std::string_view word; ///< in small letters
-  /// What it is here: keys of the same table ("g"), or with their table ("render.passes"),
+  /// Its equivalent here: keys of the same table ("g"), or with their table ("render.passes"),
   /// separated by spaces. A test checks that they exist.
   std::string_view keys;
   /// The remedy in words; empty: "did you mean" and the keys.
   std::string_view remedy;
 };
 
-/// What other programs call a value of a key.
+/// Names of a key's value in other programs.
 struct ValueSynonym {
   SceneSection section;
   std::string_view key, word;

@@ -106,6 +106,14 @@ struct EnumNames<SurfaceShape> {
        {SurfaceShape::disk, "disk"}}};
 };
 template <>
+struct EnumNames<VolumeShape> {
+  static constexpr std::array<std::pair<VolumeShape, std::string_view>, 4> table{
+      {{VolumeShape::file, "file"},
+       {VolumeShape::box, "box"},
+       {VolumeShape::sphere, "sphere"},
+       {VolumeShape::height, "height"}}};
+};
+template <>
 struct EnumNames<ImageParts> {
   static constexpr std::array<std::pair<ImageParts, std::string_view>, 2> table{
       {{ImageParts::one, "one"}, {ImageParts::layers, "layers"}}};

@@ -115,5 +115,6 @@ private:
 
 void add_image_keys(KeyTable& table);
 void add_camera_keys(KeyTable& table);
+void add_light_keys(KeyTable& table);
 
 } // namespace vdbeam

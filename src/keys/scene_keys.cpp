@@ -216,6 +216,17 @@ std::string key_path(const SceneKey& key, std::size_t index) {
   }
 }
 
+const SceneKey* type_key(SceneSection section) {
+  return find_key(section, section == SceneSection::volume ? "shape" : "type");
+}
+
+bool takes_key(const Scene& scene, std::size_t index, const SceneKey& key) {
+  if (key.types.empty())
+    return true;
+  const auto type = std::get<std::string>(type_key(key.section)->get(scene, index));
+  return std::find(key.types.begin(), key.types.end(), type) != key.types.end();
+}
+
 std::size_t section_count(const Scene& scene, SceneSection section) {
   if (section == SceneSection::volume || section == SceneSection::phase ||
       section == SceneSection::emission)

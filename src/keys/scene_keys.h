@@ -25,7 +25,7 @@ enum class SceneSection {
   render
 };
 
-/// What a key's value is in the file.
+/// Type of a key's value in the file.
 enum class KeyKind {
   boolean,
   integer,
@@ -39,8 +39,8 @@ enum class KeyKind {
   matrix
 };
 
-/// What a key of the kind `file` names.
-enum class InputKind { none, volume, picture, mesh, camera };
+/// Kind of file that a key of the kind `file` names.
+enum class InputKind { none, volume, picture, mesh, camera, profile };
 
 /// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a
 /// boolean), a number, a text or choice, or a list of numbers.
@@ -61,7 +61,7 @@ struct NumberRange {
 };
 
 /// One key of a scene file. This table drives reading, validation, suggestions, help, the scene's
-/// hash, the report's settings and the reference in docs/scene.md.
+/// hash, the report's settings and the reference in docs/reference/scene.md.
 struct SceneKey {
   SceneSection section;
   std::string name;
@@ -117,10 +117,15 @@ std::vector<std::string> key_names(SceneSection section);
 std::string section_name(SceneSection section);
 /// The path of one key in a scene, e.g. "volume.0.phase.g".
 std::string key_path(const SceneKey& key, std::size_t index);
+/// The key that says what a table of the section is, and so which other keys it takes: `type`, of
+/// volumes `shape`; null where there is none.
+const SceneKey* type_key(SceneSection section);
+/// Whether the section's table of this index, as it is, takes the key.
+bool takes_key(const Scene& scene, std::size_t index, const SceneKey& key);
 /// How many times the section is there in a scene.
 std::size_t section_count(const Scene& scene, SceneSection section);
 
-/// The reference table of a section, as in docs/scene.md (Markdown).
+/// The reference table of a section, as in docs/reference/scene.md (Markdown).
 std::string key_table_markdown(SceneSection section);
 /// The same for a terminal, in lines of at most `width` columns.
 std::string key_table_text(SceneSection section, std::size_t width);

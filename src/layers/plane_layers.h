@@ -9,8 +9,9 @@
 
 namespace vdbeam {
 
-/// A layer that passes hold planes for only where a [[layer]] asks for it (docs/output.md). Each of
-/// its planes is named as the channel that the film makes of it, "position.X".
+/// A layer that passes hold planes for only where a [[layer]] asks for it
+/// (docs/reference/output.md). Each of its planes is named as the channel that the film makes of
+/// it, "position.X".
 struct PlaneLayer {
   std::string_view name, channels;
   bool of_opacity = false; ///< a mean of what makes the pixel opaque, weighted by that opacity
@@ -21,7 +22,7 @@ struct PlaneLayer {
 /// The layer of a plane; that of a volume has the name "volume_".
 const PlaneLayer& plane_layer_of(std::string_view channel);
 
-/// Names of the layers that this file tells of, but those of volumes.
+/// Names of the layers of this file except those of volumes.
 std::vector<std::string> plane_layer_names();
 /// The layers of the volumes of a scene, one for each name that they have.
 std::vector<std::string> volume_layer_names(const Scene& scene);

@@ -13,7 +13,7 @@ namespace {
 /// hundredth do not count.
 constexpr float near_share = 0.01f, far_share = 0.99f;
 
-/// What a piece of the ray between two knots adds to its opacity.
+/// Opacity that a piece of the ray between two knots adds.
 struct Piece {
   float t = 0;              ///< where it does so, on average
   float total = 0;          ///< of all volumes

@@ -24,13 +24,13 @@ public:
   /// Light adds up over groups of lights; all else is the same for each of them.
   bool is_light(std::size_t plane) const;
 
-  /// What a ray's medium leaves of what lies behind it.
+  /// The medium along a ray, as seen by the camera.
   struct Seen {
     float left;   ///< what the medium lets through of the light behind
     float shadow; ///< of the surface at the ray's end, that of a shadow catcher
     float depth;  ///< what the ray adds to PassImage::depth
   };
-  /// What the ray sees, but for the light of volumes.
+  /// Radiance of the ray without the light of volumes.
   void record(const World& world, const CameraRay& camera, const DepthProfile& profile,
               const Seen& seen, std::size_t pixel, PassImage& image) const;
 

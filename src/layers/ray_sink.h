@@ -12,7 +12,7 @@ namespace vdbeam {
 struct RaySink {
   RaySink() = default;
   RaySink(const DeepRay& deep_ray, const VolumeLights& lights) : deep(deep_ray), volumes(lights) {}
-  /// Of a camera ray of `pixel`. `layers`: that are asked for; null: none.
+  /// Takes the light of a camera ray of `pixel`. `layers`: the layers to fill; null: none.
   RaySink(const World& world, const CameraRay& camera, const RayLayers* layers, std::size_t pixel,
           PassImage& image)
       : deep(world, camera, pixel, image), volumes(layers, pixel, image) {}

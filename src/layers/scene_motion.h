@@ -18,13 +18,13 @@ public:
   /// Pixels to the right, and up.
   using Pixels = std::array<double, 2>;
 
-  /// Of a scene and what it is a frame later (Scene::next).
+  /// Motion from a scene to the same scene a frame later (Scene::next).
   SceneMotion(const Scene& scene, const Velocities& velocities);
   /// Where volumes were moved already, for a moment of the shutter's time.
   void set_moment(const Scene& moment);
 
-  /// Of what is at a point in the world, as part of a volume or mesh of the scene; 0 for what the
-  /// camera does not see before itself, now or later.
+  /// Motion in pixels of a point of a volume or mesh of the scene; 0 for points that are not in
+  /// front of the camera, now or later.
   Pixels of_volume(std::size_t volume, const Vec3d& point) const;
   Pixels of_mesh(std::size_t mesh, const Vec3d& point) const;
 

@@ -3,8 +3,9 @@
 namespace vdbeam {
 
 AimedLight::AimedLight(std::vector<Aim> aims) : aims_(std::move(aims)) {
-  // By which lights share the photons: what goes to the medium, and about what the surfaces around
-  // it send there. What shines on a wide ground would leave no photons for a lamp.
+  // Lights share the photons by what they send to the medium, and by a part of what they send to
+  // the surfaces around it. Shares by all of their flux would leave a lamp over a wide ground
+  // without photons.
   constexpr float sent_on = 0.1f;
   power_ = light().power();
   if (aims_.size() > 1)

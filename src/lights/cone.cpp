@@ -22,7 +22,7 @@ Segment part_within(const Cone& cone, const Vec3d& tip, const Segment& segment) 
                c = height * height - cosine * cosine * dot(from_tip, from_tip),
                root = std::sqrt(std::max(0.0, b * b - a * c));
   const auto begin = static_cast<double>(segment.t_begin), end = static_cast<double>(segment.t_end);
-  // Of q / a and c / q neither loses its digits.
+  // Neither q / a nor c / q loses its digits.
   const double q = -(b + std::copysign(root, b));
   std::array<double, 4> cuts{begin, end, a != 0 ? q / a : begin, q != 0 ? c / q : begin};
   for (double& cut : cuts)

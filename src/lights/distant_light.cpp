@@ -1,4 +1,5 @@
 #include "lights/cone.h"
+#include "lights/disc_light.h"
 #include "lights/entry_sampler.h"
 #include "lights/light_table.h"
 #include "lights/silhouette_mask.h"
@@ -41,12 +42,14 @@ private:
   SilhouetteMask mask_;
 };
 
-/// The sun as a disc of constant radiance L: a plane that faces it receives E = pi L sin^2(radius).
+/// The sun as a disc of radiance L: a plane that faces it receives E = pi L sin^2(radius). Towards
+/// its limb it may be darker.
 class DiscLight final : public Light {
 public:
-  DiscLight(const Vec3d& direction, const Rgb& irradiance, double radius_degrees,
+  DiscLight(const Vec3d& direction, const Rgb& irradiance, double radius_degrees, const Rgb& limb,
             const OccupiedRegion& region)
-      : axis_(direction), towards_(-axis_), cone_{direction, one_minus_cos_degrees(radius_degrees)},
+      : axis_(direction), towards_(-axis_),
+        limb_(limb), cone_{direction, one_minus_cos_degrees(radius_degrees)},
         mask_(axis_, static_cast<float>(spread()), masked() ? region : OccupiedRegion{}),
         boxes_(region.boxes), irradiance_(irradiance) {
     const double solid_angle = cone_.solid_angle();
@@ -59,11 +62,14 @@ public:
   }
 
   IncidentSample sample_incident(const Vec3f&, float u, float v) const override {
-    return {Vec3f(-cone_.sample(u, v)), infinity, total_, pdf_};
+    const Vec3d direction = cone_.sample(u, v);
+    return {Vec3f(-direction), infinity, darkened(total_, direction), pdf_};
   }
   float incident_pdf(const Vec3f&, const Vec3f& wi) const override { return shows(wi) ? pdf_ : 0; }
   LightHit emitted_radiance(const Segment& segment) const override {
-    return {segment.t_end == infinity && shows(segment.ray.direction) ? radiance_ : Rgb()};
+    const Vec3f& direction = segment.ray.direction;
+    return {segment.t_end == infinity && shows(direction) ? darkened(radiance_, -Vec3d(direction))
+                                                          : Rgb()};
   }
   EmittedPhoton emit(double place, Rng& rng) const override {
     return masked() ? emit_through_mask(place, rng) : emit_to_boxes(place, rng);
@@ -85,6 +91,18 @@ private:
     const Vec3d chord = Vec3d(direction) + cone_.axis;
     return dot(chord, chord) <= 2 * cone_.one_minus_cos;
   }
+  /// The light that travels along `direction`; `even` is its mean over the disc.
+  Rgb darkened(const Rgb& even, const Vec3d& direction) const {
+    if (limb_ == Rgb(0))
+      return even;
+    const Vec3d chord = direction - cone_.axis;
+    const double x = dot(chord, chord) / 2, edge = cone_.one_minus_cos; // 1 - cos
+    const double cosine = std::sqrt(std::max(0.0, 1 - x * (2 - x) / (edge * (2 - edge))));
+    Rgb result = even;
+    for (int c = 0; c < 3; ++c) // over the disc cos^n has the mean 2 / (n + 2)
+      result[c] *= (limb_[c] + 2) / 2 * std::pow(static_cast<float>(cosine), limb_[c]);
+    return result;
+  }
   EmittedPhoton emit_through_mask(double place, Rng& rng) const {
     if (mask_.area() <= 0)
       return {{{}, axis_}, {}};
@@ -95,7 +113,7 @@ private:
     const Vec3f direction(cone_.sample(u_direction, v_direction));
     const float cosine = dot(direction, axis_); // the mask's plane is seen at this angle
     return {{start.position + direction * (start.depth / cosine), direction},
-            total_ * (mask_.area() * cosine)};
+            darkened(total_, Vec3d(direction)) * (mask_.area() * cosine)};
   }
   EmittedPhoton emit_to_boxes(double place, Rng& rng) const {
     const float u = rng.uniform(), v = rng.uniform();
@@ -103,10 +121,11 @@ private:
     const Vec3f direction(cone_.sample(u_direction, v_direction));
     const EntrySampler::Entry entry =
         boxes_.sample_line(direction, static_cast<float>(place), u, v);
-    return {{entry.point, direction}, total_ * entry.weight};
+    return {{entry.point, direction}, darkened(total_, Vec3d(direction)) * entry.weight};
   }
 
   Vec3f axis_, towards_;
+  Rgb limb_;
   Cone cone_; ///< of the directions of travel
   SilhouetteMask mask_;
   EntrySampler boxes_;
@@ -123,16 +142,22 @@ std::unique_ptr<Light> make_distant_light(const LightSettings& settings,
     return std::make_unique<ParallelLight>(direction, settings.irradiance, context.region);
   // Narrower discs than this have no width in single precision; a hemisphere is the widest.
   const double radius = std::clamp(settings.angular_radius, 1e-5, 90.0);
-  return std::make_unique<DiscLight>(direction, settings.irradiance, radius, context.region);
+  return make_disc_light(direction, settings.irradiance, radius, Rgb(0), context.region);
 }
 
 constexpr std::string_view distant_keys[] = {"direction", "irradiance", "angular_radius"};
 
 } // namespace
 
+std::unique_ptr<Light> make_disc_light(const Vec3d& direction, const Rgb& irradiance,
+                                       double radius_degrees, const Rgb& limb,
+                                       const OccupiedRegion& region) {
+  return std::make_unique<DiscLight>(direction, irradiance, radius_degrees, limb, region);
+}
+
 const LightKind distant_light{
     .name = "distant",
-    .help = "far away, like the sun",
+    .help = "a directional light with an angular radius, such as the sun",
     .keys = distant_keys,
     .colored = [](const LightSettings& light) { return !is_grey(light.irradiance); },
     .complaint = direction_complaint,

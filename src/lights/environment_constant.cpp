@@ -56,7 +56,7 @@ constexpr std::string_view environment_keys[] = {"radiance", "image", "rotation"
 
 const LightKind environment_light{
     .name = "environment",
-    .help = "a sky all around, constant or an image",
+    .help = "radiance from all directions, constant or from an image",
     .keys = environment_keys,
     .colored =
         [](const LightSettings& light) { return !light.image.empty() || !is_grey(light.radiance); },

@@ -21,7 +21,7 @@ double luminance(const Rgb& c) {
 constexpr float largest_half = 65504;
 constexpr float largest_float = std::numeric_limits<float>::max();
 
-/// What had to be changed in an image's values to make radiance of them.
+/// Corrections of an image's values to make them radiance.
 struct Mended {
   std::uint64_t infinite = 0, negative = 0, not_numbers = 0, too_bright = 0;
 
@@ -40,7 +40,7 @@ struct Mended {
     return std::min(value * factor, largest_float);
   }
 
-  void tell(const std::string& name, std::vector<std::string>& notes) const {
+  void add_notes(const std::string& name, std::vector<std::string>& notes) const {
     const auto add = [&](std::uint64_t count, const char* what) {
       if (count > 0)
         notes.push_back(fmt::format("light.image {}: {} {} {}", name, count,
@@ -127,35 +127,16 @@ private:
   Mended mended_;
 };
 
-// Rows: the directions, in render space, that are x, y, z of the image's own frame.
-std::array<Vec3d, 3> image_axes(const Vec3d& up_setting, double rotation_degrees) {
-  const Vec3d up = unit_direction(up_setting, "camera.up");
-  // The smallest rotation that takes +y to `up`, applied to +x and +z (Rodrigues, axis y x up).
-  const Vec3d y{0, 1, 0};
-  const auto turned = [&](const Vec3d& a) {
-    if (up.y < -1 + 1e-9) // opposite: half a turn about x
-      return Vec3d{a.x, -a.y, -a.z};
-    const Vec3d axis = cross(y, up);
-    return a * up.y + cross(axis, a) + axis * (dot(axis, a) / (1 + up.y));
-  };
-  const double angle = rotation_degrees * (std::numbers::pi / 180);
-  const auto spun = [&](const Vec3d& a) { // a is perpendicular to up
-    return a * std::cos(angle) + cross(up, a) * std::sin(angle);
-  };
-  // The turn runs from left to right: it is 0 at -z, 1/4 at +x, 1/2 at +z, 3/4 at -x.
-  return {spun(turned({0, 0, -1})), spun(turned({1, 0, 0})), up};
-}
-
 class EnvironmentImage final : public Light {
 public:
   EnvironmentImage(const Image& image, const std::string& name, const LightSettings& settings,
                    const LightContext& context)
       : map_(image, name, settings.radiance),
         table_(map_.pixel_integrals(), map_.width(), map_.height()),
-        axes_(image_axes(context.up, settings.rotation)), boxes_(context.region.boxes) {
+        axes_(environment_axes(context.up, settings.rotation)), boxes_(context.region.boxes) {
     power_ = estimate_power(*this);
     if (context.notes)
-      map_.mended().tell(name, *context.notes);
+      map_.mended().add_notes(name, *context.notes);
   }
 
   IncidentSample sample_incident(const Vec3f&, float u, float v) const override {
@@ -215,6 +196,24 @@ private:
 };
 
 } // namespace
+
+std::array<Vec3d, 3> environment_axes(const Vec3d& up_setting, double rotation_degrees) {
+  const Vec3d up = unit_direction(up_setting, "camera.up");
+  // The smallest rotation that takes +y to `up`, applied to +x and +z (Rodrigues, axis y x up).
+  const Vec3d y{0, 1, 0};
+  const auto turned = [&](const Vec3d& a) {
+    if (up.y < -1 + 1e-9) // opposite: half a turn about x
+      return Vec3d{a.x, -a.y, -a.z};
+    const Vec3d axis = cross(y, up);
+    return a * up.y + cross(axis, a) + axis * (dot(axis, a) / (1 + up.y));
+  };
+  const double angle = rotation_degrees * (std::numbers::pi / 180);
+  const auto spun = [&](const Vec3d& a) { // a is perpendicular to up
+    return a * std::cos(angle) + cross(up, a) * std::sin(angle);
+  };
+  // The turn runs from left to right: it is 0 at -z, 1/4 at +x, 1/2 at +z, 3/4 at -x.
+  return {spun(turned({0, 0, -1})), spun(turned({1, 0, 0})), up};
+}
 
 std::unique_ptr<Light> make_environment_image(const Image& image, const std::string& name,
                                               const LightSettings& settings,

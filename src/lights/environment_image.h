@@ -3,6 +3,8 @@
 #include "lights/light_table.h"
 #include "vdbeam/image.h"
 
+#include <array>
+
 namespace vdbeam {
 
 /// A light-probe image all around, in latitude and longitude as OpenEXR lays it out (ImfEnvmap.h):
@@ -14,5 +16,9 @@ namespace vdbeam {
 std::unique_ptr<Light> make_environment_image(const Image& image, const std::string& name,
                                               const LightSettings& settings,
                                               const LightContext& context);
+
+/// The axes of such an image, as directions in render space: where the turn is 0, where it is a
+/// quarter, and up. `rotation` in degrees.
+std::array<Vec3d, 3> environment_axes(const Vec3d& up, double rotation);
 
 } // namespace vdbeam

@@ -61,7 +61,7 @@ public:
   virtual bool is_delta() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.
   virtual const Vec3d* position() const { return nullptr; }
-  /// The part of a segment outside of which no light of it arrives; all where nothing is known.
+  /// The part of a segment that the light can reach; the whole segment if unknown.
   virtual Segment lit_part(const Segment& segment) const { return segment; }
   /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.
   virtual const Vec3f* narrow_direction() const { return nullptr; }

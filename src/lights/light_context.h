@@ -11,7 +11,7 @@ namespace vdbeam {
 
 class Light;
 
-/// What is needed of the scene to make a light.
+/// Data of the scene for making a light.
 struct LightContext {
   Vec3d up{0, 1, 0}; ///< the camera's, about which environment images turn
   const RenderSpace& space;

@@ -21,7 +21,7 @@ public:
   explicit LightGroups(const Scene& scene) : names_(light_group_names(scene)) {}
 
   int count() const { return static_cast<int>(names_.size()); }
-  /// Of a light whose group has this name; of no name: of the rest. -1 where there are no groups.
+  /// Number of the group with this name; without a name, that of the rest. -1 without groups.
   int number(const std::string& name) const;
 
 private:

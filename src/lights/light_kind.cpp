@@ -1,5 +1,6 @@
 #include "lights/light_table.h"
 #include "vdbeam/error.h"
+#include "volume/blackbody.h"
 
 #include <fmt/core.h>
 
@@ -10,6 +11,24 @@ const LightKind& light_kind(const LightType& type) {
     if (kind->name == type.name)
       return *kind;
   throw InputError(fmt::format("light.type: there is no light \"{}\"", type.name));
+}
+
+LightSettings tinted(LightSettings settings) {
+  if (!settings.kelvin && settings.exposure == 0)
+    return settings;
+  const Rgb tint = light_tint(settings.kelvin, settings.exposure, settings.color_space);
+  settings.irradiance *= tint;
+  settings.intensity *= tint;
+  settings.radiance *= tint;
+  if (settings.power)
+    *settings.power *= tint;
+  settings.kelvin.reset();
+  settings.exposure = 0;
+  return settings;
+}
+
+std::unique_ptr<Light> make_light(const LightSettings& settings, const LightContext& context) {
+  return light_kind(settings.type).make(tinted(settings), context);
 }
 
 std::optional<KeyComplaint> direction_complaint(const LightSettings& settings) {

@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What is known of a light without asking it.
+/// Properties of a light, cached.
 struct LightTraits {
   bool visible = true;           ///< the camera sees it where its rays meet it
   bool surrounds = false;        ///< its light comes from all around, as a sky's does (LightKind)
@@ -39,7 +39,7 @@ public:
   const LightTraits& traits(std::size_t i) const { return traits_[i]; }
   int group_count() const { return group_count_; }
   int group(std::size_t i) const { return traits_[i].group; }
-  /// Of what glows in the medium.
+  /// Group of the medium's emission.
   int group_of_emission() const { return group_of_emission_; }
   /// Some light may be met at a finite distance.
   bool any_extent() const { return any_extent_; }

@@ -37,7 +37,15 @@ std::span<const LightKind* const> light_table();
 /// The kind of a light. Throws InputError for one that is not in the table.
 const LightKind& light_kind(const LightType& type);
 
-extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light;
+/// A light's settings with kelvin and exposure multiplied into irradiance, intensity, radiance and
+/// power, which leaves none of the two.
+LightSettings tinted(LightSettings settings);
+
+/// The light of its kind. Throws InputError for settings that no light can have.
+std::unique_ptr<Light> make_light(const LightSettings& settings, const LightContext& context);
+
+extern const LightKind distant_light, point_light, spot_light, environment_light, sky_light,
+    atmosphere_light, sun_light;
 
 /// A complaint where the light's direction is 0.
 std::optional<KeyComplaint> direction_complaint(const LightSettings& settings);

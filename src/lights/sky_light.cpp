@@ -128,7 +128,7 @@ constexpr std::string_view sky_keys[] = {"radiance", "zenith", "horizon", "groun
 } // namespace
 
 const LightKind sky_light{.name = "sky",
-                          .help = "a clear sky above the horizon, and what lies below it",
+                          .help = "a gradient of zenith, horizon and ground radiance",
                           .keys = sky_keys,
                           .colored =
                               [](const LightSettings& light) {

@@ -20,7 +20,7 @@ struct Ball {
   Vec3d center;
   double radius = 0;
 
-  /// Of the side that faces `point`; none from inside.
+  /// A point on the side that faces `point`; none from inside.
   std::optional<SolidAnglePoint> sample(const Vec3d& point, double u, double v) const;
   /// Its solid angle from `point`; 0 where `sample` gives nothing.
   double solid_angle(const Vec3d& point) const;

@@ -44,7 +44,7 @@ private:
   IncidentSample sample_textured(const Vec3f& point, float u, float v) const;
   Rgb radiance(const Uv& uv) const { return texture_ ? radiance_ * texture_->at(uv) : radiance_; }
   std::optional<SolidAnglePoint> sample_solid_angle(const Vec3d& point, float u, float v) const;
-  /// What it fills as seen from `point`; 0 where points on it are drawn by area.
+  /// Solid angle from `point`; 0 if points on it are drawn by area.
   double solid_angle(const Vec3d& point) const;
   /// A direction for a photon from a point, and pi times its cosine over its density.
   Vec3f sample_leaving(const SurfacePoint& from, Rng& rng, float& weight) const;

@@ -87,7 +87,7 @@ EmittedPhoton VolumeLight::emit(double place, Rng& rng) const {
                        [](double value, const Cell& cell) { return value < cell.end; });
   const std::int32_t entry = emitter_.field->cell(found->place.x, found->place.y, found->place.z);
   const double begin = found == cells_.begin() ? 0 : (found - 1)->end;
-  // A cube of a brick, or a whole uniform cell, in each of which the point is uniform.
+  // A cube of a brick, or a whole uniform cell; the point is uniform inside it.
   Vec3f corner, local;
   double share = cell_sum(entry), size = cube_count;
   if (entry >= 0) {

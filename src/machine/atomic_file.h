@@ -6,13 +6,13 @@
 
 namespace vdbeam {
 
-/// What becomes of a symbolic link by the name of an output: it stays, and the file that it leads
+/// Treatment of a symbolic link at the path of an output: it stays, and the file that it leads
 /// to is replaced, or the file takes its place.
 enum class Links { follow, replace };
 
 /// A file that appears under its name only when it is complete. Writes go to a temporary name in
 /// the same folder; commit() syncs it to the disk and renames it; without commit() it is removed.
-/// What killed processes have left in the folder is removed when a file is created there.
+/// Temporary files of killed processes are removed when a file is created in their folder.
 class AtomicFile {
 public:
   /// Creates the temporary file. Throws FrameError where the folder is missing or not writable, or

@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What the control groups of this process allow; 0 is no limit.
+/// Limits of this process' control groups; 0: no limit.
 struct CgroupLimits {
   int cpus = 0;             ///< processors' worth of time, rounded up
   std::uint64_t memory = 0; ///< bytes

@@ -4,8 +4,8 @@
 
 namespace vdbeam {
 
-/// What a farm engine grants this process in environment variables; 0 where they are not set or not
-/// numbers.
+/// Grants of a farm engine to this process, from environment variables; 0 where they are not set or
+/// not numbers.
 
 /// Threads: the least of SLURM_CPUS_PER_TASK and CUE_THREADS.
 int farm_threads();

@@ -245,7 +245,7 @@ std::string printable(std::string text) {
   return text;
 }
 
-/// What the user may change where the system refuses a process, a pipe or an open file.
+/// Remedy if the system refuses a process, a pipe or an open file.
 const char* remedy_for(int error) {
   switch (error) {
   case EMFILE:
@@ -266,7 +266,7 @@ const char* remedy_for(int error) {
                                remedy_for(error)));
 }
 
-/// What was read did not fit into the file in memory, which counts for `ulimit -f` too.
+/// Error if the result did not fit into the file in memory, to which `ulimit -f` applies too.
 [[noreturn]] void throw_no_room(const std::string& label, const GuardLimits& limits) {
   rlimit own{};
   if (::getrlimit(RLIMIT_FSIZE, &own) == 0 && own.rlim_max < limits.bytes)

@@ -14,7 +14,7 @@ constexpr double time_for(std::uint64_t file_bytes) {
   return 1e-7 * static_cast<double>(file_bytes);
 }
 
-/// What a guarded child process may use.
+/// Limits of a guarded child process.
 struct GuardLimits {
   double seconds = 120;     ///< of wall-clock time; time during which both were suspended is free
   double cpu_seconds = 120; ///< of processor time
@@ -27,8 +27,9 @@ struct GuardLimits {
 /// carries on: every failure throws one line that opens with `label`, within the limits. An Error
 /// that the work throws arrives as it is, any other exception as a FrameError.
 ///
-/// The child has one thread, and the work must not start or use others: no TBB (docs/decisions.md
-/// says why). It ends without running destructors, also where an exception ends the work.
+/// The child has one thread, and the work must not start or use others: no TBB
+/// (research-log/decisions.md says why). It ends without running destructors, also where an
+/// exception ends the work.
 MappedFile run_guarded(const std::string& label, const GuardLimits& limits,
                        const std::function<void(int)>& work);
 

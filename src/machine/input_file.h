@@ -44,8 +44,8 @@ std::string read_text(const std::string& path, std::uint64_t most);
 /// does not count.
 bool is_there(const std::string& path);
 
-/// Tells one state of a file from another: its path, size and time of change; of a file that is not
-/// there the path.
+/// Identifies a state of a file: its path, size and time of change; the path alone for a missing
+/// file.
 std::string file_identity(const std::string& path);
 
 /// A stream over an input file, which can be sought in. Throws as open_input_file.

@@ -39,7 +39,7 @@ const std::string& machine() {
   return digits;
 }
 
-/// The machine that a temporary file's name tells; nothing for other files.
+/// The machine in a temporary file's name; nothing for other files.
 std::optional<std::string> machine_of(const std::string& name) {
   static const std::regex pattern("\\..*\\.([0-9a-f]{8})-[0-9]+-[0-9]+\\.tmp");
   std::smatch match;

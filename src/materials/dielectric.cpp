@@ -65,7 +65,7 @@ constexpr std::string_view keys[] = {"roughness", "ior", "absorption", "solid"};
 
 const MaterialKind dielectric_material{
     .name = "dielectric",
-    .help = "glass or water, smooth or rough (GGX), which reflects and refracts",
+    .help = "glass or water, smooth or rough (GGX): reflects and refracts",
     .keys = keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.absorption); },
     .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {

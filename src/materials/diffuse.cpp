@@ -16,7 +16,7 @@ bool has_colored_albedo(const MaterialSettings& settings) {
 
 const MaterialKind diffuse_material{
     .name = "diffuse",
-    .help = "reflects the same radiance in all directions",
+    .help = "Lambertian reflection",
     .keys = keys,
     .colored = has_colored_albedo,
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {

@@ -15,7 +15,7 @@ public:
 
 const MaterialKind holdout_material{
     .name = "holdout",
-    .help = "black and a hole in alpha, for what is composited later",
+    .help = "black with alpha 0, for an object that is composited later",
     .make = [](const MaterialSettings&, double) -> std::unique_ptr<Material> {
       return std::make_unique<Holdout>();
     }};

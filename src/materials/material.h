@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What the light that is followed carries: radiance on paths from the camera, power on paths from
+/// Quantity that the followed light carries: radiance on paths from the camera, power on paths from
 /// lights. Refraction scales radiance by the square of the relative index, power not.
 enum class Carried { radiance, power };
 
@@ -38,13 +38,13 @@ public:
   virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
   /// `evaluate` is 0 for all directions: shadow rays are no use.
   virtual bool is_specular() const { return false; }
-  /// Of rough glass: a way by reflection and one by refraction, each weighted with its share of the
+  /// Rough glass: one branch by reflection and one by refraction, each weighted by its share of the
   /// light, where `sample` follows one of them. Their densities are those of `pdf`.
   virtual SpecularBranches both_ways(const Vec3f& wo, Carried carried, Rng& rng) const {
     static_cast<void>(rng);
     return branches(wo, carried);
   }
-  /// Of a specular surface: all ways on, of which `sample` chooses one.
+  /// Specular surfaces: all outgoing branches; `sample` chooses one of them.
   virtual SpecularBranches branches(const Vec3f& wo, Carried carried) const {
     static_cast<void>(wo), static_cast<void>(carried);
     return {};
@@ -58,11 +58,11 @@ public:
   virtual bool throws_light() const { return is_specular() && !is_black(); }
   /// Light goes on behind it, as in glass: its back encloses something.
   virtual bool refracts() const { return false; }
-  /// Photons that arrive tell what light it reflects.
+  /// Whether its reflected light is estimated from arriving photons.
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
-  /// Of a surface that reflects by Lambert's law and does nothing else; else 0.
+  /// Albedo of a purely Lambertian surface; 0 for others.
   virtual Rgb matt_albedo() const { return {}; }
-  /// Nothing leaves it but what it emits.
+  /// Reflects nothing.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back; to the back the same or nothing.
   virtual Rgb emitted(bool front) const {

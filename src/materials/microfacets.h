@@ -18,7 +18,7 @@ class Microfacets {
 public:
   /// `roughness` in (0, 1]; alpha is its square.
   explicit Microfacets(double roughness)
-      // Of smoother ones single precision cannot tell the peak from its surroundings.
+      // Single precision does not resolve the peak of smoother surfaces.
       : alpha_(std::max(1e-3f, static_cast<float>(roughness * roughness))) {}
 
   /// Density of facets with normal h, by their area seen from above.

@@ -30,7 +30,7 @@ constexpr std::string_view keys[] = {"reflectance"};
 
 const MaterialKind mirror_material{
     .name = "mirror",
-    .help = "reflects as a plane mirror does, on both sides",
+    .help = "perfect mirror, on both sides",
     .keys = keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {

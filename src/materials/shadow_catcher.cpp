@@ -18,7 +18,7 @@ constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap"};
 
 const MaterialKind shadow_catcher_material{
     .name = "shadow_catcher",
-    .help = "diffuse to light; the camera sees only the shadows on it, as alpha",
+    .help = "diffuse for light; the camera sees only the shadows on it, as alpha",
     .keys = keys,
     .colored = has_colored_albedo,
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {

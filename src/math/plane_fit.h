@@ -22,7 +22,7 @@ struct PlaneFit {
     xy += weight * dx * dy;
     yy += weight * dy * dy;
   }
-  /// Of the normal equations' inverse, the row that gives the plane's value at (0, 0).
+  /// The row of the normal equations' inverse that gives the plane's value at (0, 0).
   std::array<double, 3> row() const {
     const double a = xx + ridge * one, c = yy + ridge * one;
     const double minor = a * c - xy * xy, minor_x = x * c - xy * y, minor_y = x * xy - a * y;

@@ -11,7 +11,7 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// What a random stream is for; two stages never share numbers.
+/// Purpose of a random stream; two stages never share numbers.
 enum class RngStage : std::uint64_t {
   camera = 1,
   photon,

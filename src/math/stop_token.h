@@ -10,8 +10,8 @@ namespace vdbeam {
 /// Thrown by work that ends early because its StopToken said so, and that leaves no result.
 struct Stopped {};
 
-/// Tells long loops when to end: when the caller asks for it, or when a time limit is over. Asking
-/// costs a look at the clock, so loops whose rounds take less than a microsecond ask now and then.
+/// Ends long loops on request of the caller or at a time limit. A check
+/// reads the clock, so loops whose rounds take less than a microsecond ask now and then.
 class StopToken {
 public:
   using Clock = std::chrono::steady_clock;

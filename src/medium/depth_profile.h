@@ -8,7 +8,7 @@ namespace vdbeam {
 /// Optical depth along one camera ray: exact at the crossings of lattice planes and inside cubes
 /// that are optically thick, linear in between.
 /// One value per volume, for its strongest channel, so that overlapping media of different albedo,
-/// phase function or colour can be told apart.
+/// phase function or colour can be separated.
 class DepthProfile {
 public:
   /// Integrates to the segment's end or until less than `cutoff` of the light is left in every

@@ -33,7 +33,7 @@ struct Volume {
   Vec3f local_point(const Vec3f& p) const { return to_local.point(p); }
   Vec3f local_vector(const Vec3f& v) const { return to_local.vector(v); }
   float density(const Vec3f& p) const { return field.sample(local_point(p)); }
-  /// The density at a point of which is known that it lies inside: rounding may have put it beyond
+  /// The density at a point that is known to lie inside: rounding may have put it beyond
   /// a face, where a field that ends sharply is 0.
   float density_inside(const Vec3f& p) const { return field.sample(field.nearest(local_point(p))); }
   Rgb albedo_at(const Vec3f& p) const {
@@ -53,7 +53,7 @@ struct Volume {
 /// A value for each 8^3 cell of each volume of a medium.
 using CellTables = std::vector<std::vector<float>>;
 
-/// What was taken out of a medium to make the one at hand (similar_medium).
+/// Delta-M truncation that made a medium from the scene's (similar_medium).
 struct PeakTakenOut {
   int order = 0;                       ///< M of the delta-M method
   std::vector<PhaseFunction> original; ///< per phase function: the scene's

@@ -39,7 +39,7 @@ Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken
 }
 
 Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u, Rgb* taken_out) {
-  constexpr float certain = 3; // optical depth that no ray ends before (docs/decisions.md)
+  constexpr float certain = 3; // optical depth that no ray ends before (research-log/decisions.md)
   const float limit = std::min(certain - std::log1p(-u), opaque_optical_depth);
   float weakest = 0;
   const Rgb tau = optical_depth(medium, segment, limit, weakest, taken_out);

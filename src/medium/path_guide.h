@@ -27,7 +27,7 @@ public:
 
   /// Moves the lattice [render units].
   void move(const Vec3f& by) { lower_ += by; }
-  /// Gives the lattice in other units, of which `factor` are one of the present.
+  /// The lattice in other units; `factor` of them are one present unit.
   void scale(float factor) {
     lower_ *= factor;
     per_unit_ *= 1 / factor;
@@ -43,7 +43,7 @@ private:
 /// Where light paths are worth their time: the importance of flux for the picture (the adjoint of
 /// Wagner and Haghighat's CADIS, 1998), that is what a path of unit flux is expected to bring
 /// there. Emission is drawn in proportion to it, and weight windows keep flux times importance of
-/// paths under way near what a path brings on average (docs/physics.md).
+/// paths under way near what a path brings on average (docs/theory/beam.md).
 struct PathGuide {
   /// Steps of a light's emission, each with its own density.
   static constexpr int steps = 256;
@@ -60,7 +60,7 @@ struct PathGuide {
   std::vector<double> light_shares;              ///< of the paths, per light; their sum is 1
   std::vector<std::vector<double>> distribution; ///< per light: cumulative, steps + 1 values
 
-  /// What a path of this flux, in its strongest channel, at a point is expected to bring, relative
+  /// Expected contribution of a path of this flux, in its strongest channel, at a point, relative
   /// to the mean of `paths` paths.
   float relative_value(float flux, const Vec3f& point, std::uint64_t paths) const {
     return static_cast<float>(static_cast<double>(flux) *

@@ -59,7 +59,7 @@ inline bool survive_roulette(float threshold, Rgb& weight, Rng& rng) {
 /// mean work grows with the optical depth. From `first` collisions on a path goes on with the
 /// chance 1 / sqrt(2) whenever its length has doubled: the work per doubling and the second moment
 /// of what it brings back stay constant both. A path that begins deep inside, or whose collisions
-/// lie closer together than single precision can tell apart, does not come back like that; its work
+/// lie closer together than single precision resolves, does not come back like that; its work
 /// would have no bound. So from `late` collisions on the chance is 1 / 4, which bounds the mean
 /// number of collisions by 50,000 whatever the medium.
 class LengthRoulette {

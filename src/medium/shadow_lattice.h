@@ -14,7 +14,7 @@ class ShadowLattice {
 public:
   /// For a light in the direction `towards` (unit); sends up to about `rays` rays.
   ShadowLattice(const Medium& medium, const Vec3f& towards, double rays);
-  /// What such a lattice takes over a medium with these bounds.
+  /// Memory of such a lattice over a medium with these bounds [bytes].
   static std::uint64_t bytes(const Boxf& bounds, const Vec3f& towards, double rays);
 
   /// Transmittance from the point to the light, of the clearest channel.

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double pi_double = 3.14159265358979323846;
 constexpr int angle_count = 128, depth_count = 24;
-/// The table's sums fall with the squares of the moments. Where a peak has more than so many it is
-/// a sixtieth of a degree wide.
+/// The table's sums fall with the squares of the moments. A peak with more than this many moments
+/// is a sixtieth of a degree wide.
 constexpr double least_moment = 3e-3;
 constexpr int most_moments = 4096;
 
@@ -24,7 +24,7 @@ std::vector<double> telling_moments(const PhaseFunction& phase) {
   }
 }
 
-/// Of a row of the table; the last one stands for all that is deeper.
+/// Optical depth of a row of the table; the last row stands for all greater depths.
 double depth_of(int row) {
   return row + 1 < depth_count ? static_cast<double>(row) / (depth_count - 1 - row) : 1e9;
 }
@@ -46,7 +46,7 @@ Aureole::Aureole(const PhaseFunction& phase, const TruncatedPhase& truncated, in
                                                   (std::exp(-depth * (1 - q)) - std::exp(-depth));
     }
   }
-  // The narrowest feature is as wide as the highest moment tells.
+  // The highest moment sets the width of the narrowest feature.
   const double first = 0.2 / static_cast<double>(moments.size());
   const double step = std::log(pi_double / first) / (angle_count - 1);
   first_angle_ = static_cast<float>(first);

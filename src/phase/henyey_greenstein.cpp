@@ -12,7 +12,7 @@ constexpr std::string_view keys[] = {"g"};
 /// The mean cosine is g: 0 is isotropic, towards 1 light goes straight on, towards -1 back.
 const PhaseKind henyey_greenstein_phase{
     .name = "henyey_greenstein",
-    .help = "one lobe, forwards or backwards",
+    .help = "one forward or backward lobe",
     .keys = keys,
     .complaint = [](const PhaseSettings& phase) { return mean_cosine_complaint("g", phase.g); },
     .lobes = [](const PhaseSettings& phase) -> PhaseLobes {

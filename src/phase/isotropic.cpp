@@ -5,7 +5,7 @@ namespace vdbeam {
 /// All directions alike: p = 1 / (4 pi).
 const PhaseKind isotropic_phase{
     .name = "isotropic",
-    .help = "all directions alike",
+    .help = "isotropic scattering",
     .lobes = [](const PhaseSettings&) -> PhaseLobes { return {DraineLobe{.g = 0, .alpha = 0}}; }};
 
 } // namespace vdbeam

@@ -50,7 +50,7 @@ struct PhaseTerm {
 class PhaseFunction {
 public:
   PhaseFunction() = default;
-  /// Throws InputError for settings that the kind complains about, and for an unknown kind.
+  /// Throws InputError for settings that the kind rejects, and for an unknown kind.
   explicit PhaseFunction(const PhaseSettings& settings);
 
   /// From the coefficients of the powers of the cosine, most_coefficients of them at most. Has no
@@ -75,11 +75,11 @@ public:
   Vec3f sample(const Vec3f& direction, float u_lobe, float u, float v) const;
   bool isotropic() const;
 
-  /// Of a polynomial; 0: it is given by lobes.
+  /// Number of coefficients of a polynomial; 0: the function is given by lobes.
   int coefficient_count() const { return coefficient_count_; }
   float coefficient(int power) const { return coefficients_[power]; }
 
-  /// Of a table; null: it is none.
+  /// Cosines of a tabulated function; null for others.
   const std::vector<float>* cosines() const { return cosines_.get(); }
 
   int lobe_count() const { return lobe_count_; }

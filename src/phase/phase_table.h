@@ -16,7 +16,7 @@ struct PhaseKind {
   std::string_view help; ///< one clause
   /// Keys of [volume.phase] that only this one, and others that list them, have.
   std::span<const std::string_view> keys = {};
-  /// What no phase function can be made of, whatever made the settings.
+  /// Complaint about settings that no phase function can have.
   std::optional<KeyComplaint> (*complaint)(const PhaseSettings&) = [](const PhaseSettings&) {
     return std::optional<KeyComplaint>();
   };

@@ -53,7 +53,7 @@ std::vector<double> legendre_series(const std::vector<double>& moments) {
 ///
 /// Henyey-Greenstein of the same mean cosine would be simpler. For droplets, what is left without
 /// the peak is of another shape: a slab of 15 mean free paths then came out up to 19 % too bright,
-/// and with this table up to 5 % (docs/decisions.md).
+/// and with this table up to 5 % (research-log/decisions.md).
 PhaseFunction positive_part(const PhaseFunction& series, double mean_cosine) {
   constexpr int cells = 4096, shares = 1024;
   constexpr double width = 2.0 / cells;

@@ -32,10 +32,10 @@ struct BeamTile {
   /// Distance at which a ray ends at a surface; infinite where it does not. What lies beyond does
   /// not count, whatever the weights.
   std::array<double, ray_count> end = endless();
-  /// What is added to a distance along a ray of render space for the t of this tile.
+  /// Offset from a distance along a ray of render space to the t of this tile.
   std::array<double, ray_count> shift{};
 
-  /// What the medium makes of a photon at distance t on each ray, per sub-tile at uniform knots
+  /// Weight of a photon at distance t on each ray, per sub-tile at uniform knots
   /// t_k = t_begin + k * step, linear in between, 0 before the first and after the last knot:
   /// W(t) = Tr(0, t) * sigma_s(t), for each group of volumes that share a phase function and, where
   /// the extinction is chromatic, each channel.
@@ -74,7 +74,7 @@ private:
 /// is wider than its focus is far may not; they are gathered ray by ray. True without any ray.
 bool lie_in_cone(const BeamTile& tile, int subtile);
 
-/// What a query did, for the report and for tuning.
+/// Counts of a query, for the report and for tuning.
 struct QueryCounts {
   std::uint64_t contributions = 0; ///< (ray, photon) pairs within the kernel
   std::uint64_t candidates = 0;    ///< (ray, photon) pairs evaluated

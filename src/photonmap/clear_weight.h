@@ -8,7 +8,7 @@ namespace vdbeam {
 /// What a photon at `ratio` radii from a surface counts, whose kernel keeps clear of it: linear
 /// between these, nothing before the first. Fitted by least squares, so that photons that lie
 /// evenly before a plane are seen evenly, within 3 % from 0.1 radii on, and none of their light is
-/// lost (docs/decisions.md).
+/// lost (research-log/decisions.md).
 struct ClearWeight {
   float ratio, weight;
 };

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What the SIMD queries need of a map.
+/// Data of a map that the SIMD queries need.
 struct MapView {
   const PhotonBlocks& blocks;
   const BlockTree& tree;

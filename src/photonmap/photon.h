@@ -36,7 +36,7 @@ struct PhotonList {
   }
 };
 
-/// The photons of all lists, one list after the other, of so many groups of lights.
+/// Concatenates the lists; `groups`: number of light groups.
 PhotonList join(const std::vector<const PhotonList*>& lists, int groups);
 
 } // namespace vdbeam

@@ -11,8 +11,8 @@ namespace vdbeam {
 
 /// Photons in full blocks of 16, each block a structure of arrays: one row of 16 floats per field.
 /// The last block is padded with photons of radius 0 and power 0. The power of photons that come
-/// straight from a light is stored with a minus sign: queries tell their light from the rest, and a
-/// sign costs no memory.
+/// straight from a light is stored with a minus sign: queries separate direct from
+/// indirect light by it, and a sign costs no memory.
 class PhotonBlocks {
 public:
   static constexpr std::size_t width = 16;
@@ -20,7 +20,7 @@ public:
 
   PhotonBlocks() = default;
   /// Room for `count` photons, which have no value until they are written; the padding has.
-  /// `groups`: of lights, whose photons are told apart; 0: none are.
+  /// `groups`: number of light groups whose photons are marked; 0: none.
   PhotonBlocks(std::size_t count, int channels, bool directions, bool first_flights = false,
                int groups = 0)
       : count_(count), channels_(channels), directions_(directions), first_flights_(first_flights),

@@ -81,7 +81,7 @@ PhotonBlocks gather_blocks(const PhotonList& photons, const UnfilledArray<Ordere
   return blocks;
 }
 
-/// K_2D(d, r) r^2 at s = d^2 / r^2 < 1 (docs/physics.md, "Kernels").
+/// K_2D(d, r) r^2 at s = d^2 / r^2 < 1 (docs/theory/beam.md, "Kernels").
 float disc_kernel(KernelShape shape, float s) {
   switch (shape) {
   case KernelShape::constant:
@@ -94,7 +94,7 @@ float disc_kernel(KernelShape shape, float s) {
   return 0;
 }
 
-/// Of the boxes of a group, those that a point is so near to that a sphere in them may hold it.
+/// Mask of the boxes of a group that may hold a sphere which contains the point.
 std::uint32_t boxes_around(const Vec3f& point, const BoxGroup& group) {
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < 8; ++i) {

@@ -76,7 +76,7 @@ public:
 
   std::size_t size() const;
   std::size_t bytes() const;
-  /// What building a map takes for each photon: the list, its order, and the map.
+  /// Memory for building a map, per photon [bytes]: the list, its order, and the map.
   static std::size_t build_bytes_per_photon(int channels, bool directions);
   int channels() const;
   bool has_directions() const;
@@ -106,16 +106,16 @@ public:
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
   /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
   /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size())
-  /// and, unless it is null, likewise first_flight, to what of it comes straight from lights.
+  /// and, unless it is null, first_flight, its part that comes straight from lights.
   /// `groups`, unless it is null: set to the part of each group of lights, [group][phase function].
   QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
                           const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                           Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr) const;
-  int groups() const;             ///< of lights, whose photons are told apart; 0: none are
+  int groups() const;             ///< number of light groups whose photons are marked; 0: none
   bool has_first_flights() const; ///< photons that come straight from a light
 
-  /// Of photons that lie on surfaces: those whose spheres hold `point`, in a fixed order. Requires
-  /// photons with directions.
+  /// Visits the surface photons whose spheres contain `point`, in a fixed order. Requires photons
+  /// with directions.
   void visit_disc(const Vec3f& point, const std::function<void(const DiscPhoton&)>& visit) const;
 
 private:

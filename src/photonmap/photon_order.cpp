@@ -192,7 +192,7 @@ void split_by_counting(const Run& run, std::size_t middle, float lower, float ex
 
 template <int axis>
 void split_run(Run& run, std::size_t middle, const Boxf& box) {
-  // A run too narrow for its coordinates to be told apart by bins is left to comparisons.
+  // A run whose coordinates fall into one bin is sorted by comparisons.
   const float lower = coordinate<axis>({box.lower, 0}), upper = coordinate<axis>({box.upper, 0});
   if (run.count < counting_size || !(upper - lower > 1e-30f)) {
     select<axis>(run.from, middle, run.count);

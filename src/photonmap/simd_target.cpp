@@ -5,7 +5,8 @@
 namespace vdbeam {
 namespace {
 
-/// What the queries are compiled for; the others would add nothing (see the queries' sources).
+/// Targets for which the queries are compiled; the others would add nothing (see the queries'
+/// sources).
 constexpr std::int64_t compiled = HWY_AVX3 | HWY_AVX2 | HWY_SSE4 | HWY_STATIC_TARGET;
 /// Highway's MulAdd rounds twice on these, once on all others.
 constexpr std::int64_t without_fma = HWY_SSSE3 | HWY_SSE4 | HWY_EMU128 | HWY_SCALAR;

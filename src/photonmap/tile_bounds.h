@@ -7,7 +7,7 @@
 namespace vdbeam {
 
 /// Bounds of some rays of a tile in its frame, linear in the depth w: a0 w + u0 <= u <= a1 w + u1,
-/// and v likewise. Of rays that start at one point the slopes are tangents and u0 .. v1 are 0.
+/// and the same for v. For rays from one point the slopes are tangents and u0 .. v1 are 0.
 struct RayBounds {
   double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
   double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
@@ -15,7 +15,7 @@ struct RayBounds {
   double start0 = 0, start1 = 0; ///< least and greatest depth at which a ray starts
   bool wide = false; ///< some ray is nearly square to the axis: no bound but those of depths
 
-  /// Of rays that start at one point.
+  /// Extends the bounds, for rays that start at one point.
   void extend(const RayBounds& box) {
     a0 = std::min(a0, box.a0);
     a1 = std::max(a1, box.a1);

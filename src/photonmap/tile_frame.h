@@ -17,8 +17,8 @@ struct SubtileFrame {
   alignas(64) float stretch[16]; ///< 1 / dw - 1
   alignas(64) float last[16];    ///< per ray: f beyond which there is no weight
   alignas(64) float scale[16];   ///< final factor of the ray's sum; 0 for a ray without direction
-  /// Of rays with origins of their own: where they pass the plane w = 0, and how many knots before
-  /// that their distances begin.
+  /// For rays with individual origins: their points on the plane w = 0, and the number of knots by
+  /// which their distances begin before it.
   alignas(64) float ou[16], ov[16], knot_shift[16];
   float axes[3][3];  ///< rows: u, v, w in render space
   float offset[3];   ///< the reference seen from the camera, in this frame

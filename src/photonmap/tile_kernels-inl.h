@@ -47,11 +47,11 @@ struct Candidates {
   alignas(64) float inverse_radius[slots]; ///< rays with origins of their own
   alignas(64) float phase[3][slots]; ///< linear: value and slopes; exact: -direction in the frame
   alignas(64) float power[3][slots];
-  alignas(64) float signed_power[slots]; ///< where the map tells first flights apart
-  alignas(64) float group[slots];        ///< of lights, where they are told apart
+  alignas(64) float signed_power[slots]; ///< where the map marks first flights
+  alignas(64) float group[slots];        ///< light groups, if photons are marked
 };
 
-/// What is the same for all of a query.
+/// Constants of a query.
 struct TileQuery {
   const PhotonBlocks& blocks;
   KernelPolynomial kernel;
@@ -112,7 +112,7 @@ private:
   alignas(64) std::int32_t order_[16];
 };
 
-/// A part of a block, as many photons as lanes.
+/// A part of a block, one photon per lane.
 struct BlockPart {
   const PhotonBlocks& blocks;
   std::size_t block, lane;
@@ -197,7 +197,7 @@ HWY_INLINE void write_shape(const TileQuery& query, const SubtileFrame& s, const
   }
 }
 
-/// What the phase function needs of the hit photons.
+/// Data of the hit photons for the phase function.
 HWY_INLINE void write_phase(const TileQuery& query, const SubtileFrame& s, const BlockPart& part,
                             const LaneWriter& writer, Candidates& out) {
   const D16 d;

@@ -177,7 +177,7 @@ private:
     hit_count_ = 0;
   }
 
-  /// Of one group of lights; all sums are those of the groups then.
+  /// Adds one light group; all sums are those of the groups then.
   void add_group(BeamTile& tile, int channels, std::size_t group) {
     const GroupSums& own = group_sums_[group];
     for (int c = 0; c < channels; ++c)
@@ -223,7 +223,7 @@ private:
       counts.contributions += shaders_[s](query_, subtile, candidates_, first_, s * 16, first_sums);
   }
 
-  /// Of the photons of one group of lights.
+  /// Sums over the photons of one light group.
   struct GroupSums {
     alignas(64) TileSums rest = {};
     alignas(64) TileSums first = {}; ///< on their first flight
@@ -235,7 +235,7 @@ private:
   std::size_t hit_count_ = 0;
   BlockHit hits_[hit_capacity];
   Candidates candidates_;
-  Selection rest_, first_; ///< candidates by what they are, of which one sum each
+  Selection rest_, first_; ///< candidates by kind, one sum for each
   alignas(64) TileSums sums_ = {};
   alignas(64) TileSums first_sums_ = {}; ///< of photons on their first flight
   std::vector<GroupSums> group_sums_;    ///< by group; empty where nobody asks

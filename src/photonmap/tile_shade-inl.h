@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Sums of a tile, channel-major like BeamTile::radiance.
 using TileSums = float[3][BeamTile::ray_count];
 
-/// What the loop over photons is compiled for; `plain` as in TileQuery.
+/// Variant for which the loop over photons is compiled; `plain` as in TileQuery.
 template <bool per_ray_, PhaseMode phase_, int power_, int weight_, bool plain_, bool own_>
 struct ShadeConfig {
   static constexpr bool per_ray = per_ray_, plain = plain_, own_origins = own_;

@@ -8,21 +8,21 @@
 
 namespace vdbeam {
 
-/// Tells how much kernels blur: at some pixels of a pass the photons are gathered once more, in
+/// Estimates the kernels' bias: at some pixels of a pass photons are gathered once more, in
 /// kernels of another width. The differences have little noise, since both see the same photons,
-/// and their mean over the passes tends to a known part of the kernels' bias (docs/physics.md,
-/// "Errors").
+/// and their mean over the passes tends to a known part of the kernels' bias
+/// (docs/theory/error-estimate.md, "Errors").
 class BlurProbe {
 public:
-  /// Width of those kernels over that of the pass's. Along rays narrower ones tell more at edges;
-  /// where walks gather, whose kernels blur little, wider ones have less noise.
+  /// Width of those kernels over that of the pass's. Along rays narrower ones are more sensitive at
+  /// edges; where walks gather, whose kernels blur little, wider ones have less noise.
   static constexpr float width_along_rays = 0.5f, width_of_walks = 1.4f;
   /// The bias over what kernels of the pass gather less what those of another width do: bias goes
   /// as the width to the power of 1.5; of 2 where kernels are small against all that they blur,
-  /// less where they are as wide (measured, docs/decisions.md).
+  /// less where they are as wide (measured, research-log/decisions.md).
   static float bias_over_difference(float width) { return 1 / (1 - std::pow(width, 1.5f)); }
 
-  /// Of the input's blur pixels. `photons` must outlive this.
+  /// Probes the input's blur pixels. `photons` must outlive this.
   BlurProbe(const EstimatorInput& input, const PhotonPass& photons);
 
   /// Fills in the pixels of a tile that has been gathered; tiles may come in any order and from any
@@ -42,7 +42,7 @@ public:
   std::vector<PixelValue> take() { return std::move(values_); }
 
 private:
-  /// What the ray gathers in kernels of the other width.
+  /// Light gathered by the ray in kernels of the other width.
   Rgb compared(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const;
 
   const PhotonMap& map_;

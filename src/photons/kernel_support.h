@@ -31,7 +31,7 @@ private:
   const Camera* camera_;
 };
 
-/// What a kernel is normalised over: the disc across the camera ray, or the ball.
+/// Domain over which a kernel is normalised: the disc across the camera ray, or the ball.
 enum class KernelDomain { disc, ball };
 
 /// Makes kernels end before the world's surfaces, if there are any (PhotonMap::keep_clear).

@@ -32,7 +32,7 @@ public:
   static double shadow_rays_per_pixel(bool of_moment);
 
   const PhotonPlan& plan() const { return plan_; }
-  /// Tell where direct light is to be looked for; empty where they cannot.
+  /// Shadow lattices that place shadow rays; empty if they cannot.
   const ShadowLattices& shadows() const { return shadows_; }
   const PhotonMap& map() const { return maps_.medium; }
   /// The same photons in kernels of another width (BlurProbe); empty where nobody asked for the

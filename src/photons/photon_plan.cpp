@@ -13,23 +13,24 @@ namespace {
 /// Where no trial chooses them.
 constexpr double default_neighbours = 500;
 /// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
-/// on thin and on thick media (docs/decisions.md). A count, not a clock, so that every machine
-/// chooses the same.
+/// on thin and on thick media (research-log/decisions.md). A count, not a clock, so that every
+/// machine chooses the same.
 constexpr double paths_per_hit = 4;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 4e6;
-/// What a camera ray that meets a surface alone counts: photons and camera rays balance, and paths
-/// from surfaces take time, too (docs/decisions.md).
+/// Weight of a camera ray that meets a surface alone: photons and camera rays balance, and paths
+/// from surfaces take time, too (research-log/decisions.md).
 constexpr double share_of_surface = 0.5;
-/// By which factor there may be more of them for lights that shadow rays do not reach, and photons
-/// per camera ray that meets the medium up to which there are.
+/// For lights that shadow rays do not reach there are more light paths: at most this factor, until
+/// there is one photon per camera ray that meets the medium.
 constexpr double most_for_hidden_lights = 8;
 constexpr double photons_per_hit = 1;
 /// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
 /// few.
 constexpr double most_paths_per_photon = 16;
 /// Shadow rays per camera ray: where the medium is thin, single scattering is most of the light and
-/// its noise most of the error; where it is thick, the photons' noise hides it (docs/decisions.md).
+/// its noise most of the error; where it is thick, the photons' noise hides it
+/// (research-log/decisions.md).
 constexpr double direct_per_collision = 12;
 constexpr int fewest_samples = 2, most_samples = 6;
 constexpr std::uint64_t pilot_paths = 1024;
@@ -59,7 +60,7 @@ bool samples_extended_light(const World& world, const PhotonPlan& plan) {
   return false;
 }
 
-/// Shadow rays of a camera ray where light is scattered so many times.
+/// Shadow rays of a camera ray by the number of scattering events.
 int samples_for(double collisions) {
   const double samples = std::round(direct_per_collision / (1 + collisions));
   return static_cast<int>(std::clamp<double>(samples, fewest_samples, most_samples));

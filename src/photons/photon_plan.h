@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What the photon passes of a frame are like: chosen once, before the first pass, as a pure
+/// Plan of the photon passes of a frame: chosen once, before the first pass, as a pure
 /// function of the estimator's input (by counts, never by a clock).
 struct PhotonPlan {
   /// Per light: single scattering by shadow rays instead of photons.
@@ -47,7 +47,7 @@ struct PhotonPlan {
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
 };
 
-/// What needs no photons to be known: the settings and the render plan's decisions.
+/// The part of the plan that needs no pilot: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
 /// and chooses from the mean number of their collisions how many shadow rays to send and how many
@@ -65,10 +65,10 @@ double automatic_paths(double hits, double stored_per_path);
 double paths_for_photons(double photons, double stored_per_path);
 
 /// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
-/// all that the medium shows of them comes from photons, few of which leave a lamp's housing.
+/// all that the medium shows of them comes from photons, and few photons leave a lamp's housing.
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
 
-/// Collisions of one path that are stored on average: more of them tell little that is new.
+/// Mean number of photons stored per path; more are nearly redundant.
 inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);

@@ -9,7 +9,7 @@
 namespace vdbeam {
 namespace {
 
-/// Of photons that arrive along the surface itself nobody knows the side.
+/// Photons at grazing incidence have no reliable side and are ignored.
 constexpr float least_cosine = 1e-5f;
 /// How far from the tangent plane photons may lie, as a share of their radius: what curved surfaces
 /// need, and little of a wall that stands on this one.
@@ -31,7 +31,7 @@ struct SurfacePhotons::Disc {
   bool hidden = false; ///< something stands in the disc
 };
 
-/// Nothing stands between the lifted centre and a point of the plane, lifted likewise.
+/// Nothing stands between the lifted centre and a point of the plane, lifted by the same height.
 bool SurfacePhotons::sees(const Disc& disc, const Vec3d& point) const {
   const Vec3d to = point + disc.normal * disc.lift - disc.above;
   const double distance = length(to);
@@ -46,7 +46,7 @@ bool SurfacePhotons::on_surface(const Disc& disc, const Vec3d& point) const {
          std::abs(dot(Vec3d(hit->normal), disc.normal)) > static_cast<double>(like_normal);
 }
 
-/// Of the kernel about the centre, by its value there the part in which photons can lie.
+/// Fraction of the kernel about the centre, weighted by its value, in which photons can lie.
 float SurfacePhotons::share(Disc& disc, Rng& rng) const {
   Vec3f u, v;
   orthonormal_frame(Vec3f(disc.normal), u, v);

@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What the photons on a surface tell of the light at a point of it.
+/// Estimate of the light at a point of a surface from the photons on it.
 ///
 /// Photons count that lie in the disc about the point, in the surface's tangent plane but for a
 /// tenth of their radius. Their sum is divided by the share of that disc in which photons can lie:

@@ -132,7 +132,7 @@ void spread(const Vec3<int>& counts, const Vec3f& falls, std::vector<float>& tab
   }
 }
 
-/// What is left per cell along each axis of a volume's grid, at 1 / e per `reach`.
+/// Remaining fraction per cell along each axis of a volume's grid, at 1 / e per `reach`.
 Vec3f falls_per_cell(const Volume& volume, float reach) {
   Affine to_local;
   for (std::size_t i = 0; i < 3; ++i)

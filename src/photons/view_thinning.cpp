@@ -11,7 +11,7 @@ namespace {
 /// Photons of less importance than 1 / most_factor are thinned even where there are too few.
 constexpr double most_factor = 4;
 
-/// What a photon is worth for the picture: the importance of its place times what is scattered
+/// Importance of a photon for the image: the importance of its place times what is scattered
 /// towards the camera, of the volume for which that is most.
 std::vector<float> worth_of(const World& world, const Camera& camera, const CellTables& importance,
                             const PhotonList& photons) {

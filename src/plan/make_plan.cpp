@@ -1,4 +1,5 @@
 #include "camera/camera.h"
+#include "grids/fog_grid.h"
 #include "plan/plan.h"
 #include "plan/surface_files.h"
 #include "prepare/read_volumes.h"
@@ -19,6 +20,8 @@ Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
 /// The header of a grid, cropped as reading the grid will crop it: voxels inside the box that may
 /// be active count as active. What moves may come from anywhere.
 GridSummary read_header(const Scene& scene, const VolumeSettings& volume, const std::string& name) {
+  if (volume.fog.made())
+    return fog_header(volume);
   GridSummary grid = read_grid_header(volume.file, name);
   const std::optional<WantedBox> wanted = wanted_box(volume, nullptr);
   if (!wanted || !scene.moments.empty() || grid.active_voxels == 0 || is_level_set(grid))

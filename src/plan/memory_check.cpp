@@ -32,8 +32,7 @@ std::string gigabytes(std::uint64_t bytes) {
 void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t granted) {
   if (bytes > granted)
     refuse(scene, "image.deep: its samples", bytes, granted,
-           "ask for fewer by greater image.deep_alpha and image.deep_depth, or for a smaller "
-           "picture");
+           "raise image.deep_alpha or image.deep_depth, or render a smaller image");
 }
 
 std::optional<MemoryPlan> plan_large_frame(const Scene& scene, int references,
@@ -74,14 +73,14 @@ void check_memory(const Scene& scene, const RenderPlan& plan, std::uint64_t gran
   const std::uint64_t photons = scene.render.photons.value_or(0);
   if (plan.needs(Stage::photons) && (plan.photon_bytes > granted || photons > most_photons))
     refuse(scene, fmt::format("render.photons: a map of {} photons", photons), plan.photon_bytes,
-           granted, "ask for fewer photons and more passes, which give the same picture");
+           granted, "use fewer photons and more passes, which give the same image");
   if (plan.film_bytes <= granted)
     return;
   const std::string size = fmt::format("{} x {} pixels", scene.image.width, scene.image.height);
   if (const std::size_t planes = plane_names(scene).size(); planes > 0)
     refuse(scene, fmt::format("image: {} with {} channels of layers", size, planes),
-           plan.film_bytes, granted, "ask for a smaller picture or fewer layers");
-  refuse(scene, "image: " + size, plan.film_bytes, granted, "ask for a smaller picture");
+           plan.film_bytes, granted, "render a smaller image or fewer layers");
+  refuse(scene, "image: " + size, plan.film_bytes, granted, "render a smaller image");
 }
 
 } // namespace vdbeam

@@ -10,7 +10,7 @@ namespace vdbeam {
 /// Throws InputError where the samples of a deep picture need more than `granted` bytes.
 void check_deep_memory(const Scene& scene, std::uint64_t bytes, std::uint64_t granted);
 
-/// What plan_memory finds; nothing where a bound by the sizes of the frame's files shows that it
+/// Result of plan_memory; empty where a bound by the sizes of the frame's files shows that it
 /// takes less than half of `granted`, or where its files cannot be read.
 std::optional<MemoryPlan> plan_large_frame(const Scene& scene, int references,
                                            std::uint64_t granted);

@@ -36,7 +36,8 @@ constexpr double kept_of_surfaces = 0.3;
 /// Photons that a light path leaves in a thin medium per optical depth of the medium, fitted to the
 /// sample scenes, which have 0.5 to 1.6; and the fewest, so that paths remain to be counted.
 constexpr double stored_per_depth = 0.8, fewest_stored = 0.01;
-/// Of a picture's pixels that are written: half floats beside its own channels, and the preview.
+/// Memory per pixel while an image is written: half floats beside its own channels, and the
+/// preview.
 constexpr std::uint64_t written_bytes_per_pixel = 24;
 
 std::uint64_t times(double factor, std::uint64_t bytes) {
@@ -157,15 +158,14 @@ private:
     const bool directions = plan_.needs(Stage::photon_directions);
     const int channels = plan_.needs(Stage::photon_color) ? 3 : 1;
     const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions);
-    add("photons", "render.photons", "ask for fewer photons and more passes", 0, times(count, each),
-        0);
+    add("photons", "render.photons", "use fewer photons and more passes", 0, times(count, each), 0);
     // Where nothing but the camera moves and photons are stored evenly, frames share their maps.
     if (scene_.render.seeds == SeedPolicy::correlated &&
         scene_.render.thinning == PhotonThinning::even && count > 0) {
       const std::uint64_t maps = times(count * scene_.render.passes.value_or(1 << 20),
                                        PhotonBlocks::bytes_per_photon(channels, directions));
       const std::uint64_t kept = std::min(maps, photon_cache_capacity());
-      add("photon cache", "render.seeds", "give each frame seeds of its own", 0, kept, kept);
+      add("photon cache", "render.seeds", "set render.seeds = \"per_frame\"", 0, kept, kept);
     }
   }
 
@@ -182,7 +182,9 @@ private:
     const double rays = PhotonPass::shadow_rays_per_pixel(moves) * static_cast<double>(pixels_);
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < scene_.lights.size() && !(bounds.lower.x > bounds.upper.x); ++i)
-      if (scene_.lights[i].type == LightType::distant && plan_.shadow_ray_lights[i])
+      if ((scene_.lights[i].type == LightType::distant ||
+           scene_.lights[i].type == LightType::sun) &&
+          plan_.shadow_ray_lights[i])
         bytes += ShadowLattice::bytes(Boxf{Vec3f(bounds.lower), Vec3f(bounds.upper)},
                                       Vec3f(normalize(scene_.lights[i].direction)) * -1.0f, rays);
     bytes *= std::max<std::uint64_t>(1, volumes_.moments);
@@ -197,9 +199,9 @@ private:
     const std::uint64_t film = plan_.film_bytes,
                         developed = pixels_ * (Film::developed_bytes_per_pixel(scene_.glows()) +
                                                sizeof(float) * plane_names(scene_).size());
-    add("film", "image", "ask for a smaller picture", 0, film - developed, film);
+    add("film", "image", "render a smaller image", 0, film - developed, film);
     if (walks)
-      add("walks", "image", "ask for a smaller picture", 0,
+      add("walks", "image", "render a smaller image", 0,
           pixels_ * PassImage::bytes_per_pixel(scene_.glows()), 0);
     add("writing", "", "", 0, 0, pixels_ * written_bytes_per_pixel);
   }
@@ -214,7 +216,7 @@ private:
     const std::uint64_t pieces =
         times(hits_, plan_.deep_bytes / DeepFilm::bytes_per_piece()) + pixels_;
     const std::uint64_t kept = pieces * (DeepFilm::bytes_per_piece() + layout);
-    add("deep", "image.deep", "ask for greater image.deep_alpha and image.deep_depth", 0, kept,
+    add("deep", "image.deep", "raise image.deep_alpha or image.deep_depth", 0, kept,
         kept + pieces * developed);
   }
 
@@ -224,7 +226,7 @@ private:
     const std::uint64_t bytes =
         static_cast<std::uint64_t>(count) * pixels_ * (3 * sizeof(float) + 2 * sizeof(double));
     const std::uint64_t developed = pixels_ * Film::developed_bytes_per_pixel(scene_.glows());
-    add("references", "--reference", "ask for a smaller picture, or for no comparison", 0,
+    add("references", "--reference", "render a smaller image, or without a reference", 0,
         count > 0 ? bytes + developed : 0, bytes);
   }
 

@@ -12,7 +12,7 @@ struct SeenCells {
   bool dims = false; ///< light: it absorbs or scatters
 };
 
-/// What the volumes of a scene take.
+/// Memory of the volumes of a scene.
 struct VolumesMemory {
   std::uint64_t kept = 0;    ///< while the frame is rendered, all moments of its shutter included
   std::uint64_t still = 0;   ///< without the moments

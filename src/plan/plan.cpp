@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace vdbeam {
@@ -49,11 +50,11 @@ public:
         needs_.surrounded ? "a light surrounds the scene" : "no light surrounds the scene");
     const bool moves = !scene_.moments.empty();
     add(Stage::moments, moves,
-        moves ? "the shutter is open: passes see moments of their own"
-              : "nothing moves, or the shutter is open for no time");
+        moves ? "the shutter is open: each pass renders one motion sample"
+              : "nothing moves, or the shutter is closed");
     add(Stage::deep, scene_.image.deep,
-        scene_.image.deep ? "image.deep: light and opacity are told apart by depth"
-                          : "no deep picture is asked for");
+        scene_.image.deep ? "image.deep: light and opacity are accumulated per deep sample"
+                          : "image.deep is false");
     return std::move(stages_);
   }
 
@@ -69,15 +70,19 @@ private:
   bool runs(Stage stage) const { return estimator_.stages.contains(stage); }
 
   void add_medium() {
-    add(Stage::read, !scene_.volumes.empty(),
+    const bool files = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
+                                   [](const VolumeSettings& volume) { return !volume.fog.made(); });
+    add(Stage::read, files,
         scene_.volumes.empty()    ? "no volumes"
-        : !scene_.moments.empty() ? "the scene's grids, and velocities where there are any"
+        : !files                  ? "no volume has a file: their densities are formulas"
+        : !scene_.moments.empty() ? "density, emission and velocity grids"
         : needs_.glows            ? "density and emission grids only"
                                   : "density grids only");
-    add(Stage::majorants, needs_.medium, needs_.medium ? "the medium is not empty" : no_medium);
+    add(Stage::majorants, needs_.medium,
+        needs_.medium ? "free flights need an upper bound of the extinction" : no_medium);
     const bool surfaces = !scene_.surfaces.empty();
     add(Stage::surfaces, surfaces,
-        surfaces ? "meshes stand in the scene" : "there is no mesh, nor a device of Embree");
+        surfaces ? "rays are intersected with the meshes" : "no meshes in the scene");
   }
 
   void add_photons() {
@@ -85,98 +90,101 @@ private:
     const bool sees = runs(Stage::photon_importance);
     const bool by_view = render.thinning != PhotonThinning::even;
     add(Stage::photons, needs_.photons,
-        first_reason(
-            {{!needs_.scatters, no_scattering_},
-             {!runs(Stage::photons), fmt::format("the {} estimator shoots none", estimator_.name)},
-             {!needs_.photons, "single bounce, all by shadow rays"},
-             {true, "light scatters in the medium: photons carry it"}}));
+        first_reason({{!needs_.scatters, no_scattering_},
+                      {!runs(Stage::photons),
+                       fmt::format("the {} estimator traces no photons", estimator_.name)},
+                      {!needs_.photons, "single scattering only, all by shadow rays"},
+                      {true, "photons carry the multiple scattering"}}));
     const bool importance = needs_.photons && sees && by_view;
     add(Stage::photon_importance, importance,
         first_reason({{!needs_.photons, no_photons},
-                      {!sees, "the estimator stores photons whatever the camera sees"},
-                      {!by_view, "photons are stored evenly, as asked for"},
-                      {true, "photons are stored where the camera sees them"}}));
+                      {!sees, "the estimator stores photons independently of the view"},
+                      {!by_view, "render.thinning is \"even\""},
+                      {true, "photons are stored by their importance for the camera"}}));
     // Where photons may serve frames with other views, kernels must not depend on the view either.
     const bool pilot = importance && runs(Stage::kernel_pilot) &&
                        render.kernel == KernelRadius::adaptive && render.neighbours == 0 &&
                        render.store == PhotonStore::fluence;
     add(Stage::kernel_pilot, pilot,
-        first_reason({{pilot, "kernels are tried on a few photon maps, unless photons are few"},
-                      {!needs_.photons, no_photons},
-                      {render.kernel == KernelRadius::fixed, "the kernel's radius is fixed"},
-                      {render.neighbours > 0, "render.neighbours is given"},
-                      {render.store != PhotonStore::fluence, "it needs fluence photons"},
-                      {true, "photons do not depend on the view"}}));
-    add(Stage::surface_photons, needs_.surface_photons,
         first_reason(
-            {{needs_.surface_photons,
-              "mirrors, metal, glass and the medium send light on to surfaces: photons bring it"},
-             {!runs(Stage::surface_photons),
-              fmt::format("the {} estimator shoots no photons", estimator_.name)},
-             {true, "paths find what the medium sends on to surfaces"}}));
+            {{pilot, "a few small photon maps choose the kernel width, unless photons are few"},
+             {!needs_.photons, no_photons},
+             {render.kernel == KernelRadius::fixed, "render.kernel is \"fixed\""},
+             {render.neighbours > 0, "render.neighbours is given"},
+             {render.store != PhotonStore::fluence, "render.store is \"scatter\""},
+             {true, "photons are independent of the view"}}));
+    add(Stage::surface_photons, needs_.surface_photons,
+        first_reason({{needs_.surface_photons,
+                       "caustics and light scattered onto surfaces come from photons"},
+                      {!runs(Stage::surface_photons),
+                       fmt::format("the {} estimator traces no photons", estimator_.name)},
+                      {true, "paths find what the medium sends on to surfaces"}}));
   }
 
   void add_map() {
-    add(Stage::map, needs_.photons, needs_.photons ? "photons are gathered" : no_photons);
+    add(Stage::map, needs_.photons,
+        needs_.photons ? "photons are sorted into a kd-tree" : no_photons);
     const bool fixed = scene_.render.kernel == KernelRadius::fixed;
     add(Stage::neighbours, needs_.photons && !fixed,
         first_reason({{!needs_.photons, no_photons},
                       {fixed, "the kernel's radius is fixed"},
-                      {true, "kernels are as wide as photons are sparse"}}));
+                      {true, "each kernel's radius follows the local photon density"}}));
     add(Stage::photon_directions, needs_.photons && needs_.anisotropic,
         first_reason({{!needs_.photons, no_photons},
                       {!needs_.anisotropic, "all phase functions are isotropic"},
-                      {true, "how much a photon sends to the camera depends on its direction"}}));
+                      {true, "the phase function depends on the photon's direction"}}));
     const bool grid = std::any_of(scene_.volumes.begin(), scene_.volumes.end(),
                                   [](const VolumeSettings& v) { return !v.color_grid.empty(); });
     add(Stage::photon_color, needs_.photons && needs_.colored,
         first_reason({{!needs_.photons, no_photons},
-                      {grid, "a grid of colours multiplies the albedo"},
-                      {!needs_.colored, "all colours are grey"},
-                      {true, "albedo, extinction or lights differ between red, green and blue"}}));
+                      {grid, "a colour grid multiplies the albedo"},
+                      {!needs_.colored, "albedo, extinction and lights are achromatic"},
+                      {true, "albedo, extinction or lights differ between channels"}}));
   }
 
   void add_camera_rays() {
     add(Stage::spectral_tracking, needs_.scatters && needs_.chromatic,
-        needs_.chromatic ? "extinction differs between channels" : "extinction is grey");
+        needs_.chromatic ? "extinction differs between channels" : "extinction is achromatic");
     add(Stage::depth_profiles, needs_.visible,
-        first_reason(
-            {{!needs_.medium, no_medium},
-             {!needs_.visible, out_of_view},
-             {true, "the medium dims what lies behind it: optical depth along each ray"}}));
+        first_reason({{!needs_.medium, no_medium},
+                      {!needs_.visible, out_of_view},
+                      {true, "transmittance along each camera ray"}}));
     add(Stage::emission, needs_.glow_visible,
-        first_reason({{!needs_.glows, "no volume glows"},
-                      {!needs_.glow_visible, "the camera sees nothing of what glows"},
-                      {true, "a volume glows"}}));
+        first_reason({{!needs_.glows, "no volume emits light"},
+                      {!needs_.glow_visible, "no emission is visible to the camera"},
+                      {true, "a volume emits light"}}));
     add(Stage::shadow_rays, needs_.shadow_rays(),
         first_reason(
             {{!needs_.scatters, no_scattering_},
-             {!needs_.shadow_rays(), "every light is left to photons or to escaping rays"},
-             {true, "light that scatters once is found from camera rays, towards the lights"}}));
+             {!needs_.shadow_rays(), "every light is sampled by photons or by escaping rays"},
+             {true, "single scattering by next-event estimation from camera rays"}}));
   }
 
   void add_gathering() {
     for (const Stage stage : {Stage::beam_query, Stage::march})
       add(stage, needs_.photons && runs(stage),
-          first_reason({{!needs_.photons, no_photons},
-                        {!runs(stage), other_estimator},
-                        {stage == Stage::march, "photons are gathered in steps along each ray"},
-                        {true, "photons are gathered along each whole camera ray"}}));
+          first_reason(
+              {{!needs_.photons, no_photons},
+               {!runs(stage), other_estimator},
+               {stage == Stage::march, "photons are gathered step by step along each camera ray"},
+               {true, "photons are gathered along each camera ray"}}));
     const bool paths = runs(Stage::paths);
     add(Stage::paths, needs_.scatters && paths,
         first_reason({{!paths, other_estimator},
                       {!needs_.scatters, no_scattering_},
-                      {true, "light that scatters more often is found by random walks"}}));
+                      {true, "multiple scattering by random walks"}}));
   }
 
   void add_bias() {
     const bool asked = scene_.render.bias_rays > 0;
-    add(Stage::bias, needs_.photons && asked && runs(Stage::bias) && !needs_.specular,
+    add(Stage::bias, needs_.photons && asked && runs(Stage::bias),
         first_reason(
             {{!needs_.photons, no_photons},
              {!asked, "render.bias_rays is 0"},
-             {needs_.specular, "path tracing may miss light that mirrors or glass focus"},
-             {true, "kernels blur: some rays are followed by path tracing to tell how much"}}));
+             {needs_.specular,
+              "the kernels' bias is measured; path tracing may miss caustics, so no "
+              "rays are path traced"},
+             {true, "a fraction of the rays is path traced to estimate the kernels' bias"}}));
   }
 
   const Scene& scene_;

@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What the plan must know of each volume beyond the scene file.
+/// Facts of each volume that the plan needs beyond the scene file.
 struct VolumeFacts {
   bool empty = false;
   std::uint64_t active_voxels = 0;
@@ -18,7 +18,7 @@ struct VolumeFacts {
 std::vector<VolumeFacts> volume_facts(const WorldFacts& facts, const World& world,
                                       const Camera& camera, bool moves = false);
 
-/// What the path estimator would do about the frame: quick looks are made by it, and the bias of
+/// Plan of the path estimator for the frame: quick looks are made by it, and the bias of
 /// the other estimators is measured against it.
 RenderPlan plan_paths(Scene scene, const std::vector<VolumeFacts>& volumes);
 

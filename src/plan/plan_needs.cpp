@@ -43,7 +43,7 @@ void add_light(const LightSettings& light, const EstimatorKind& estimator, Direc
                PlanNeeds& needs) {
   const LightKind& kind = light_kind(light.type);
   needs.surrounded = needs.surrounded || kind.surrounds;
-  needs.colored = needs.colored || kind.colored(light);
+  needs.colored = needs.colored || light.kelvin || kind.colored(light);
   needs.shadow_ray_lights.push_back(takes_shadow_rays(light, kind, estimator, direct));
 }
 

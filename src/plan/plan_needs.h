@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What of the scene decides the stages.
+/// Properties of the scene that decide the stages.
 struct PlanNeeds {
   bool medium = false;          ///< something absorbs or scatters
   bool visible = false;         ///< and the camera sees it

@@ -10,15 +10,15 @@
 namespace vdbeam {
 namespace {
 
-/// What assimp takes in the process that reads a file, and with it a fifth as much in the renderer,
+/// Memory of assimp in the process that reads a file, and with it a fifth as much in the renderer,
 /// as measured on ten million triangles: 3.7 GB with 5 million vertices.
 constexpr std::uint64_t bytes_per_vertex = 250, bytes_per_triangle = 250;
-/// Of the normals at the corners of triangles.
+/// Memory of the normals at the corners of a triangle.
 constexpr std::uint64_t bytes_of_normals = 36;
-/// In the file's picture and in the texture made of it.
+/// Memory per texel of the file's image and of the texture made from it.
 constexpr std::uint64_t bytes_per_texel = 24;
 
-/// Of the surfaces that show a file some are shaded by normals: by its own, or by those of their
+/// Whether any surface with this file is shaded by normals: by those of the file, or of its
 /// `smooth_angle`.
 bool has_normals(const Scene& scene, const std::string& file, bool own) {
   return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const auto& surface) {

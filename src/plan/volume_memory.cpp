@@ -1,4 +1,5 @@
 #include "grids/edited_field.h"
+#include "grids/fog_grid.h"
 #include "machine/memory.h"
 #include "plan/memory_model.h"
 #include "prepare/read_volumes.h"
@@ -18,7 +19,7 @@ constexpr std::uint64_t brick_bytes = DensityField::brick_size * sizeof(float);
 constexpr std::uint64_t leaf_values = 512;
 /// Index table and largest values of a field, per cell.
 constexpr std::uint64_t table_bytes = sizeof(std::int32_t) + sizeof(float);
-/// What a leaf of OpenVDB's tree takes beyond its values: masks, origin, the allocator.
+/// Memory of a leaf of OpenVDB's tree beyond its values [bytes]: masks, origin, the allocator.
 constexpr std::uint64_t leaf_overhead = 112;
 /// A process that reads a file takes so much beyond the grid: pages that it copies, buffers.
 constexpr std::uint64_t reader_bytes = std::uint64_t{8} << 20;
@@ -34,8 +35,8 @@ struct FieldMemory {
   CellSet set;
   std::uint64_t bytes = 0, peak = 0;
   Affine to_world; ///< of its cells
-  /// Of the grid itself, before it is refined and displaced: by its voxels it is known best what
-  /// the camera sees.
+  /// Cells of the grid before refinement and displacement: its voxels show best what the camera
+  /// sees.
   CellSet grid;
   Affine grid_to_world;
 };
@@ -62,6 +63,8 @@ public:
 
   /// The grid of this name, refined and displaced as the volume has it.
   FieldMemory source(const std::string& name) {
+    if (volume_.fog.made())
+      return fog();
     const GridShape& shape = shape_of(name);
     const GridSummary header = read_grid_header(volume_.file, name);
     std::optional<WantedBox::Voxels> wanted;
@@ -84,11 +87,25 @@ public:
   const GridShape& shape_of(const std::string& name) {
     auto found = shapes_.find(name);
     if (found == shapes_.end())
-      found = shapes_.emplace(name, read_grid_shape(volume_.file, name)).first;
+      found = shapes_
+                  .emplace(name, volume_.fog.made() ? fog_grid_shape(volume_)
+                                                    : read_grid_shape(volume_.file, name))
+                  .first;
     return found->second;
   }
 
 private:
+  /// The field of a volume without a file, which is made with its noise.
+  FieldMemory fog() {
+    FieldMemory field;
+    field.grid = field.set = CellSet(shape_of(volume_.density), 1, 0);
+    field.bytes = fog_bytes(volume_);
+    constexpr double while_made = 1.1; // the cells of its bricks
+    field.peak = times(while_made, field.bytes);
+    field.to_world = field.grid_to_world = cells_to_world(fog_header(volume_).index_to_world, 1);
+    return field;
+  }
+
   /// OpenVDB's tree and the memory file beside it, or the bricks that replace the file.
   static std::uint64_t reading_bytes(const GridShape& shape, const CellSet& set) {
     const std::uint64_t leaves = shape.leaf_count;
@@ -139,8 +156,9 @@ private:
 
 /// Whether the frame's shutter sees the volume at several moments.
 bool moves(const Scene& scene, const VolumeSettings& volume) {
-  return !scene.moments.empty() && volume.present && volume.velocity.grid != "none" &&
-         volume.velocity.scale != 0 && has_velocity(volume.file, volume.velocity.grid);
+  return !scene.moments.empty() && volume.present && !volume.fog.made() &&
+         volume.velocity.grid != "none" && volume.velocity.scale != 0 &&
+         has_velocity(volume.file, volume.velocity.grid);
 }
 
 /// The mean optical depth of volumes, from the sum of their voxels and the shadows of their cells.
@@ -149,7 +167,7 @@ public:
   void add(const VolumeSettings& volume, const GridShape& shape, const CellSet& cells,
            const Affine& to_world) {
     const bool edited = volume.remap.changes() || !volume.mask.empty() || !volume.add.empty() ||
-                        volume.box_lower.has_value();
+                        (volume.box_lower.has_value() && !volume.fog.made());
     known_ = known_ && shape.value_sum >= 0 && !edited;
     const auto edge = [&](int a) {
       const std::array<Vec3d, 3>& rows = to_world.rows;
@@ -197,7 +215,8 @@ void take_density(const VolumeSettings& volume, VolumeEstimate& estimate, Volume
   }
   if (others > 0)
     field.peak = std::max(field.peak, 2 * field.bytes + others);
-  const bool edited = volume.remap.changes() || !volume.mask.empty() || volume.box_lower;
+  const bool edited =
+      volume.remap.changes() || !volume.mask.empty() || (volume.box_lower && !volume.fog.made());
   if (edited)
     field.peak = std::max(field.peak, 2 * field.bytes);
   memory.peak = std::max(memory.peak, field.peak);

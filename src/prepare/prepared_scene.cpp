@@ -61,7 +61,7 @@ void keep_facts(const DensityGrid& grid, ReadVolume& read) {
 /// A volume at the moments that passes see.
 std::vector<VolumeSettings> moments_of(const Scene& scene, std::size_t volume) {
   std::vector<VolumeSettings> moments;
-  for (const Scene& moment : scene.moments) // of which several may differ by the camera alone
+  for (const Scene& moment : scene.moments) // several may differ by the camera alone
     if (moments.empty() || moments.back().velocity.time != moment.volumes[volume].velocity.time)
       moments.push_back(moment.volumes[volume]);
   return moments;
@@ -151,7 +151,7 @@ void take_over(const Scene& scene, const PreparedScenePtr& previous, const StopT
   }
 }
 
-/// What is read of the volumes of a scene, one after the other.
+/// Data read for the volumes of a scene, in their order.
 struct ReadGrids {
   std::vector<DensityGrid> density;
   std::vector<EmissionGrid> emission;

@@ -27,7 +27,7 @@ struct ReadVolume {
   std::string velocity_identity; ///< what it was read from; empty: nothing was read
   Colors colors;                 ///< of its color_grid
   std::string color_identity;    ///< what they were read from; empty: nothing was read
-  /// What the moments of its scene are made from, beyond what the world holds.
+  /// Data for making motion samples of its scene, beyond the world.
   std::vector<SourceGrid> sources;
   std::uint64_t grids_read = 0; ///< from its file; not those that were kept
 };

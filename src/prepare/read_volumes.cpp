@@ -39,17 +39,18 @@ std::string edits_text(const VolumeSettings& volume) {
                                           r.curve, static_cast<int>(volume.interpolation));
 }
 
-/// What decides the colours that multiply a volume's albedo.
+/// Settings that decide the colours which multiply a volume's albedo.
 std::string colors_text(const VolumeSettings& volume) {
   return volume.color_grid.empty() ? ""
                                    : fmt::format("|colors {} {}", volume.color_grid,
                                                  static_cast<int>(volume.emission.color_space));
 }
 
-/// The box that a volume is clipped to, and what places it there.
+/// The box that a volume is clipped to, and what places it there; of a volume without a file its
+/// shape, which is placed afterwards.
 std::string box_text(const VolumeSettings& volume) {
-  if (!volume.box_lower || !volume.box_upper)
-    return "";
+  if (volume.fog.made() || !volume.box_lower || !volume.box_upper)
+    return fog_text(volume);
   const Vec3d &a = *volume.box_lower, &b = *volume.box_upper;
   std::string text = fmt::format("|{} {} {} {} {} {}", a.x, a.y, a.z, b.x, b.y, b.z);
   for (const double x : volume.transform)
@@ -68,7 +69,7 @@ GridEdits edits_of(const VolumeSettings& volume, const DensityGrid& grid, bool d
   edits.to_world = Affine::from_matrix(volume.transform).after(grid.index_to_world);
   if (density)
     edits.remap = volume.remap;
-  if (volume.box_lower && volume.box_upper)
+  if (!volume.fog.made() && volume.box_lower && volume.box_upper)
     edits.box = Boxd{*volume.box_lower, *volume.box_upper};
   return edits;
 }
@@ -142,7 +143,8 @@ bool stands_still(const VolumeSettings& volume, const ReadVolume& read) {
 
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion) {
   const Affine placed = Affine::from_matrix(volume.transform);
-  if (!volume.box_lower || !volume.box_upper || !(std::abs(placed.determinant()) > 0))
+  if (volume.fog.made() || !volume.box_lower || !volume.box_upper ||
+      !(std::abs(placed.determinant()) > 0))
     return std::nullopt;
   Boxd box = placed.inverse().bounds({*volume.box_lower, *volume.box_upper});
   const Vec3d noise(volume.noise.amplitude);
@@ -240,7 +242,7 @@ void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
   read.color_identity = file_identity(volume.file) + colors_text(volume);
   read.colors = find_colors(volume, previous, read.color_identity, stop, read);
   if (!read.colors.field) {
-    grid.notes.push_back(volume.file + ": has no grid of colours (color_grid = \"auto\")");
+    grid.notes.push_back(volume.file + ": has no colour grid (color_grid = \"auto\")");
     return;
   }
   const VectorField& colors = *read.colors.field;
@@ -249,8 +251,8 @@ void take_colors(const VolumeSettings& volume, const PreparedScenePtr& previous,
       grid.notes.push_back(fmt::format("{}: color_grid \"{}\": {} voxels {}", volume.file,
                                        volume.color_grid, voxels, what));
   };
-  note(read.colors.limited, "have a component beyond [0, 1], which counts as 0 or 1");
-  note(colors.outliers(), "are not finite, and have the colour of those around");
+  note(read.colors.limited, "have a component outside [0, 1], clamped");
+  note(colors.outliers(), "are not finite; they take the colour of their neighbours");
   if (ColorField::bytes_of(grid.field) > granted_memory())
     throw FrameError(volume.file + ": its colours need more memory than there may be");
   const auto motion = motion_of(volume, read);
@@ -279,7 +281,8 @@ void take_velocity(const Scene& scene, std::size_t i, const PreparedScenePtr& pr
   const bool wanted = !scene.moments.empty() || asks_for_layer(scene, "motion");
   if (volume.velocity.time != 0 && previous) // a moment of the scene that is prepared
     read.velocity = previous->volumes[i].velocity;
-  if (!wanted || !volume.present || volume.velocity.grid == "none" || volume.velocity.scale == 0)
+  if (!wanted || !volume.present || volume.fog.made() || volume.velocity.grid == "none" ||
+      volume.velocity.scale == 0)
     return;
   const std::string identity = fmt::format(
       "{}|{}|{}|{}|{}", file_identity(volume.file), volume.velocity.grid, volume.velocity.fps,
@@ -298,16 +301,15 @@ void note_velocities(const Scene& scene, PreparedScene& prepared) {
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const ReadVolume& read = prepared.volumes[i];
     if (!read.velocity_identity.empty() && !read.velocity && !scene.moments.empty())
-      prepared.facts.notes.push_back(
-          fmt::format("{}: has no grid of velocities (\"velocity\", \"vel\", \"v\" or three "
-                      "components), so nothing in it is blurred by its own motion; name "
-                      "volume.{}.velocity, or write \"none\" there",
-                      scene.volumes[i].file, i));
-    if (!read.velocity_identity.empty() && read.velocity && read.velocity->outliers() > 0)
       prepared.facts.notes.push_back(fmt::format(
-          "{}: {} voxels have a velocity that is not a number or crosses the whole grid "
-          "within a frame; they move like their neighbours",
-          scene.volumes[i].file, read.velocity->outliers()));
+          "{}: has no velocity grid (\"velocity\", \"vel\", \"v\" or three components), so it has "
+          "no motion blur of its own; set volume.{}.velocity to a grid, or to \"none\"",
+          scene.volumes[i].file, i));
+    if (!read.velocity_identity.empty() && read.velocity && read.velocity->outliers() > 0)
+      prepared.facts.notes.push_back(
+          fmt::format("{}: {} voxels have a velocity that is not finite or crosses the whole grid "
+                      "within a frame; they move like their neighbours",
+                      scene.volumes[i].file, read.velocity->outliers()));
   }
 }
 

@@ -9,7 +9,7 @@ namespace vdbeam {
 
 // Functions that take a StopToken read files and make fields, and throw Stopped when it says so.
 
-/// What of a volume's file can come to be seen through its box; none: all of it. `motion`: what
+/// The part of a volume's file that can become visible in its box; none: all of it. `motion`: what
 /// moves it, or null.
 std::optional<WantedBox> wanted_box(const VolumeSettings& volume, const Motion* motion);
 
@@ -27,7 +27,7 @@ std::string emission_identity(const VolumeSettings& volume);
 DensityGrid take_grid(const VolumeSettings& volume, const PreparedScenePtr& previous,
                       const StopToken& stop, ReadVolume& read);
 
-/// Likewise what glows; `earlier`: the volumes of this scene that were read before it.
+/// Reads the emission of volumes; `earlier`: the volumes of this scene that were read before it.
 EmissionGrid take_emission(const VolumeSettings& volume, const PreparedScenePtr& previous,
                            const std::vector<ReadVolume>& earlier, const StopToken& stop,
                            ReadVolume& read);

@@ -2,9 +2,11 @@
 
 #include "grids/combined_grid.h"
 #include "grids/edited_field.h"
+#include "grids/fog_grid.h"
 #include "grids/refined_grid.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"
+#include "volume/fog_shape.h"
 #include "volume/noise.h"
 
 #include <fmt/format.h>
@@ -60,15 +62,27 @@ std::string noise_text(const VolumeSettings& volume) {
                              : "";
 }
 
+std::string fog_text(const VolumeSettings& volume) {
+  const FogSettings& fog = volume.fog;
+  if (!fog.made())
+    return "";
+  const Boxd box = box_of(volume);
+  return fmt::format("|fog {} {} {} {} {} {} {} {} {}", static_cast<int>(fog.shape),
+                     fog.scale_height, fog.least_density, box.lower.x, box.lower.y, box.lower.z,
+                     box.upper.x, box.upper.y, box.upper.z);
+}
+
 std::string density_source_identity(const VolumeSettings& volume) {
-  return fmt::format("density|{}|{}|{}|{}|{}{}", file_identity(volume.file), volume.density,
-                     volume.add, volume.mask, static_cast<int>(volume.interpolation),
-                     noise_text(volume));
+  return fog_text(volume) + fmt::format("density|{}|{}|{}|{}|{}{}", file_identity(volume.file),
+                                        volume.density, volume.add, volume.mask,
+                                        static_cast<int>(volume.interpolation), noise_text(volume));
 }
 
 DensityGrid read_density_source(const VolumeSettings& volume,
                                 const std::optional<WantedBox>& wanted, const StopToken& stop,
                                 std::uint64_t& grids_read) {
+  if (volume.fog.made())
+    return fog_grid(volume, {granted_memory(), &stop});
   std::vector<DensityGrid> grids;
   std::vector<std::string> names = names_in(volume.add);
   names.insert(names.begin(), volume.density);

@@ -26,11 +26,14 @@ DensityGrid read_density_source(const VolumeSettings& volume,
                                 const std::optional<WantedBox>& wanted, const StopToken& stop,
                                 std::uint64_t& grids_read);
 
-/// Likewise of a grid of its emission; empty where it has no name.
+/// The same for a grid of its emission; empty if it has no name.
 std::string emission_source_identity(const VolumeSettings& volume, const std::string& grid);
 DensityGrid read_emission_source(const VolumeSettings& volume, const std::string& grid,
                                  const std::optional<WantedBox>& wanted, const StopToken& stop,
                                  std::uint64_t& grids_read);
+
+/// What decides the density of a volume without a file, as text; "" for others.
+std::string fog_text(const VolumeSettings& volume);
 
 /// The settings of a volume's noise, as text.
 std::string noise_text(const VolumeSettings& volume);

@@ -26,7 +26,7 @@ struct SinglePhase {
   Rgb through{1, 1, 1}; ///< transmittance to the point of what was taken out
 
   float evaluate(float cosine) const { return phase.evaluate(cosine); }
-  /// What a scattering weighs, of which the medium at hand counts the share 1 - forward.
+  /// Phase value in the delta-scaled medium, whose scattering is the fraction 1 - forward.
   /// `taken_out`: optical depth of the peak on the way from the light.
   Rgb weight(bool surrounds, float p, float cosine, const Rgb& taken_out) const {
     const float tms = p / (1 - forward);
@@ -43,7 +43,7 @@ struct SinglePhase {
   }
 
 private:
-  /// Up to 10 degrees all; from 35 on, where TMS is about as good, nothing (docs/decisions.md).
+  /// 1 up to 10 degrees, 0 from 35 degrees on, where TMS is about as good.
   static float share_of_aureole(float cosine) {
     constexpr float begin = 0.8192f, end = 0.9848f;
     const float x = std::clamp((cosine - begin) / (end - begin), 0.0f, 1.0f);
@@ -169,14 +169,14 @@ public:
   }
 
 private:
-  /// Of the ray: opacity and weight from its beginning to the end of the piece.
+  /// Opacity and weight of the ray from its beginning to the end of a piece.
   struct Piece {
     float opacity, weight;
   };
   struct SampledLight {
     std::size_t index;
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
-    std::vector<Piece> pieces;       ///< where a lattice tells what is shadowed; else empty
+    std::vector<Piece> pieces;       ///< pieces by the shadow lattice; empty without one
   };
 
   void add(GroupedLight& sum, const SampledLight& light, const Rgb& found) const {

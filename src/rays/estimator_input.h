@@ -14,7 +14,7 @@ namespace vdbeam {
 class PhotonCache;
 struct SceneChoices;
 
-/// What an estimator is given beyond the scene; what is pointed to must outlive it.
+/// Input of an estimator beyond the scene; objects pointed to must outlive it.
 struct EstimatorTask {
   std::uint64_t frame = 1;
   /// Pixels that are wanted; empty: all. Others may stay black.
@@ -27,14 +27,14 @@ struct EstimatorTask {
   const DeepLayout* deep = nullptr;      ///< where rays are cut for a deep picture; null: nowhere
   const SceneObjects* objects = nullptr; ///< whose coverage is asked for; null: of none
   const RayLayers* layers = nullptr;     ///< beyond the usual ones; null: none
-  /// Of a moment of the scene: the choices of the scene itself, which it follows; null: it makes
-  /// choices of its own.
+  /// For a motion sample: the choices of the scene itself, which it follows; null: it makes its
+  /// own.
   const SceneChoices* of_scene = nullptr;
   /// Light paths reach the limit of bounces often enough to be seen, where there is one.
   bool reaches_bounce_limit = true;
 };
 
-/// What every estimator is made from; the references must outlive it.
+/// Input of every estimator; the references must outlive it.
 struct EstimatorInput : EstimatorTask {
   EstimatorInput(const World& world_, const Camera& camera_, const RenderSettings& settings_,
                  const RenderPlan& plan_, const EstimatorTask& task = {})

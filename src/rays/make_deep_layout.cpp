@@ -22,7 +22,7 @@ struct Knot {
   double distance, opacity;
 };
 
-/// What a pixel's rays have in common.
+/// Data common to a pixel's rays.
 class PixelCurve {
 public:
   explicit PixelCurve(const EstimatorInput& input) : input_(input) {}
@@ -171,7 +171,7 @@ double largest_error(const std::vector<Knot>& knots, const float* edges, std::si
   return largest;
 }
 
-/// What one row of the picture adds to the layout.
+/// Pieces of one row of the image.
 struct Row {
   std::vector<std::uint32_t> counts;
   std::vector<float> edges, cosines;

@@ -9,13 +9,13 @@
 
 namespace vdbeam {
 
-/// What a camera ray sees of the surface at which it ends.
+/// Light of the surface at the end of a camera ray.
 struct SeenSurface {
   GroupedLight radiance = {}; ///< that leaves it against the ray
-  float shadow = 0; ///< on a shadow catcher, of which nothing else is seen (caught_shadow)
+  float shadow = 0; ///< on a shadow catcher; nothing else of it is visible (caught_shadow)
   /// The part of `radiance` that the surface emits, as a light with shadow rays.
   GroupedLight lamp = {};
-  // Of a matt surface:
+  // For a matt surface:
   /// The part of `radiance` that comes by way of other surfaces and the medium, per albedo.
   GroupedLight smooth = {};
   Rgb albedo = {};     ///< of the surface
@@ -24,7 +24,7 @@ struct SeenSurface {
   int surface = -1;    ///< -1: not matt
 };
 
-/// What a ray adds to PassImage::opacity and PassImage::depth.
+/// Contribution of a ray to PassImage::opacity and PassImage::depth.
 struct OpacityAndDepth {
   float opacity = 0, depth = 0;
 };

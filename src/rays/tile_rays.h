@@ -40,7 +40,7 @@ public:
 
   /// Adds rays to the pixel of a ray.
   void refine(const EstimatorInput& input, const RngKey& key, int ray);
-  /// What refining added to the pixel of a ray; nothing where it was not refined.
+  /// Contribution of the refinement to the pixel of a ray; empty if it was not refined.
   std::span<const PixelRay> more(int ray) const;
   int x0() const { return x0_; }
   int y0() const { return y0_; }

@@ -11,17 +11,17 @@ struct SeenMedium {
   const float* opacity;
   const float* depth; ///< opacity times the mean distance [world]
 
-  /// Of the pixel (x, y) of the picture.
+  /// Index of pixel (x, y) of the image.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x - x0);
   }
 };
 
-/// Whether one ray tells little of the pixel (x, y): the edge of the medium runs nearby, or that of
-/// a lump before another. Only rays of the pixels around it in its tile are looked at, not its own:
-/// if a pixel's own value decided how many rays share its weight, its mean would be biased.
-/// `seen` holds the tile's pixels.
+/// Whether pixel (x, y) lies on an edge of opacity or depth, so that one ray does not represent it.
+/// Only the surrounding pixels of its tile decide, not its own value: if a pixel's own value
+/// decided how many rays share its weight, its mean would be biased. `seen` holds the tile's
+/// pixels.
 bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y);
 
 } // namespace vdbeam

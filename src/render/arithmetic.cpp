@@ -10,7 +10,7 @@
 namespace vdbeam {
 namespace {
 
-/// So many, since two versions of a function differ in one result of some hundred only.
+/// Arguments per function: two versions of a function differ in about one result of a hundred.
 constexpr int arguments = 4096;
 
 /// Adds f at arguments spread evenly over [first, last].

@@ -10,10 +10,10 @@ namespace vdbeam {
 namespace {
 
 /// The square of the bias is found from products of a pixel's own probes in different passes: few
-/// pixels that are probed often tell more than many that are probed once.
+/// pixels that are probed often are worth more than many that are probed once.
 constexpr double most_passes_between_probes = 4;
 
-/// Of the window's pixels at most one in this many tells its blur, but never fewer than a few.
+/// Blur is measured at one in this many of the window's pixels, but at a minimum number of them.
 constexpr double pixels_per_blur = 8, fewest_blurs = 512;
 
 } // namespace

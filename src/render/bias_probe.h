@@ -5,8 +5,8 @@
 
 namespace vdbeam {
 
-/// A few camera rays of each pass, followed by path tracing: what a biased estimator's picture is
-/// held against to tell its bias (Film::error_estimate). They never change the picture.
+/// A few path-traced camera rays of each pass, with which a biased estimator's image is compared to
+/// estimate its bias (Film::error_estimate). They do not change the image.
 class BiasProbe {
 public:
   /// `input` has the plan of the path estimator (plan_paths). `pixels` are of the window; of the
@@ -25,7 +25,7 @@ private:
   std::size_t period_;              ///< passes until a pixel's next turn
 };
 
-/// The pixels of the picture, in ascending order, where passes are to tell their blur: of the
+/// The pixels of the image, in ascending order, at which passes measure their blur: of the
 /// window's `pixels`, or of some of them where that would take long.
 std::vector<std::size_t> choose_blur_pixels(const PixelRegion& window, int image_width,
                                             const std::vector<std::size_t>& pixels);

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// Develops a picture of which there is one image and no film, by films of a few rows: a whole film
+/// Develops a picture that has one image and no film, by films of a few rows: a whole film
 /// would take its memory for nothing, which at 4K takes longer than a draft.
 /// `image_of` gives the image of a part of the picture, of that part's size; it is called by
 /// several threads at a time. `film_of` gives a film without deep samples, of a width and a height.

@@ -50,7 +50,7 @@ struct RasterMap {
         step_y(static_cast<double>(draft.height) / full.height), overscan(full.overscan),
         overscan_of_draft(draft.overscan) {}
 
-  /// Of the place `x` in pixels from the left edge.
+  /// Place in the draft of a place `x`, in pixels from the left edge.
   double x(double x) const { return (x - overscan) * step_x + overscan_of_draft - 0.5; }
   double y(double y) const { return (y - overscan) * step_y + overscan_of_draft - 0.5; }
 };
@@ -101,7 +101,7 @@ std::unique_ptr<PassRenderer> make_renderer(const Scene& scene, const FrameSetup
 
 } // namespace
 
-/// What a pixel of the draft holds, per opacity or transmittance.
+/// Pixel of the draft, per opacity or transmittance.
 struct Draft::Seen {
   float opacity = 0, depth = 0; ///< of the medium, as in PassImage
   Rgb direct, indirect, emission;
@@ -146,6 +146,7 @@ bool Draft::add_pass() {
   return true;
 }
 
+/// Sets the pixels of the draft.
 void Draft::look_through() {
   const EstimatorInput& input = setup_->input;
   seen_.assign(sum_.direct.size(), {});

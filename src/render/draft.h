@@ -18,7 +18,8 @@ public:
   /// Whether a draft can show all that a scene asks for, but for motion.
   static bool can_show(const Scene& scene);
 
-  /// Of the pixels of `window` in the raster, in 1 / `reduction` of them each way. Runs the pilots.
+  /// Prepares a draft of the pixels of `window` in the raster, in 1 / `reduction` of them each way.
+  /// Runs the pilots.
   /// What is given must outlive this.
   Draft(const Scene& scene, const PreparedScenePtr& prepared, const PixelRegion& window,
         int reduction, const StopToken& stop);

@@ -24,9 +24,9 @@ constexpr double draft_width = 120;
 constexpr int least_reduction = 2, greatest_reduction = 16;
 /// Pictures of fewer pixels have their first pass soon enough.
 constexpr double worth_drafting = 2e5;
-/// What a pass and its pilots take in units of a draft's, per pixel, and enlarging in units of a
-/// pass: guesses from drafts and passes of clouds (docs/decisions.md). They are no part of any
-/// picture, but decide whether there is time for it.
+/// Time of a pass and its pilots in units of a draft's, per pixel, and of enlarging in units of a
+/// pass: guesses from drafts and passes of clouds (research-log/decisions.md). They are no part of
+/// any picture, but decide whether there is time for it.
 constexpr double pilot_over_draft = 2.5, pilot_of_next_draft = 1.5, enlarging = 0.08;
 
 } // namespace
@@ -128,7 +128,7 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   return true;
 }
 
-/// What stands for a picture without any pass: the draft or, without one, a quick look.
+/// The image of a frame without any pass: the draft or, without one, a quick look.
 void PassLoop::take_early_picture(const EstimatorInput& quick_look) {
   if (draft_)
     return take_draft(quick_look);
@@ -139,8 +139,7 @@ void PassLoop::take_early_picture(const EstimatorInput& quick_look) {
     result_.deep = DeepFilm(window_layout()).develop(1, window_.width(), window_.height());
   result_.quick_look = true;
   // For the report; the program has words of its own for it.
-  result_.notes.emplace_back(
-      "not one pass was finished: the image is a quick look, rough and for the eye only");
+  result_.notes.emplace_back("no pass was finished: the image is a quick look, for viewing only");
 }
 
 void PassLoop::take_enlarged(const EstimatorInput& full) {
@@ -153,8 +152,8 @@ void PassLoop::take_draft(const EstimatorInput& full) {
   take_enlarged(full);
   result_.draft = draft_->reduction();
   result_.quick_look = result_.stopped_by == "stop";
-  note(fmt::format("there was no time for a pass: the picture is a draft, {} of 1/{} of the pixels "
-                   "each way, enlarged; give it more time or fewer pixels",
+  note(fmt::format("there was no time for a pass: the image is a draft, {} at 1/{} of the "
+                   "resolution, enlarged; allow more time or render fewer pixels",
                    count_text(static_cast<std::uint64_t>(draft_->passes()), "pass"),
                    draft_->reduction()));
 }

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the estimators of a frame are given: camera, plans, layers and objects. Members refer to
+/// Input of the estimators of a frame: camera, plans, layers and objects. Members refer to
 /// one another, to the scene and to what was prepared, which must outlive this.
 class FrameSetup {
 public:

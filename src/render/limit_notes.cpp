@@ -59,9 +59,8 @@ std::optional<std::string> starved_note(const Scene& scene, const RenderPlan& pl
       counts.contributions >= counts.lookups)
     return {};
   return fmt::format(
-      "{} rays gathered {} photons in all, less than one each: light that the medium "
-      "scatters is missing, or lies in single bright pixels; a larger render.radius, "
-      "render.max_radius or render.photons gathers more",
+      "{} rays gathered {} photons, less than one each: scattered light is missing or concentrated "
+      "in single bright pixels; increase render.radius, render.max_radius or render.photons",
       counts.lookups, counts.contributions);
 }
 
@@ -73,39 +72,37 @@ std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& i
       !may_see_medium(input.world, input.camera)) {
     const RenderSpace& space = input.world.space;
     const Vec3d at = space.origin + Vec3d(input.world.medium.bounds.center()) / space.scale;
-    notes.push_back(fmt::format("no volume is in the picture: the camera looks past all of them, "
-                                "which lie around [{:.3g}, {:.3g}, {:.3g}]",
+    notes.push_back(fmt::format("no volume is in view: they lie around [{:.3g}, {:.3g}, {:.3g}]",
                                 at.x, at.y, at.z));
   }
   const double depth = deepest(world);
   if (depth > deepest_for_positions)
-    notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: its lit skin is "
-                                "thinner than single precision resolves",
+    notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: its lit surface "
+                                "layer is thinner than single precision resolves",
                                 depth));
   if (!plan.needs(Stage::photons))
     return notes;
   if (depth > deepest_for_photons)
-    notes.push_back(fmt::format("the medium is up to {:.1e} mean free paths deep: few photons lie "
-                                "in the skin that is seen, so parts may be dark or noisy; "
-                                "render.estimator = \"path\" has no such limit",
-                                depth));
+    notes.push_back(fmt::format(
+        "the medium is up to {:.1e} mean free paths deep: few photons lie in its visible surface "
+        "layer, so parts may be dark or noisy; render.estimator = \"path\" has no such limit",
+        depth));
   if (const double g =
           narrowest(world, !is_possible(forward_peak_feature,
                                         {input, estimator_kind(scene.render.estimator)}));
       std::abs(g) > narrowest_lobe)
-    notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons come "
-                                "from where it looks; render.estimator = \"path\" has less noise",
+    notes.push_back(fmt::format("a phase function of g = {:.3g} is so narrow that few photons "
+                                "contribute; render.estimator = \"path\" has less noise",
                                 g));
   if (const double sheet = flattest(world); sheet < thinnest_sheet)
-    notes.push_back(fmt::format("a medium is a sheet {:.2g} times as thick as it is wide: seen "
-                                "aslant, kernels reach through it and darken it until passes or "
-                                "a smaller render.neighbours make them small; render.estimator = "
-                                "\"path\" has no such limit",
-                                sheet));
+    notes.push_back(fmt::format(
+        "thin sheet, {:.2g} times as thick as it is wide: at grazing angles it renders too dark; "
+        "add passes, lower render.neighbours, or use render.estimator = \"path\"",
+        sheet));
   const double across = 2 * static_cast<double>(world.region.radius) / world.space.scale;
   if (scene.render.kernel == KernelRadius::fixed && scene.render.radius > 0.5 * across)
-    notes.push_back(fmt::format("render.radius = {:.3g} is wide for a medium {:.3g} across: the "
-                                "kernels lose light outside of it; {:.3g} would be fine",
+    notes.push_back(fmt::format("render.radius = {:.3g} is wide for a medium {:.3g} across: "
+                                "kernels lose light outside it; use {:.3g} or less",
                                 scene.render.radius, across, 0.02 * across));
   return notes;
 }

@@ -7,8 +7,8 @@
 
 namespace vdbeam {
 
-/// What the user should know of a scene at the ends of what the estimators resolve
-/// (docs/stability.md): lines for RenderResult::notes. Empty for ordinary scenes.
+/// Notes about scenes at the limits of the estimators
+/// (docs/developer/extreme-scenes.md): lines for RenderResult::notes. Empty for ordinary scenes.
 std::vector<std::string> limit_notes(const Scene& scene, const EstimatorInput& input);
 
 /// A line where the camera's rays met next to no photons, whatever the reason: then most of the

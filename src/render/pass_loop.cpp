@@ -56,7 +56,7 @@ PassLoop::PassLoop(const Scene& scene, const FrameSettings& frame, const RenderH
   set_deadline();
 }
 
-/// Of the window.
+/// Makes the film of the window.
 Film PassLoop::make_film() const {
   std::optional<DeepFilm> deep;
   if (deep_layout_)
@@ -137,22 +137,22 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
   }
   const int times = shutter_times(scene_.camera);
   if (!scene_.moments.empty() && !frame_.pass_range && film_.passes() > 0 && film_.passes() < times)
-    note(fmt::format("the open shutter was seen at {} only, one in each pass: blur may show as "
-                     "steps; render at least {} passes",
-                     count_text(static_cast<std::uint64_t>(film_.passes()), "moment"), times));
+    note(fmt::format(
+        "motion blur has {} only, one per pass, and may show steps; render at least {} passes",
+        count_text(static_cast<std::uint64_t>(film_.passes()), "motion sample"), times));
   if (const auto starved = starved_note(scene_, result_.plan, result_.statistics))
     note(*starved);
   if (film_.invalid_values() > 0)
     note(fmt::format("{} pixel values were not finite and count as 0", film_.invalid_values()));
   if (scene_.render.clamp)
-    note(fmt::format("render.clamp = {:g} took {:.3g} % of the picture's light, from {} pixels of "
-                     "passes; the estimated error does not hold it",
+    note(fmt::format("render.clamp = {:g} removed {:.3g} % of the image's light, from {} pixels of "
+                     "passes; the estimated error does not include it",
                      *scene_.render.clamp, 100 * result_.statistics.clamped_fraction(),
                      result_.statistics.clamped_pixels));
 }
 
-/// What renders the next pass; nothing where its moment was being prepared when the frame was to
-/// end.
+/// The renderer of the next pass; null if its motion sample was being prepared when the frame was
+/// to end.
 std::optional<Shutter::Renderer> PassLoop::renderer_of_pass(Shutter& shutter) {
   try {
     return shutter.at(next_pass(), result_.statistics);
@@ -249,7 +249,7 @@ void PassLoop::resume() {
     const FilmFileInfo info = read_film_info(path);
     if (const std::string reason = why_not_resumable(info, file_info(), passes_asked_for());
         !reason.empty())
-      return note(fmt::format("{}: {}; the frame begins anew", path, reason));
+      return note(fmt::format("{}: {}; the frame starts over", path, reason));
     film_ = read_film(path, info);
     earlier_seconds_ = info.seconds;
     const auto number = [&](const char* name) {
@@ -263,10 +263,10 @@ void PassLoop::resume() {
     result_.statistics.clamped_pixels =
         static_cast<std::uint64_t>(std::clamp(number("vdbeam:clampedPixels"), 0.0, 1e18));
   } catch (const InputError& problem) {
-    return note(fmt::format("{}; the frame begins anew", problem.what()));
+    return note(fmt::format("{}; the frame starts over", problem.what()));
   }
   result_.resumed_passes = last_checkpoint_passes_ = last_attempt_passes_ = film_.passes();
-  note(fmt::format("{}: goes on after {}", path,
+  note(fmt::format("{}: resumes after {}", path,
                    count_text(static_cast<std::size_t>(film_.passes()), "pass")));
   PassRecord record = estimate_errors();
   record.seconds = earlier_seconds_;
@@ -325,7 +325,7 @@ void PassLoop::attempt(const std::function<void()>& write) {
   try {
     write();
   } catch (const FrameError& error) {
-    note(fmt::format("{}; rendering goes on", error.what()));
+    note(fmt::format("{}; rendering continues", error.what()));
   }
 }
 
@@ -334,7 +334,7 @@ void PassLoop::write_checkpoint() {
     return;
   const std::string& path = frame_.checkpoint.path;
   if (const std::string why = why_not_replaceable(path, Output::checkpoint); !why.empty())
-    throw FrameError(why + ", and stays as it is");
+    throw FrameError(why + ", and is left unchanged");
   write_film(file_info(), film_, path, Links::replace);
   last_checkpoint_passes_ = film_.passes();
 }

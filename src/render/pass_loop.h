@@ -19,7 +19,7 @@ public:
   /// Before any pass: the film is to hold a deep picture too.
   void gather_deep(const DeepLayout& layout);
 
-  /// What the estimator's input is to have as its `stop`.
+  /// The `stop` of the estimator's input.
   const StopToken& stop_token() const { return stop_; }
   /// Shows a quick look to the caller who asked for one, before there is any pass. `input` has the
   /// plan of the path estimator (plan_paths).
@@ -96,7 +96,7 @@ private:
   std::uint64_t photons_before_ = 0;
   Stopwatch since_attempt_; ///< to write a checkpoint
   int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;
-  /// Of the scene as it was asked for, before an estimator was chosen; empty where no film goes to
+  /// Hashes of the scene as given, before an estimator was chosen; empty if no film is written to
   /// disk.
   std::string pass_hash_, scene_hash_;
 };

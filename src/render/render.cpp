@@ -33,10 +33,10 @@ PixelRegion choose_window(const ImageSettings& image, const std::optional<PixelR
       region.value_or(PixelRegion{-o, -o, image.width + o, image.height + o});
   if (window.empty() || window.x0 < -o || window.y0 < -o || window.x1 > image.width + o ||
       window.y1 > image.height + o)
-    throw InputError(fmt::format("the region {},{},{},{} must hold a pixel and lie within the "
-                                 "picture of {} x {}{}",
-                                 window.x0, window.y0, window.x1, window.y1, image.width,
-                                 image.height, o > 0 ? " and its overscan" : ""));
+    throw InputError(fmt::format(
+        "the region {},{},{},{} must contain a pixel and lie within the image of {} x {}{}",
+        window.x0, window.y0, window.x1, window.y1, image.width, image.height,
+        o > 0 ? " and its overscan" : ""));
   return {window.x0 + o, window.y0 + o, window.x1 + o, window.y1 + o};
 }
 

@@ -28,7 +28,7 @@ std::uint64_t bytes_of(const World& world) {
   return bytes;
 }
 
-/// What is asked of a moment: all that is asked of the scene, with photons of its own.
+/// Input for a motion sample: that of the scene, with photons of its own.
 EstimatorTask task_of(const EstimatorTask& scene, const PreparedScene& moment) {
   EstimatorTask task = scene;
   task.photons = moment.photons.get();
@@ -65,7 +65,8 @@ Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   if (!renderer.passes) {
     const Stopwatch watch;
     renderer.passes = ready_ ? std::move(ready_) : make_pass_renderer(type_, renderer.input);
-    if (renderer.input.plan.needs(Stage::bias))
+    const Surfaces* surfaces = renderer.input.world.surfaces.get();
+    if (renderer.input.plan.needs(Stage::bias) && !(surfaces && surfaces->focus_light()))
       renderer.probe =
           std::make_unique<BiasProbe>(renderer.path_input, renderer.input.window, probe_pixels_);
     return_freed_memory();

@@ -19,10 +19,10 @@ namespace vdbeam {
 /// them: to find it out at each would take longer than a pass.
 class Shutter {
 public:
-  /// What renders a pass, until the next call of `at`.
+  /// The renderer of a pass, valid until the next call of `at`.
   struct Renderer {
     PassRenderer& passes;
-    BiasProbe* probe; ///< tells the bias; null where the estimator has none or nobody asks
+    BiasProbe* probe; ///< measures the bias; null if the estimator has none or it is not asked for
   };
 
   /// `type`: of the estimator that renders, `auto` for those that gather photons. `input` is that
@@ -39,7 +39,7 @@ public:
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
 
-  /// Which of so many moments a pass sees.
+  /// Index of the motion sample that a pass renders.
   static std::size_t moment_of(int pass, std::size_t moments, std::uint64_t seed);
 
 private:

@@ -73,21 +73,19 @@ std::vector<std::string> sight_notes(const Scene& scene, const World& world, con
   if (!scene.moments.empty() || !world.medium.visible() || !may_see_medium(world, camera))
     return notes;
   if (sight.surface >= 0 && sight.inside == sight.rays)
-    notes.push_back(fmt::format("the camera is inside of mesh.{}, whose inside fills the picture",
-                                sight.surface));
+    notes.push_back(
+        fmt::format("the camera is inside mesh.{}, which fills the image", sight.surface));
   else if (sight.surface >= 0 && sight.blocked == sight.rays)
-    notes.push_back(fmt::format("mesh.{} hides every volume: it fills the picture, {:.3g} from the "
-                                "camera",
-                                sight.surface, sight.nearest));
+    notes.push_back(
+        fmt::format("mesh.{} hides every volume: it fills the image, {:.3g} from the camera",
+                    sight.surface, sight.nearest));
   if (const auto& far = scene.camera.far;
       far && sight.optical_depth == 0 && sight.medium_begin > *far)
-    notes.push_back(
-        fmt::format("camera.far = {} is nearer than every volume, which begin at {:.3g}", *far,
-                    sight.medium_begin));
+    notes.push_back(fmt::format("camera.far = {} clips every volume; the nearest begins at {:.3g}",
+                                *far, sight.medium_begin));
   if (sight.optical_depth > 0 && sight.optical_depth < invisible && !scene.glows())
-    notes.push_back(fmt::format("hardly anything of the medium can be seen: its optical depth is "
-                                "{:.2g} at most; for one of 10, multiply volume.0.extinction by "
-                                "{:.1g}",
+    notes.push_back(fmt::format("the medium is nearly invisible: its optical depth is {:.2g} at "
+                                "most; for 10, multiply volume.0.extinction by {:.1g}",
                                 sight.optical_depth, 10 / sight.optical_depth));
   return notes;
 }
@@ -118,10 +116,10 @@ PictureFacts picture_facts(const Image& image, const Sight& sight) {
 std::vector<std::string> picture_notes(const PictureFacts& facts) {
   constexpr double most_over_one = 0.5;
   if (facts.black == 1)
-    return {"the picture is black: no light reaches the camera"};
+    return {"the image is black: no light reaches the camera"};
   if (facts.over_one > most_over_one)
-    return {fmt::format("{:.0f} % of the picture is above 1: the lights are strong; a PNG shows it "
-                        "too bright, an EXR holds it as it is",
+    return {fmt::format("{:.0f} % of the image is above 1: the lights are strong; a PNG looks too "
+                        "bright, an EXR keeps the values",
                         100 * facts.over_one)};
   return {};
 }

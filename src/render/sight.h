@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What a grid of camera rays meets.
+/// Objects that a grid of camera rays meets.
 struct Sight {
   double optical_depth = 0; ///< of the deepest ray, in the channel with most
   int rays = 0;
@@ -26,15 +26,15 @@ struct Sight {
 /// Sends rays through the window (pixels counted from the corner of the overscan).
 Sight look_through(const World& world, const Camera& camera, const PixelRegion& window);
 
-/// What keeps the camera from seeing the medium: a surface around it or before it, camera.far, or
-/// an extinction too small to be seen. Nothing where it is seen.
+/// Notes about obstacles between camera and medium: a surface around it or before it, camera.far,
+/// or an extinction too small to be seen. Nothing where it is seen.
 std::vector<std::string> sight_notes(const Scene& scene, const World& world, const Camera& camera,
                                      const Sight& sight);
 
 /// The facts of a finished picture.
 PictureFacts picture_facts(const Image& image, const Sight& sight);
 
-/// What is plainly not as meant in it: all is black, or most of it over 1.
+/// Notes about an obviously wrong image: all is black, or most of it above 1.
 std::vector<std::string> picture_notes(const PictureFacts& facts);
 
 } // namespace vdbeam

@@ -9,7 +9,7 @@ namespace {
 
 constexpr OutputKind kinds[] = {
     {Output::image, "-o", &FrameFiles::output},
-    {Output::deep, "the deep picture of -o", &FrameFiles::output, "deep"},
+    {Output::deep, "the deep image of -o", &FrameFiles::output, "deep"},
     {Output::checkpoint, "the checkpoint of -o", &FrameFiles::output, "checkpoint"},
     {Output::snapshot, "the snapshot of -o", &FrameFiles::output, "snapshot"},
     {Output::preview, "--preview", &FrameFiles::preview},

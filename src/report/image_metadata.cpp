@@ -74,7 +74,7 @@ void add_time(Image& image, const Scene& scene) {
     return;
   const double fps = *scene.image.fps;
   image.numbers["framesPerSecond"] = fps;
-  // A time code counts whole frames, of which it holds at most 30 in a second and a day in all.
+  // A time code counts whole frames: at most 30 per second, and one day in all.
   const int count = static_cast<int>(std::ceil(fps - 1e-6));
   const int frame =
       scene.frame.number + frames_of_time_code(scene.image.time_code, count).value_or(0);
@@ -150,7 +150,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.metadata[name] = text;
   image.numbers["vdbeam:frame"] = scene.frame.number;
   if (result.quick_look) {
-    image.metadata["vdbeam:quickLook"] = "not one pass was finished";
+    image.metadata["vdbeam:quickLook"] = "no pass was finished";
     image.numbers["vdbeam:passes"] = 0;
   } else if (result.draft > 0) {
     image.numbers["vdbeam:draft"] = result.draft;

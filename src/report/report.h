@@ -7,12 +7,12 @@
 
 namespace vdbeam {
 
-/// What a report says beside the result of the render.
+/// Content of a report beside the result of the render.
 struct ReportContext {
   std::string scene_hash;
   std::string output;           ///< path of the image
   std::string reference;        ///< path of the reference, or empty
-  std::string second_reference; ///< likewise
+  std::string second_reference; ///< path; empty: none
   std::uint64_t deep_bytes = 0; ///< size of the deep picture's file
 };
 
@@ -22,7 +22,7 @@ nlohmann::ordered_json settings_json(const Scene& scene);
 /// The plan, as in reports and `vdbeam plan --json`.
 nlohmann::ordered_json plan_json(const RenderPlan& plan);
 
-/// The report of a frame (docs/output.md). Numbers that are not finite become null.
+/// The report of a frame (docs/reference/output.md). Numbers that are not finite become null.
 nlohmann::ordered_json report_json(const Scene& scene, const RenderResult& result,
                                    const ReportContext& context);
 

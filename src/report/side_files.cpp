@@ -11,7 +11,7 @@
 namespace vdbeam {
 namespace {
 
-/// What attributes say that a file is.
+/// Kind of a file by its attributes.
 enum class Content { film, snapshot, other };
 
 /// A damaged file is still ours where its header can be recognised.

@@ -80,7 +80,7 @@ std::vector<CameraKey> read_lines(const std::string& path) {
     if (keys.size() == 1)
       continue;
     if (keys.back().values.size() != keys.front().values.size())
-      fail(path, line, "must hold as many numbers as the lines before");
+      fail(path, line, "must hold the same number of values as the previous line");
     if (!(keys.back().frame > keys[keys.size() - 2].frame))
       fail(path, line, "must have a greater frame number than the line before");
   }

@@ -50,7 +50,7 @@ struct KnownFile {
   std::uint64_t hash = 0;
 };
 
-/// File systems tell times in ticks: a file that changed just now may change again unseen.
+/// File systems round times to ticks: a file that changed just now may change again unseen.
 bool settled(const struct stat& status) {
   constexpr time_t ticks = 2; // FAT counts two seconds at a time
   return std::time(nullptr) - std::max(status.st_mtim.tv_sec, status.st_ctim.tv_sec) > ticks;

@@ -16,7 +16,7 @@ public:
 
   void add(const void* data, std::size_t size);
   void add_number(std::uint64_t x) { add(&x, sizeof x); }
-  /// Of everything so far.
+  /// Hash of everything added so far.
   std::uint64_t value() const;
 
 private:

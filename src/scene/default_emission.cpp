@@ -14,12 +14,13 @@ namespace {
 /// Radiance of a mean line through the flames, before the smoke dims it. The brightest are several
 /// times as bright.
 constexpr double target_radiance = 1;
-/// Of the hottest and of a flame without a temperature: flames of soot are at 1200 to 2200 K.
+/// Temperatures [K] of the hottest flame, and of a flame without a temperature grid: sooty flames
+/// have 1200 to 2200 K.
 constexpr double hottest_flame = 2200, mean_flame = 1700;
 /// A grid that reaches this is in kelvin; simulators also write 0 to 1 or 0 to about 4.
 constexpr double surely_kelvin = 600;
 
-/// What the deciding frames say of one grid.
+/// Summary of one grid over the deciding frames.
 struct GridExtent {
   std::string name;
   double maximum = 0;
@@ -109,9 +110,9 @@ EmissionSettings default_emission(const std::string& path,
   } else {
     return {};
   }
-  notes.push_back(fmt::format("{}: {}, with strength {}; change it with "
-                              "--set volume.0.emission.scale=X (0: not at all)",
-                              path, source, emission.scale));
+  notes.push_back(fmt::format(
+      "{}: {}, with strength {}; change it with --set volume.0.emission.scale=X (0: off)", path,
+      source, emission.scale));
   return emission;
 }
 

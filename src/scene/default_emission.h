@@ -19,7 +19,7 @@ EmissionSettings default_emission(const std::string& path,
                                   const std::vector<std::vector<GridSummary>>& summaries,
                                   std::vector<std::string>& notes);
 
-/// The nearest number of so many digits; 1 for what is not above 0 and finite.
+/// x rounded to `digits` significant digits; 1 unless x is positive and finite.
 double round_to_digits(double x, int digits);
 
 } // namespace vdbeam

@@ -16,18 +16,18 @@
 namespace vdbeam {
 namespace {
 
-/// Of a mean line: deep enough that the form shows by its shading, thin enough that light comes
+/// Optical depth of a mean line: deep enough to shade the form, thin enough that light comes
 /// through the edges.
 constexpr double target_optical_depth = 25;
-/// Of the densest value over the shortest side: keeps a thin, dense plume in a large box from
-/// becoming solid.
+/// Optical depth of the densest value over the shortest side: keeps a thin, dense plume in a large
+/// box from becoming solid.
 constexpr double largest_optical_depth = 100;
 
 bool is_density(const GridSummary& grid) {
   return !is_level_set(grid) && !why_no_density(kind_of(grid));
 }
 
-/// Of "density[1]", which is what OpenVDB calls the second of several grids "density".
+/// "density" for "density[1]", OpenVDB's name of the second of several grids "density".
 std::string given_name(const std::string& name) {
   const std::size_t bracket = name.find_last_of('[');
   return name.ends_with(']') && bracket != name.npos ? name.substr(0, bracket) : name;
@@ -86,8 +86,8 @@ const GridSummary& choose_grid(const std::vector<GridSummary>& grids, const Fram
   return *grid;
 }
 
-/// What a grid's shape says about camera and extinction.
-struct VolumeShape {
+/// Data of a grid's shape for camera and extinction.
+struct VolumeOutline {
   std::string grid;
   std::vector<Vec3d> points; ///< a body around them holds all that is to be seen
   double mean_depth = 0;     ///< of a mean line along the longest side, at extinction 1
@@ -153,10 +153,10 @@ std::vector<std::vector<GridSummary>> read_summaries(const std::string& path) {
   return summaries;
 }
 
-VolumeShape find_shape(const std::string& path,
-                       const std::vector<std::vector<GridSummary>>& summaries,
-                       const FramingWishes& wishes, std::vector<std::string>& notes) {
-  VolumeShape shape;
+VolumeOutline find_shape(const std::string& path,
+                         const std::vector<std::vector<GridSummary>>& summaries,
+                         const FramingWishes& wishes, std::vector<std::string>& notes) {
+  VolumeOutline shape;
   for (const std::vector<GridSummary>& grids : summaries) {
     std::vector<std::string> grid_notes;
     const GridSummary& grid = choose_grid(grids, wishes, path, grid_notes);
@@ -290,7 +290,7 @@ Scene make_default_scene(const std::string& path,
                          const FramingWishes& wishes) {
   Scene scene;
   scene.path = path;
-  const VolumeShape shape = find_shape(path, summaries, wishes, scene.notes);
+  const VolumeOutline shape = find_shape(path, summaries, wishes, scene.notes);
   const Vec3d up = choose_up(path, summaries, wishes, scene.notes);
   frame_camera(scene, shape.points, up, wishes);
 

@@ -9,7 +9,7 @@
 
 namespace vdbeam {
 
-/// What the user said about the picture of a bare VDB.
+/// Settings that the user gave for the image of a bare VDB.
 struct FramingWishes {
   std::optional<Vec3d> up; ///< unit
   std::optional<int> width, height;
@@ -18,7 +18,7 @@ struct FramingWishes {
 
 /// A scene that shows a bare VDB: a camera that frames it, a sun and a sky, and an extinction that
 /// shows its form. With a frame pattern in the name, the first, middle and last frame on disk
-/// decide, so that the camera stands still. `notes` of the scene tell what was chosen. Throws
+/// decide, so that the camera stands still. `notes` of the scene list the choices. Throws
 /// InputError and FrameError as summarize_vdb.
 Scene make_default_scene(const std::string& path, const FramingWishes& wishes);
 

@@ -34,8 +34,8 @@ std::string read_scene_text(const std::string& path) {
     throw InputError(one_line(path + ": is a device, not a scene file or VDB"));
   std::string text = read_text(path, longest_scene_file);
   for (const auto& [magic, kind] :
-       {std::pair("\x76\x2f\x31\x01", "an OpenEXR picture"), std::pair("\x89PNG", "a PNG picture"),
-        std::pair("#?RADIANCE", "a Radiance picture")})
+       {std::pair("\x76\x2f\x31\x01", "an OpenEXR image"), std::pair("\x89PNG", "a PNG image"),
+        std::pair("#?RADIANCE", "a Radiance image")})
     if (text.starts_with(magic))
       throw InputError(one_line(fmt::format("{}: is {}, not a scene file or VDB", path, kind)));
   return text;
@@ -64,7 +64,7 @@ std::optional<T> peek(const toml::table& root, const char* path) {
   return root.at_path(path).value<T>();
 }
 
-/// What the command line asks of the default scene before that scene is there.
+/// The settings of the default scene that the command line overrides.
 FramingWishes wishes_of(const std::vector<Override>& overrides) {
   toml::table root;
   root.insert("volume", toml::array{toml::table{}});
@@ -114,7 +114,7 @@ void for_each_file(const Scene& scene, const Visit& visit) {
 }
 
 /// The camera moves and all that it sees stands still: photons can serve many frames
-/// (docs/sequences.md) if they do not depend on the view.
+/// (docs/how-to/sequences.md) if they do not depend on the view.
 bool only_camera_moves(const toml::table& root) {
   bool camera = false, others = false;
   for (const auto& [name, section] : root)
@@ -134,8 +134,9 @@ void note_lost_alpha(Scene& scene) {
         return light_kind(light.type).surrounds && light.visible;
       });
   if (!alpha && !sky)
-    scene.notes.push_back(scene.path + ": the image will have no A, since no [[layer]] is "
-                                       "\"alpha\"; add one to lay it over a plate");
+    scene.notes.push_back(
+        scene.path +
+        ": the image will have no alpha, since no [[layer]] is \"alpha\"; add one for compositing");
 }
 
 /// Whether a text of the tree holds a frame number's place.
@@ -205,7 +206,7 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
   const bool shining = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                                    [](const SurfaceSettings& s) { return shines(s.material); });
   if (scene.lights.empty() && !scene.glows() && !shining)
-    scene.notes.push_back(path_ + ": there is no [[light]]: the picture will be black");
+    scene.notes.push_back(path_ + ": there is no [[light]]: the image will be black");
   for (Scene& moment : scene.moments)
     moment.render = scene.render;
   return scene;
@@ -222,7 +223,7 @@ std::string SceneDocument::where(const std::string& key) const {
   return "";
 }
 
-/// Of the files that the scene names; those themselves were checked as they were read.
+/// Checks the files that the scene's files name; the scene's own were checked as they were read.
 void SceneDocument::check_named_files(const Scene& scene) const {
   for_each_file(scene, [&](const SceneKey& key, std::size_t index, const std::string& path) {
     try {

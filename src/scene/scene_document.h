@@ -28,13 +28,13 @@ public:
   /// Whether anything but random numbers may differ between two frames: a value with keys, a file
   /// of a sequence, a camera from a file.
   bool depends_on_frame() const;
-  /// Frames of which the first file with a frame pattern exists.
+  /// Frames for which the first file with a frame pattern exists.
   std::vector<int> frames_on_disk() const;
 
   /// Every file that the scene names by a key.
   std::vector<SceneFile> files() const;
 
-  /// What is in front of a line about a file of this frame's scene: "scene.toml:12: volume.0.file:
+  /// Prefix of a message about a file of this frame's scene: "scene.toml:12: volume.0.file:
   /// ", or the key that names the grid that the line is about. Empty for a bare VDB, which names
   /// itself, and for a line about anything else.
   std::string whose_file(const Scene& scene, const std::string& line) const;
@@ -44,7 +44,7 @@ private:
   /// "scene.toml:12: volume.0.file: "
   std::string where(const std::string& key) const;
   void check_named_files(const Scene& scene) const;
-  /// Of the first name in quotes; empty where no key of the volume that the user wrote holds it.
+  /// Location of the first name in quotes; empty if no key of the volume in the file contains it.
   std::string who_names(std::size_t volume, const std::string& line) const;
 
   std::string path_;

@@ -39,7 +39,7 @@ void add_file(ContentHash& hash, InputKind kind, const std::string& path) {
       hash.add_number(hash_file(file));
 }
 
-/// What passes see at other moments; the files are those of the scene itself.
+/// Adds the scenes of other motion samples; their files are those of the scene itself.
 void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
   for (const Scene& moment : moments)
     for (const SceneKey& key : scene_keys())
@@ -49,7 +49,7 @@ void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
         add(hash, key.get(moment, i));
 }
 
-/// Of all that the picture depends on, or of what its passes do.
+/// Hash of everything that the image depends on, or that its passes depend on.
 std::string hash_scene(const Scene& scene, bool of_passes) {
   ContentHash hash;
   for (const SceneKey& key : scene_keys()) {

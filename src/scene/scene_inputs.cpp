@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t gib = std::uint64_t(1) << 30;
 
-/// What can be said of a file without reading it: larger ones could not be held in memory, and a
+/// Checks of a file without reading it: larger ones could not be held in memory, and a
 /// file with holes may claim any size.
 struct InputRule {
   InputKind kind;
@@ -25,6 +25,7 @@ constexpr InputRule rules[] = {
     {InputKind::picture, "pictures", 16 * gib},
     {InputKind::mesh, "mesh files", 16 * gib},
     {InputKind::camera, "camera files", 16 * gib},
+    {InputKind::profile, "photometric files", 16 << 20},
 };
 
 /// Calls visit(table, index) for each table of a section.

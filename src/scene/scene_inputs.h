@@ -17,7 +17,7 @@ struct SceneFile {
   InputKind input;
 };
 
-/// What every key of the kind `file` has in a tree, in the order of the keys. `folder` is what
+/// Values of all keys of the kind `file` in a tree, in the order of the keys. `folder` is what
 /// relative paths of the file are relative to.
 std::vector<SceneFile> scene_files(const toml::table& root, const std::filesystem::path& folder);
 

@@ -18,7 +18,7 @@ struct Child {
   const toml::node* node;
 };
 
-/// A table's entries in the order of the file, so that the first mistake is told first.
+/// A table's entries in the order of the file, so that the first mistake is reported first.
 std::vector<Child> children_of(const toml::table& table) {
   std::vector<Child> children;
   for (const auto& [name, node] : table)
@@ -55,7 +55,7 @@ std::string item_name(SceneSection section, std::size_t index) {
   return section == SceneSection::light ? fmt::format("light.{}", index) : section_name(section);
 }
 
-/// What the user may have meant by an unknown key: what other programs call a key, a key of this
+/// Suggestion for an unknown key: what other programs call a key, a key of this
 /// table, or one of another table.
 std::string suggestion(SceneSection section, const std::string& name) {
   if (const std::string remedy = synonym_remedy(section, name); !remedy.empty())
@@ -97,12 +97,24 @@ Scene SceneReader::read(const toml::table& root) {
     throw InputError(
         one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
   }
+  add_suns();
   validate_consistency(scene_, [this](const std::string& key) { return locate(key); });
   note_idle_keys();
   return std::move(scene_);
 }
 
-/// Tells of what is right but cannot be what was meant.
+/// Gives each atmosphere its sun, a light after all those of the file, so that these keep their
+/// numbers.
+void SceneReader::add_suns() {
+  const std::size_t count = scene_.lights.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (LightSettings sun = scene_.lights[i]; sun.type == LightType::atmosphere && sun.sun) {
+      sun.type = LightType::sun;
+      scene_.lights.push_back(sun);
+    }
+}
+
+/// Notes what is valid but probably a mistake.
 void SceneReader::note_idle_keys() {
   if (scene_.camera.focal_length && locations_.contains("camera.fov"))
     scene_.notes.push_back(locate("camera.fov") +
@@ -140,7 +152,7 @@ void SceneReader::note_units() {
   constexpr double large_error = 0.1;
   if (const auto& error = scene_.render.target_error; error && *error >= large_error)
     scene_.notes.push_back(fmt::format("{}: render.target_error = {} is reached by almost any "
-                                       "picture after a few passes; a clean one has about 0.001",
+                                       "image after a few passes; a clean image has about 0.001",
                                        locate("render.target_error"), *error));
 }
 
@@ -207,6 +219,7 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
   }
   check_required(section, index, table);
   check_types(section, index, table);
+  check_power(section, index, table);
   if (section == SceneSection::volume || section == SceneSection::mesh)
     place(section, index);
 }
@@ -258,32 +271,49 @@ void SceneReader::read_key(const SceneKey& key, std::size_t index, const toml::n
 void SceneReader::check_required(SceneSection section, std::size_t index,
                                  const toml::table& table) const {
   for (const SceneKey& key : scene_keys())
-    if (key.section == section && key.required && !table.contains(key.name))
+    if (key.section == section && key.required && takes_key(scene_, index, key) &&
+        !table.contains(key.name))
       throw InputError(fmt::format("{}: {} needs {}: {}", location_of(table),
                                    item_name(section, index), key.name, key.doc));
 }
 
 void SceneReader::check_types(SceneSection section, std::size_t index,
                               const toml::table& table) const {
-  const SceneKey* type_key = find_key(section, "type");
-  if (!type_key)
+  const SceneKey* const kind = type_key(section);
+  if (!kind)
     return;
-  const std::string type = std::get<std::string>(type_key->get(scene_, index));
-  const toml::node* type_node = table.get("type");
+  const std::string type = std::get<std::string>(kind->get(scene_, index));
+  const toml::node* type_node = table.get(kind->name);
   const bool type_replaced = type_node && is_override(*type_node);
   for (const Child& child : children_of(table)) {
     const SceneKey* key = find_key(section, child.name);
     if (!key) // a table of its own
       continue;
-    const bool fits = key->types.empty() ||
-                      std::find(key->types.begin(), key->types.end(), type) != key->types.end();
+    const bool fits = takes_key(scene_, index, *key);
     // The command line may change the type; what the file says for the old type is then moot.
     if (fits || (type_replaced && !is_override(*child.node)))
       continue;
-    throw InputError(fmt::format("{}: {} does not belong to type \"{}\", only to {}",
-                                 location_of(*child.node), key_path(*key, index), type,
+    throw InputError(fmt::format("{}: {} does not belong to {} \"{}\", only to {}",
+                                 location_of(*child.node), key_path(*key, index), kind->name, type,
                                  join_words(key->types, "and")));
   }
+}
+
+/// A lamp's strength is one number: its power, or what stands beside it in the tables.
+void SceneReader::check_power(SceneSection section, std::size_t index,
+                              const toml::table& table) const {
+  const char* const other = section == SceneSection::light      ? "intensity"
+                            : section == SceneSection::material ? "radiance"
+                                                                : nullptr;
+  const toml::node* const power = table.get("power");
+  if (!other || !power || !table.contains(other))
+    return;
+  const SceneKey& key = *find_key(section, "power");
+  const bool replaced = is_override(*power) && !is_override(*table.get(other));
+  if (replaced || std::holds_alternative<std::monostate>(key.get(scene_, index)))
+    return;
+  throw InputError(fmt::format("{}: {} excludes {}: write one or the other", location_of(*power),
+                               key_path(key, index), other));
 }
 
 /// Folds translate, rotate and scale into the transform of a volume or mesh.

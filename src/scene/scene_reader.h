@@ -12,7 +12,7 @@
 
 namespace vdbeam {
 
-/// What becomes of a frame for which a file of a sequence is not there: it fails, it is black, or
+/// Treatment of a frame for which a file of a sequence is missing: it fails, it is black, or
 /// it shows the nearest earlier file (the first where there is none).
 enum class MissingFile { error, black, hold };
 
@@ -31,6 +31,7 @@ public:
   Scene read(const toml::table& root);
 
 private:
+  void add_suns();
   void note_idle_keys();
   void note_units();
   void read_section(SceneSection section, const toml::node& node);
@@ -43,6 +44,7 @@ private:
   void read_key(const SceneKey& key, std::size_t index, const toml::node& node);
   void check_required(SceneSection section, std::size_t index, const toml::table& table) const;
   void check_types(SceneSection section, std::size_t index, const toml::table& table) const;
+  void check_power(SceneSection section, std::size_t index, const toml::table& table) const;
   void place(SceneSection section, std::size_t index);
   void place_camera(const toml::table& table);
   std::string resolve_file(const SceneKey& key, std::size_t index, const std::string& text,

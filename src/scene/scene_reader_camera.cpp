@@ -15,8 +15,7 @@ void SceneReader::place_camera(const toml::table& table) {
     return;
   for (const char* name : {"position", "look_at"})
     if (table.contains(name))
-      throw InputError(fmt::format("{}: camera.{} excludes camera.file, which says where the "
-                                   "camera is",
+      throw InputError(fmt::format("{}: camera.{} excludes camera.file, which places the camera",
                                    locate(fmt::format("camera.{}", name)), name));
   if (!camera.name.empty() && !is_gltf_file(camera.file))
     throw InputError(locate("camera.name") + ": camera.name is for cameras of glTF files");

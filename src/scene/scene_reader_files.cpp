@@ -58,7 +58,7 @@ std::string SceneReader::resolve_file(const SceneKey& key, std::size_t index,
   return resolve_missing(path, pattern, number, node);
 }
 
-/// What stands for a file that is not there.
+/// Replacement for a missing file.
 std::string SceneReader::resolve_missing(const std::string& key, const std::string& pattern,
                                          int number, const toml::node& node) {
   const std::string file = substitute_frame(pattern, number);

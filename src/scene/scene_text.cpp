@@ -30,8 +30,8 @@ public:
 
   std::string write() {
     text_ =
-        "# A vdbeam scene. docs/scene.md and `vdbeam --help-scene` explain every key; lines that\n"
-        "# begin with # show what holds without them.\n";
+        "# A vdbeam scene. docs/reference/scene.md and `vdbeam --help-scene` explain every key;\n"
+        "# commented lines show the defaults.\n";
     add_section(SceneSection::image, 0, "[image]");
     add_section(SceneSection::camera, 0, "[camera]");
     for (std::size_t i = 0; i < scene_.volumes.size(); ++i) {
@@ -52,16 +52,8 @@ private:
   void add_section(SceneSection section, std::size_t index, const std::string& header) {
     text_ += "\n" + header + "\n";
     for (const SceneKey& key : scene_keys())
-      if (key.section == section && applies(key, index))
+      if (key.section == section && takes_key(scene_, index, key))
         text_ += line(key, index);
-  }
-
-  bool applies(const SceneKey& key, std::size_t index) const {
-    if (key.types.empty())
-      return true;
-    const KeyValue type = find_key(key.section, "type")->get(scene_, index);
-    return std::find(key.types.begin(), key.types.end(), std::get<std::string>(type)) !=
-           key.types.end();
   }
 
   std::string line(const SceneKey& key, std::size_t index) const {
@@ -89,7 +81,7 @@ private:
   std::string part_line(SceneSection section, const char* name, std::size_t index) const {
     std::string items;
     for (const SceneKey& key : scene_keys())
-      if (key.section == section && applies(key, index))
+      if (key.section == section && takes_key(scene_, index, key))
         items += fmt::format("{}{} = {}", items.empty() ? "" : ", ", key.name,
                              key.kind == KeyKind::text
                                  ? quote(std::get<std::string>(key.get(scene_, index)))

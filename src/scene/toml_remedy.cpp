@@ -47,7 +47,7 @@ bool is_list_table(const std::string& name) {
   return name == "volume" || name == "mesh" || name == "light" || name == "layer";
 }
 
-/// What stands between the = of a line and its comment or end, without spaces around it.
+/// The text between the = of a line and its comment or end, trimmed.
 std::string value_of(const std::string& line) {
   const std::size_t equals = line.find('=');
   if (equals == std::string::npos)

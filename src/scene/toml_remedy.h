@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What helps against a syntax error, beginning with "; ", or nothing. `reason` is toml++'s words
+/// Remedy for a syntax error, beginning with "; ", or "". `reason` is toml++'s words
 /// for it, `text` the file, `line` the line of the error, from 1.
 std::string toml_remedy(const std::string& reason, const std::string& text, std::size_t line);
 

@@ -49,7 +49,7 @@ std::optional<std::vector<double>> list_of(const SceneKey& key, const toml::node
   return list;
 }
 
-/// What a value of the wrong type may have been meant to be: "; did you mean [0, 0, 5]?".
+/// Suggestion for a value of the wrong type: "; did you mean [0, 0, 5]?".
 std::string remedy(const SceneKey& key, const toml::node& node) {
   const auto* text = node.as_string();
   if (!text)

@@ -12,7 +12,7 @@ namespace vdbeam {
 std::string location_of(const toml::node& node);
 /// True for a value that came from the command line.
 bool is_override(const toml::node& node);
-/// How the source of an option on the command line is told from a file's name.
+/// Prefix that marks an option of the command line as the source, as opposed to a file.
 std::string override_source(const std::string& origin);
 
 /// A node as text for messages: `"beam"`, `1.2`, `[1, 2]`, `a table`; one line, not too long.

@@ -13,6 +13,7 @@
 #include "text/curve.h"
 #include "vdbeam/error.h"
 #include "vdbeam/scene_file.h"
+#include "volume/fog_shape.h"
 
 #include <algorithm>
 #include <cctype>
@@ -61,7 +62,8 @@ public:
     for (const Scene& moment : scene_.moments)
       if (moment.volumes.size() != scene_.volumes.size() ||
           moment.lights.size() != scene_.lights.size())
-        fail("camera.shutter_open", "needs moments with as many volumes and lights as the scene");
+        fail("camera.shutter_open",
+             "needs moments with the same number of volumes and lights as the scene");
     if (camera.blades == 1 || camera.blades == 2)
       fail("camera.blades", fmt::format("must be 0 or at least 3, got {}", camera.blades));
   }
@@ -69,6 +71,8 @@ public:
   void check_volume(std::size_t index) const {
     check_transform(fmt::format("volume.{}.transform", index), scene_.volumes[index].transform);
     const VolumeSettings& volume = scene_.volumes[index];
+    if (volume.fog.made())
+      check_fog(index);
     if (const std::string why = why_no_curve(volume.remap.curve, 1); !why.empty())
       fail(fmt::format("volume.{}.density_curve", index), why);
     if (const std::string why = why_no_curve(volume.emission.ramp, 3); !why.empty())
@@ -82,6 +86,29 @@ public:
              "must be greater than box_lower along all three axes");
     if (const auto complaint = phase_kind(volume.phase.type).complaint(volume.phase))
       fail(fmt::format("volume.{}.phase.{}", index, complaint->key), complaint->text);
+  }
+
+  void check_fog(std::size_t index) const {
+    const VolumeSettings& volume = scene_.volumes[index];
+    if (volume.emission.glows())
+      fail(fmt::format("volume.{}.emission", index), "needs a file: a shape does not glow");
+    if (volume.noise.amplitude > 0)
+      check_noise(index);
+  }
+
+  /// Noise must not be finer than a shape's lattice can be.
+  void check_noise(std::size_t index) const {
+    const VolumeSettings& volume = scene_.volumes[index];
+    const double widest = max_component(box_of(volume).size());
+    constexpr double most_features = 1000;
+    if (volume.noise.size * most_features < widest)
+      fail(fmt::format("volume.{}.noise_size", index),
+           fmt::format("must be at least a thousandth of the box, {:g}, got {:g}",
+                       widest / most_features, volume.noise.size));
+    if (volume.noise.amplitude > widest)
+      fail(fmt::format("volume.{}.noise_amplitude", index),
+           fmt::format("must be at most the size of the box, {:g}, got {:g}", widest,
+                       volume.noise.amplitude));
   }
 
   void check_transform(const std::string& path, const std::array<double, 12>& m) const {
@@ -234,7 +261,8 @@ void validate_scene(const Scene& scene) {
     if (!key.get)
       continue;
     for (std::size_t i = 0; i < section_count(scene, key.section); ++i)
-      if (const auto complaint = key.complaint(key.get(scene, i)))
+      if (const auto complaint = key.complaint(key.get(scene, i));
+          complaint && (!key.required || takes_key(scene, i, key)))
         throw InputError(fmt::format("{}: {} {}", name, key_path(key, i), *complaint));
   }
   validate_consistency(scene, [&](const std::string&) -> std::string { return name; });

@@ -12,7 +12,7 @@ std::map<std::string, std::string> parse_attributes(const std::string& text);
 /// digits, _, . and -, and are none that OpenEXR or vdbeam uses.
 std::string why_no_attributes(const std::string& text);
 
-/// The frame that a time code "hh:mm:ss:ff" counts, at so many frames per second: 0 for an empty
+/// The frame that a time code "hh:mm:ss:ff" counts, at a frame rate: 0 for an empty
 /// one; nullopt for what is not one.
 std::optional<int> frames_of_time_code(const std::string& text, int frames_per_second);
 

@@ -21,7 +21,7 @@ bool has_frame_pattern(const std::string& path);
 /// The path with every such place filled in, as printf's %0Nd would write the number.
 std::string substitute_frame(const std::string& path, int frame);
 
-/// What stands in a file's name like a placeholder, but not for the frame number: "<UDIM>",
+/// A placeholder in a file's name that does not stand for the frame number: "<UDIM>",
 /// "<frame>" (of how many digits?), "%V", "*". Empty where there is no such thing.
 std::string foreign_token(const std::string& path);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace vdbeam {
 namespace {
@@ -18,7 +19,7 @@ Affine moved(const Vec3d& by) {
 }
 
 /// Throws InputError where single precision, in which Embree works, cannot hold both a surface and
-/// the rest of the scene, of which the medium is about 1 wide.
+/// the rest of the scene; the medium is about 1 wide.
 void check_sizes(const std::vector<PlacedShape>& surfaces) {
   constexpr double widest = 4e9, farthest = 1e17;
   double reach = 1e5;
@@ -35,10 +36,19 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
     check(away < farthest, i, "too far away from");
     reach = std::max(reach, away);
   }
-  // In a surface's own space coordinates are as many times larger as it is smaller.
+  // In a surface's own space coordinates are larger by the factor by which it is smaller.
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     check(least_stretch(surfaces[i].to_render.inverse()) > reach / farthest, i,
           "a million million times smaller, in some direction, than");
+}
+
+/// The material of a lamp whose power is given [W]: radiance times pi times the area of its sides.
+std::unique_ptr<Material> material_of_power(MaterialSettings material, double world_area,
+                                            double scale) {
+  const double sides = material.two_sided ? 2 : 1;
+  material.radiance = Rgb(Vec3d(*material.power) / (std::numbers::pi * world_area * sides));
+  material.power.reset();
+  return make_material(material, scale);
 }
 
 } // namespace
@@ -94,6 +104,10 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
   check_sizes(placed);
   const double reach = static_cast<double>(length(medium.center) + medium.radius);
   surfaces->set = std::make_shared<const SurfaceSet>(std::move(placed), reach, previous);
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    if (settings[i].material.power)
+      surfaces->materials[i] = material_of_power(
+          settings[i].material, surfaces->set->area(i) / (space.scale * space.scale), space.scale);
   for (std::size_t i = 0; i < settings.size(); ++i)
     if (surfaces->materials[i]->is_solid())
       surfaces->solids.push_back(surfaces->set->bounds(i));

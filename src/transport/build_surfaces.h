@@ -25,8 +25,8 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
 Boxd world_bounds(const std::vector<WorldShape>& shapes);
 
 /// The surfaces in render space; null where there are none, and then nothing of Embree is started.
-/// `store` has the shapes, and reads the textures: throws InputError, and tells of what is wrong in
-/// them in the notes. Trees over shapes that are in the `previous` set are taken from there; it may
+/// `store` has the shapes, and reads the textures: throws InputError, and reports problems
+/// in the notes. Trees over shapes that are in the `previous` set are taken from there; it may
 /// be null.
 std::shared_ptr<const Surfaces>
 build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<WorldShape>& shapes,

@@ -121,8 +121,8 @@ bool meets_target(const World& world, std::size_t target, const Ray& ray) {
                                               : meets(world.targets[target].boxes, ray);
 }
 
-/// Shares of the photons: half as many for each target after the medium, but no more than the flux
-/// that counts there in units of that to the medium.
+/// Shares of the photons: each target after the medium gets half of the previous one, at most the
+/// flux that counts there in units of that to the medium.
 void share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
   std::vector<double> weights;
   double sum = 0, to_medium = 0;
@@ -239,7 +239,7 @@ void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& u
       const LightContext context{up, world.space, world.targets[static_cast<std::size_t>(target)],
                                  target == 0 ? &notes : nullptr,
                                  target == 0 ? nullptr : aims[0].light.get()};
-      aims.push_back({kind.make(light, context), target, target, 1});
+      aims.push_back({make_light(light, context), target, target, 1});
     }
     share_out(world, aims);
     world.lights.add(std::make_unique<AimedLight>(std::move(aims)),

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What photons are aimed at (AimedLight) in a scene with surfaces: the medium first, then the
+/// Targets of photons (AimedLight) in a scene with surfaces: the medium first, then the
 /// surfaces within boxes about it, each four times as wide as the one before, at last all of them.
 /// Only the latter where there is no medium.
 std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,
@@ -43,9 +43,9 @@ struct Copies {
   float solid_angle = 0; ///< that each of them stands for
 };
 
-/// As many copies as give each about the flux that photons bring to the medium straight from their
-/// light; `flux`: of the path, in units of that. Where that is less than one copy, there is one by
-/// chance, which stands for the others.
+/// Number of copies such that each carries about the flux of photons that reach the medium straight
+/// from their light; `flux`: of the path, in units of that. Where that is less than one copy, there
+/// is one by chance, which stands for the others.
 Copies copies_into(const Cone& cone, const SurfaceVertex& vertex, float flux, Rng& rng);
 
 /// Adds the scene's lights, aimed at each of the world's targets. Throws as LightSet does.

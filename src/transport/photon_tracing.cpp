@@ -57,7 +57,7 @@ public:
                                      settings.skip_first_flight.end(),
                                      false) != settings.skip_first_flight.end()) {}
 
-  /// The paths `begin` to `end` of a pass, of which light i sends first[i] to first[i + 1]. Several
+  /// The paths `begin` to `end` of a pass; light i emits first[i] to first[i + 1]. Several
   /// are under way at a time and take turns at every collision, so that one path computes while the
   /// voxels of the others are on their way from memory.
   void trace(std::uint64_t begin, std::uint64_t end, const std::vector<std::uint64_t>& first) {
@@ -116,7 +116,7 @@ public:
       split(path, phase, point);
     return paths > 0 && scatter(path, phase, point);
   }
-  /// What leaves the scene is lost. At a surface the path goes on by its material.
+  /// A path that leaves the scene ends. At a surface it continues by the material.
   bool leave(LightPath& path) { return path.end && reflect(path); }
 
   PhotonList photons, surface_photons;

@@ -10,7 +10,7 @@
 
 namespace vdbeam {
 
-/// What a photon pass needs to know.
+/// Settings of a photon pass.
 struct PhotonPassSettings {
   std::uint64_t paths = 0; ///< light paths emitted
   PhotonStore store = PhotonStore::fluence;
@@ -26,17 +26,17 @@ struct PhotonPassSettings {
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;
-  /// Per light: what it sends to surfaces by way of mirrors, of smooth glass or of the medium, one
-  /// of which is the first that it meets, is stored where it arrives at other surfaces, whatever
-  /// happened to it in between. Empty: nothing is.
+  /// Per light: photons whose first event is a mirror, smooth glass or the medium are stored where
+  /// they arrive at other surfaces, after any further events. Empty: no photons are stored on
+  /// surfaces.
   std::vector<bool> surface_photon_lights;
   bool directions = true; ///< false: no phase function needs them
   Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
   /// Where given: what decides where light paths begin, end and split.
   std::shared_ptr<const PathGuide> guide;
-  bool path_numbers = false; ///< photons tell their path
+  bool path_numbers = false; ///< photons carry the number of their path
   RngKey key;
-  /// Tells when the result is not wanted any more: it comes soon then, and is incomplete.
+  /// Stops tracing soon; the result is then incomplete.
   const StopToken* stop = nullptr;
 };
 
@@ -60,7 +60,7 @@ struct TracedPhotons {
 ///
 /// Fluence storage: at every tentative collision of delta tracking, null or real, flux / majorant:
 /// an unbiased sample of the fluence, whose weight is bounded by the local majorant
-/// (docs/physics.md). Scatter storage: at every real collision the scattered flux (Jensen and
+/// (docs/theory/beam.md). Scatter storage: at every real collision the scattered flux (Jensen and
 /// Christensen 1998).
 ///
 /// Where `stop` asked to end meanwhile, there are no photons.

@@ -14,10 +14,10 @@ namespace vdbeam {
 /// `medium.peak` of the result says what was taken out. Null where no phase function has a peak.
 std::shared_ptr<const Medium> similar_medium(const Medium& medium, int order);
 
-/// How much bias the truncation of such a medium makes, in units of which only ratios count. That
+/// How much bias the truncation of such a medium makes, in arbitrary units. That
 /// the peak has no width is wrong by (chi_M - chi_l) in the moments l > M of the phase function;
-/// the bias goes about as the square of this for l = M + 2 (measured, docs/decisions.md). 0 where
-/// nothing was taken out.
+/// the bias goes about as the square of this for l = M + 2 (measured, research-log/decisions.md). 0
+/// where nothing was taken out.
 float truncation(const Medium& medium);
 
 /// The worlds in which the photons of passes live: with the peak taken out by truncations of

@@ -11,7 +11,7 @@
 namespace vdbeam {
 namespace {
 
-/// What is known under a name, or null.
+/// The entry of a name, or null.
 template <class Map>
 const typename Map::mapped_type* find(const Map& map, const std::string& name) {
   const auto found = map.find(name);

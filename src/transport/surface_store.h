@@ -12,7 +12,7 @@
 namespace vdbeam {
 
 /// Meshes, primitives and textures as a scene uses them, each read once. What the previous frame,
-/// or the frame of which this is a moment, has read from the same state of a file is taken from
+/// or the frame that this moment belongs to, has read from the same state of a file is taken from
 /// there.
 class SurfaceStore {
 public:

@@ -11,7 +11,7 @@
 
 namespace vdbeam {
 
-/// What stands in a scene: surfaces in render space and what they are made of.
+/// Surfaces of a scene in render space, and their materials.
 struct Surfaces {
   std::shared_ptr<const SurfaceSet> set;
   std::vector<std::shared_ptr<const Material>> materials; ///< per surface
@@ -22,14 +22,21 @@ struct Surfaces {
   const Material& material(const SurfaceHit& hit) const {
     return *materials[static_cast<std::size_t>(hit.surface)];
   }
-  /// Of meshes, trees and textures.
+  /// Memory of meshes, trees and textures.
   std::size_t bytes() const;
-  std::vector<Boxd> solids; ///< bounds of the surfaces inside of which there is no medium
+  std::vector<Boxd> solids; ///< bounds of the surfaces that exclude the medium from their inside
 
   /// Some surface is a mirror, glass, or metal that is not very rough.
   bool show_surroundings() const {
     return std::any_of(materials.begin(), materials.end(),
                        [](const auto& material) { return material->shows_surroundings(); });
+  }
+
+  /// Some surface is a mirror or smooth glass: path tracing may miss light that it focuses.
+  bool focus_light() const {
+    return std::any_of(materials.begin(), materials.end(), [](const auto& material) {
+      return material->is_specular() && !material->is_black();
+    });
   }
 
   /// Some surface sends light on in narrow lobes (Material::throws_light).
@@ -64,7 +71,7 @@ public:
   int light() const { return light_; }
   Rgb matt_albedo() const { return material_.matt_albedo() * shown_; }
   Rgb emitted() const { return material_.emitted(front()) * shown_; }
-  /// What absorption inside left of the light on its way from the path's last event to here.
+  /// Transmittance of absorption inside from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
   Rgb evaluate(const Vec3f& wi, Carried carried = Carried::radiance) const {
@@ -81,9 +88,9 @@ public:
   }
   /// Where the path goes on; the direction is in render space.
   MaterialSample sample(Carried carried, Rng& rng) const;
-  /// Of glass: a way by reflection and one by refraction, in render space.
+  /// Glass: one branch by reflection and one by refraction, in render space.
   SpecularBranches both_ways(Carried carried, Rng& rng) const;
-  /// Of a specular material: all ways on, in render space.
+  /// Specular materials: all outgoing branches, in render space.
   SpecularBranches branches(Carried carried) const;
 
 private:

@@ -37,14 +37,14 @@ void check_lights(const Scene& scene, const World& world) {
   };
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (!finite(world.lights[i].power()))
-      throw InputError(fmt::format(
-          "light.{}: it sends more power into the scene than single precision holds (3.4e38): give "
-          "all lights less by the same factor, and expose the picture by it",
-          i));
+      throw InputError(
+          fmt::format("light.{}: its power exceeds single precision (3.4e38): divide all lights by "
+                      "the same factor, and correct the exposure of the image",
+                      i));
   for (const Emitter& emitter : world.medium.emitters)
     if (!finite(emitter.strength))
-      throw InputError(fmt::format("volume.{}.emission.scale: it glows more than single precision "
-                                   "holds (3.4e38 per unit of length): give a smaller one",
+      throw InputError(fmt::format("volume.{}.emission.scale: the emission exceeds single "
+                                   "precision (3.4e38 per unit of length): use a smaller value",
                                    emitter.setting));
 }
 
@@ -110,11 +110,10 @@ void limit_density(Volume& volume, const VolumeSettings& settings, double scale,
     return;
   const auto most = static_cast<float>(most_extinction / extinction);
   volume.limited = most > 0 && volume.field.limit_values(most) > 0;
-  notes.push_back(
-      fmt::format("{}: densities up to {:.2g} are more than can be told from {:.2g} (an "
-                  "extinction of {:.2g} per world unit), and count as that",
-                  settings.file.empty() ? "a volume" : settings.file, densest,
-                  static_cast<double>(most), most_extinction * scale));
+  notes.push_back(fmt::format("{}: densities above {:.2g} (an extinction of {:.2g} per world unit) "
+                              "are clamped to it; the greatest is {:.2g}",
+                              settings.file.empty() ? "a volume" : settings.file,
+                              static_cast<double>(most), most_extinction * scale, densest));
 }
 
 Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
@@ -171,7 +170,7 @@ void add_volume_lights(World& world) {
       world.lights.add(std::make_unique<VolumeLight>(emitter), {.is_emission = true});
 }
 
-/// What a surface is, where lights can be drawn by solid angle: a sphere that is not stretched, or
+/// The shape of a surface if lights can be drawn by solid angle: a sphere that is not stretched, or
 /// a quad with perpendicular edges.
 SolidAngleShape solid_angle_shape(const SurfaceSettings& settings, const RenderSpace& space) {
   const Affine map = space.map().after(Affine::from_matrix(settings.transform));
@@ -237,7 +236,7 @@ void bound_region(World& world, const Boxd& bounds) {
 
 namespace {
 
-/// Of each volume its place, and the bounds of all that they hold [world].
+/// The transform of each volume to the world, and the bounds of their contents [world].
 std::vector<Affine> place_volumes(const Scene& scene, const std::vector<DensityGrid>& grids,
                                   const std::vector<EmissionGrid>& emissions, Boxd& bounds) {
   std::vector<Affine> maps;

@@ -49,13 +49,13 @@ inline bool unoccluded(const World& world, const Vec3d& origin, const Vec3f& dir
 Segment flight_segment(const World& world, const Vec3d& origin, const Vec3f& direction,
                        std::optional<SurfaceHit>& end);
 
-/// What the plan and the user are told about the volumes that a world was built from.
+/// Facts about the volumes of a world, for the plan and for notes.
 struct WorldFacts {
   struct Voxels {
     std::uint64_t density = 0;  ///< active voxels; 0: the volume is left out as empty
     std::uint64_t emission = 0; ///< active voxels of its emission grids; 0: it does not glow
   };
-  /// What had to be made for the surfaces, since the previous world did not have it.
+  /// Counts of what had to be made for the surfaces.
   struct SurfaceWork {
     int meshes_read = 0, textures_read = 0, trees_built = 0;
   };

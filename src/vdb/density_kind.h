@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// What decides whether a grid can be rendered as a density.
+/// Properties that decide whether a grid can be rendered as a density.
 struct GridKind {
   std::string value_type; ///< "float", "half", "double", ...
   std::string map_type;   ///< "UniformScaleMap", "NonlinearFrustumMap", ...

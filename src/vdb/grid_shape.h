@@ -14,7 +14,7 @@ namespace vdbeam {
 /// Voxels that a leaf of 8^3 or a tile of a grid has active, both corners included.
 struct ActiveBox {
   std::array<std::int32_t, 3> lower, upper;
-  /// Of a leaf: which of its 4^3 blocks of 2^3 voxels hold any, x-major.
+  /// Mask of a leaf's 4^3 blocks of 2^3 voxels that have active voxels, x-major.
   std::uint64_t blocks = ~std::uint64_t{0};
 };
 

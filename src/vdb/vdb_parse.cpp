@@ -52,7 +52,7 @@ void check_kind(const std::string& path, const std::string& name, const openvdb:
     refuse(path, name, *why);
 }
 
-/// What can be refused before the grid's voxels are read.
+/// Refuses unsuitable grids before their voxels are read.
 void check_kind(const std::string& path, const std::string& name, const openvdb::GridBase& grid) {
   check_kind(path, name, grid, false, 0);
 }

@@ -35,7 +35,7 @@ void write_raw_grid(const std::string& path, const std::string& grid_name, Backg
 /// Writes the names of a file's grids, each ended by a line feed.
 void write_grid_names(const std::string& path, int descriptor);
 
-/// Writes the GridSummary of a grid that could be rendered, as far as the file's metadata tell it:
+/// Writes the GridSummary of a grid that could be rendered, as far as the file's metadata give it:
 /// no voxels are read unless the file lacks statistics. Throws as write_raw_grid.
 void write_header(const std::string& path, const std::string& grid_name, int descriptor);
 

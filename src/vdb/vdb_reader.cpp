@@ -35,7 +35,7 @@ std::uint64_t check_file(const std::string& path) {
   return file.bytes;
 }
 
-/// What a well-formed file of this size can need at most, never more than the user's limits. A node
+/// Greatest need of a well-formed file of this size, never more than the user's limits. A node
 /// of OpenVDB's tree takes at least its two bit masks of the file, which bounds the memory to 34
 /// bytes per byte of file for float values, 66 for double, and 80 more for a list of its tiles.
 GuardLimits guard_limits(std::uint64_t file_bytes, const ReadLimits& limits) {

@@ -15,7 +15,7 @@
 
 namespace vdbeam {
 
-/// What was found and mended while a grid was read.
+/// Findings and repairs while a grid was read.
 struct GridRepairs {
   std::uint64_t nan = 0;      ///< values replaced by 0
   std::uint64_t infinite = 0; ///< values replaced by 0
@@ -54,7 +54,7 @@ struct GridSummary {
   bool from_mantaflow = false; ///< written by Mantaflow, Blender's simulator, whose Z axis is up
   /// Where the grid holds something, for framing it: the bounding box is divided into outline_steps
   /// cells along each axis; for each column of cells along z (x fastest) the first and the last
-  /// cell that holds more than a hundredth of the maximum, or two numbers of which the first is
+  /// cell that holds more than a hundredth of the maximum, or two numbers where the first is
   /// larger.
   std::vector<int> outline;
   static constexpr int outline_steps = 32;
@@ -67,12 +67,12 @@ struct ReadLimits {
   const StopToken* stop = nullptr;     ///< ends reading by throwing Stopped
 };
 
-/// What becomes of a grid whose value far outside is not 0: a density without end is refused; of
+/// Treatment of a grid whose value far outside is not 0: a density without end is refused; of
 /// other grids values equal to it count as 0.
 enum class Background { refused, ignored };
 
 /// Reads one float or half grid and bricks it, in parallel; only the leaves and tiles that `wanted`
-/// needs where it is given, of which alone repairs and counts then tell. (Of a level set all, since
+/// needs, if given; repairs and counts then refer to those only. (All leaves of a level set, since
 /// its depth is found in all of it.)
 /// Throws InputError (missing file or grid, naming the grids there are; unsupported type, class or
 /// map) and FrameError (corrupt file, limits exceeded), each within `limits`.
@@ -81,7 +81,7 @@ DensityGrid read_density_grid(const std::string& path, const std::string& grid_n
                               Background background = Background::refused,
                               const std::optional<WantedBox>& wanted = {});
 
-/// What a file's header says of a grid that read_density_grid would read: name, type, class, map,
+/// Header data of a grid that read_density_grid would read: name, type, class, map,
 /// active voxels and bounds. Takes milliseconds: voxels are read only where the file was written
 /// without statistics. Same errors.
 GridSummary read_grid_header(const std::string& path, const std::string& grid_name,

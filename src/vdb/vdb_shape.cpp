@@ -83,7 +83,7 @@ ActiveBox box_of(const openvdb::CoordBBox& box) {
           {box.max().x(), box.max().y(), box.max().z()}};
 }
 
-/// What the active values of a leaf or a tile add to the sum.
+/// Contribution of the active values of a leaf or a tile to the sum.
 template <class Value>
 double light_of(Value value) {
   return value > 0 && std::isfinite(value) ? static_cast<double>(value) : 0;

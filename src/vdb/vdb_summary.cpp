@@ -152,7 +152,7 @@ void summarize_map(const openvdb::math::Transform& transform, GridSummary& summa
   }
 }
 
-/// What a grid tells without its tree.
+/// Summary of a grid from its metadata, without its tree.
 GridSummary summarize_grid(const std::string& name, const openvdb::GridBase& grid) {
   GridSummary summary;
   summary.name = name;

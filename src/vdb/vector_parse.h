@@ -7,7 +7,7 @@ namespace vdbeam {
 
 /// The OpenVDB side of reading grids of vectors, for a child process (see vdb_parse.h).
 
-/// What the vectors of a grid are.
+/// Meaning of the vectors of a grid.
 enum class VectorMeaning { velocity, color };
 
 /// Writes the names of the grids that hold a file's vectors, each ended by a line feed: one of

@@ -198,7 +198,7 @@ Colors read_colors(const std::string& path, const std::string& grid, const ReadL
   Colors colors;
   if (values.table.empty())
     return colors;
-  // Of a tile's voxels its mean tells; leaves have bricks.
+  // Tiles are represented by their value; leaves have bricks.
   std::uint64_t tiles = limit_colors(values.means);
   colors.limited = limit_colors(values.bricks) + tiles * brick_size;
   colors.field = std::make_shared<const VectorField>(std::move(values),

@@ -4,7 +4,7 @@
 
 namespace vdbeam {
 
-/// What a velocity's numbers mean: lengths per second of the grid's index space or of the world,
+/// Unit of a velocity's numbers: lengths per second of the grid's index space or of the world,
 /// times a factor.
 struct VelocityScale {
   bool index = false;

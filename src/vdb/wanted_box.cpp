@@ -8,7 +8,7 @@
 namespace vdbeam {
 namespace {
 
-/// What cubic interpolation (2), displacement by noise and motion (1 each) reach beyond a point,
+/// Reach of cubic interpolation (2), displacement by noise and motion (1 each) beyond a point,
 /// in voxels of the grid, rounded up.
 constexpr double reach = 5;
 constexpr double farthest = 1 << 30; // OpenVDB's coordinates have 32 bits

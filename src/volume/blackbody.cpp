@@ -125,6 +125,15 @@ double log_luminance(double kelvin) {
 
 } // namespace
 
+Vec3d color_matching(double nanometres) {
+  const double place = (nanometres * 1e-9 - first_wavelength) / wavelength_step;
+  const auto last = static_cast<double>(observer.size() - 1);
+  if (!(place >= 0 && place <= last))
+    return {};
+  const auto i = static_cast<std::size_t>(std::min(place, last - 1));
+  return observer[i] + (observer[i + 1] - observer[i]) * (place - static_cast<double>(i));
+}
+
 Vec3d planck_xyz(double kelvin) {
   return scaled_xyz(kelvin) * std::exp(-wien / kelvin);
 }
@@ -141,6 +150,10 @@ double luminance(const Vec3d& rgb) {
 
 Vec3d blackbody_color(double kelvin, ColorSpace space) {
   return Table::read(table(space).color, std::clamp(kelvin, coldest, hottest));
+}
+
+Rgb light_tint(const std::optional<double>& kelvin, double exposure, ColorSpace space) {
+  return Rgb((kelvin ? blackbody_color(*kelvin, space) : Vec3d(1)) * std::exp2(exposure));
 }
 
 double blackbody_luminance(double kelvin, double reference) {

@@ -2,9 +2,15 @@
 
 #include "vdbeam/color_space.h"
 
+#include <optional>
+
 namespace vdbeam {
 
-/// What the eye sees of a black body's radiance (Planck 1901): X, Y and Z of the CIE 1931 standard
+/// The CIE 1931 colour matching functions x, y and z at a wavelength in nanometres, interpolated
+/// linearly between steps of 10; 0 outside of 380 to 780.
+Vec3d color_matching(double nanometres);
+
+/// Tristimulus values of a black body's radiance (Planck 1901): X, Y and Z of the CIE 1931 standard
 /// observer [W / m^2 / sr, weighed without a unit], summed from 380 to 780 nm. `kelvin` > 0.
 Vec3d planck_xyz(double kelvin);
 
@@ -19,6 +25,10 @@ double luminance(const Vec3d& rgb);
 /// hold it down to 900 K and less. Temperatures below 500 K and above 50,000 K have the colour of
 /// those.
 Vec3d blackbody_color(double kelvin, ColorSpace space = ColorSpace::rec709);
+
+/// The factor that the keys `kelvin` and `exposure` of a light stand for: 2^exposure times the
+/// colour of a black body of that temperature, or white, with luminance 1.
+Rgb light_tint(const std::optional<double>& kelvin, double exposure, ColorSpace space);
 
 /// planck_xyz(kelvin).y / planck_xyz(reference).y, without overflow or underflow on the way. From
 /// a table with a relative error below 1e-4 from 500 to 50,000 K, with the laws of Wien and of

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int width = DensityField::brick_width;
 
-/// What one pass over a cell's values tells: the largest, and the lattice points that are not 0.
+/// Result of one pass over a cell's values: the largest, and the lattice points that are not 0.
 struct CellExtent {
   float maximum = 0;
   Vec3<int> first{width, width, width}, last{-1, -1, -1};

@@ -7,7 +7,7 @@ namespace vdbeam {
 namespace {
 
 constexpr int width = DensityField::brick_width;
-/// Of the brightest value: what is darker than this is not seen beside it.
+/// Share of the brightest value below which emission is invisible beside it.
 constexpr float darkest_share = 1e-8f;
 
 } // namespace

@@ -11,7 +11,7 @@ namespace vdbeam {
 /// 8^3 that are empty, uniform or a brick of 9^3 values, trilinear in between, 0 outside.
 class EmissionField {
 public:
-  /// What a lattice point sends out whose value is `value`; `local` is where it lies.
+  /// Emission of a lattice point with value `value` at `local`.
   using Law = std::function<Rgb(float value, const Vec3f& local)>;
 
   EmissionField() = default;

@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What making a field may take.
+/// Limits of making a field.
 struct FieldLimits {
   FieldLimits(std::uint64_t maximum_bytes, const StopToken* stop_token = nullptr)
       : bytes(maximum_bytes), stop(stop_token) {}

@@ -8,8 +8,8 @@
 namespace vdbeam {
 namespace {
 
-/// Greatest value of the noise before it is scaled: between the corners of a cube, each of which
-/// gives the sum of two coordinates at most, weighted by the fade curves, it stays below this.
+/// Greatest value of the noise before it is scaled: a blend of the corners of a cube by the fade
+/// curves, where each corner gives the sum of two coordinates at most, stays below this.
 constexpr double largest_sum = 1.05;
 
 double fade(double t) {

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// A lumpy box of so many mean free paths, seen whole.
+/// A lumpy box of a given depth in mean free paths, seen whole.
 MemoryScene lumps(double depth) {
   MemoryScene scene;
   const DensityField field = closed_field({16, 16, 16}, [](int i, int j, int k) {
@@ -109,7 +109,7 @@ TEST(ChooseEstimator, ForecastsOfSmallPicturesAreSteady) {
   EXPECT_LT(std::sqrt(forecasts.variance()), 0.22);
 }
 
-/// In thumbnails a handful of pixels told of all others, of which one at a dark rim could weigh
+/// In thumbnails a handful of pixels stood for all others, and one at a dark rim could weigh
 /// more than the rest: the logarithm of the deep scene's forecast scattered by 0.39, now by 0.16.
 TEST(ChooseEstimator, ThumbnailsOfAnySeedChooseAlike) {
   for (MemoryScene scene : {thin_under_a_sky(), deep_in_the_sun()}) {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// A cloud of droplets in the sun, of which every feature can make use.
+/// A cloud of droplets in the sun, for which every feature can be used.
 MemoryScene cloud() {
   MemoryScene scene = lumpy_cloud(80, 48);
   scene.scene.volumes[0].albedo = Rgb(0.99f);
@@ -63,38 +63,42 @@ void name_beam(MemoryScene& scene) {
 const std::vector<Exclusion>& exclusions() {
   static const std::vector<Exclusion> list{
       {"path guide", "photons store scattered flux (render.store)", store_scattered_flux},
-      {"forward peak", "render.forward_peak keeps it",
+      {"forward peak", "render.forward_peak is \"kept\"",
        [](MemoryScene& s) { s.scene.render.forward_peak = ForwardPeak::kept; }},
       {"forward peak", "photons store scattered flux (render.store)", store_scattered_flux},
-      {"forward peak", "render.max_bounces counts every scattering", limit_bounces},
+      {"forward peak", "render.max_bounces limits the scattering events", limit_bounces},
       {"forward peak", "phase functions are isotropic",
        [](MemoryScene& s) { s.scene.volumes[0].phase = {}; }},
-      {"forward peak", "photons alone bring a light that does not shine from all around",
+      {"forward peak", "a light other than a constant sky is sampled by photons only",
        [](MemoryScene& s) { s.scene.render.direct = DirectLight::photons; }},
       {"final gathering", "render.estimator names another method", name_beam},
       {"final gathering", "render.final_gather is \"never\"",
        [](MemoryScene& s) { s.scene.render.final_gather = FinalGathering::never; }},
       {"final gathering", "photons store scattered flux (render.store)", store_scattered_flux},
-      {"final gathering", "render.max_bounces counts every scattering", limit_bounces},
-      {"final gathering", "photons alone bring a light of one point or direction",
+      {"final gathering", "render.max_bounces limits the scattering events", limit_bounces},
+      {"final gathering", "a point or directional light is sampled by photons only",
        [](MemoryScene& s) { s.scene.render.direct = DirectLight::photons; }},
       {"final gathering",
-       "a lamp in or near the medium, or a small light, makes walks too noisy to forecast",
-       add_lamp},
-      {"shadow lattice", "the estimator shoots no photons", name_path},
+       "a small light without shadow rays makes the pilot's noise estimate unreliable",
+       [](MemoryScene& s) {
+         s.scene.lights[0].angular_radius = 0.5;
+         s.scene.render.direct = DirectLight::photons;
+       }},
+      {"shadow lattice", "the estimator traces no photons", name_path},
       {"shadow lattice", "extinction differs between channels",
        [](MemoryScene& s) {
          s.scene.volumes[0].extinction_scale = {1, 0.9f, 0.8f};
        }},
-      {"boundary correction", "photons of scattered flux lie in the medium, wherever it is",
+      {"boundary correction", "photons of scattered flux need no boundary correction",
        store_scattered_flux},
       {"hidden lights", "render.photons is given",
        [](MemoryScene& s) { s.scene.render.photons = 10000; }},
-      {"hidden lights", "shadow rays reach every light that they look for", [](MemoryScene&) {}},
+      {"hidden lights", "shadow rays reach every light", [](MemoryScene&) {}},
       {"refined edges", "render.estimator names another method", name_beam},
-      {"branches", "photons carry the light: only probes of the bias walk", [](MemoryScene&) {}},
-      {"branches", "no phase function has a peak that is sharp enough", name_path},
-      {"branches", "no light with shadow rays has a single direction", [](MemoryScene& s) {
+      {"branches", "photons carry the light; only bias probes are path traced",
+       [](MemoryScene&) {}},
+      {"branches", "no phase function has a sharp enough peak", name_path},
+      {"branches", "no directional light has shadow rays", [](MemoryScene& s) {
          name_path(s);
          s.scene.volumes[0].phase = henyey_greenstein(0.97);
          s.scene.lights.clear();
@@ -126,7 +130,7 @@ TEST(Features, EachConditionExcludesItsFeatureAndSaysWhy) {
 /// tests elsewhere (color_grid_test, edge_cases_test).
 TEST(Features, EveryConditionIsTried) {
   std::set<std::pair<std::string_view, std::string_view>> tried{
-      {"forward peak", "a grid of colours changes the albedo from place to place"},
+      {"forward peak", "a colour grid varies the albedo"},
       {"shadow lattice", "there is no medium"}};
   for (const Exclusion& exclusion : exclusions())
     tried.insert({exclusion.feature, exclusion.clause});

@@ -40,7 +40,7 @@ TEST(BestNeighbours, LeansOnTheUsualNumberWhereTheTrialTellsLittle) {
     return KernelModel(trial(600), trial(2400), errors, 0.25, 0.6).best_neighbours();
   };
   const double sure = best(1, 0), usual = best(0, 1e9);
-  EXPECT_LT(sure, 250); // or the test would not tell one from the other
+  EXPECT_LT(sure, 250); // or the test could not distinguish them
   // The expected bias is the mean of what it may be, in which the large ones count most: kernels
   // are somewhat narrower than those that are usual.
   EXPECT_GT(usual, 300);

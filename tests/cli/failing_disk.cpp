@@ -147,7 +147,7 @@ int fsync(int descriptor) {
   return -1;
 }
 
-/// As close(2) does it: the file is closed, and the error tells of data that is lost.
+/// As close(2) does it: the file is closed, and the error reports lost data.
 int fclose(std::FILE* file) {
   note_call("fclose", ::fileno(file));
   const int error = fault("fclose", path_of(::fileno(file)));

@@ -80,7 +80,7 @@ TEST_F(FileClaims, OutputsMayNotReplaceEachOther) {
                         "--summary");
   expect_render_refused({"--summary", "o.0001.snapshot.exr"}, "the snapshot of -o", "--summary");
   expect_render_refused({"--pass-range", "0-1", "--summary", "o.0001.exr"}, "--summary", "-o");
-  // File systems of other systems do not tell these apart.
+  // File systems of other systems do not distinguish these.
   expect_render_refused({"--summary", "O.0001.EXR"}, "--summary", "-o o.0001.exr");
   // Neither is there yet: a link to nowhere leads to where the other will be.
   fs::create_symlink("o.0001.exr", folder_ / "sub/link.json");
@@ -165,7 +165,7 @@ TEST_F(FileClaims, MergeKeepsItsPartials) {
   };
   ASSERT_EQ(part("0", "shot.deep.exr"), 0);
   ASSERT_EQ(part("1", "p1.exr"), 0);
-  expect_refused({"merge", "-o", "shot.exr", "shot.deep.exr", "p1.exr"}, "the deep picture of -o",
+  expect_refused({"merge", "-o", "shot.exr", "shot.deep.exr", "p1.exr"}, "the deep image of -o",
                  "the partial image shot.deep.exr");
 }
 
@@ -179,11 +179,11 @@ TEST_F(FileClaims, FarmReplacesOnlyItsOwnJobFiles) {
   ASSERT_EQ(run(with_job("job.sh")).code, 0);
   const auto again = run(with_job("job.sh"));
   EXPECT_EQ(again.code, 0) << again.error;
-  EXPECT_NE(again.error.find("job.sh: the job file that was there is replaced"), std::string::npos)
+  EXPECT_NE(again.error.find("job.sh: the existing job file is replaced"), std::string::npos)
       << again.error;
   write("job.sh", read("job.sh") + "# by hand\n");
-  expect_refused(with_job("job.sh"), "job.sh", "has been changed since vdbeam farm wrote it");
-  expect_refused(with_job("sky.exr"), "sky.exr", "is no job file by vdbeam farm");
+  expect_refused(with_job("job.sh"), "job.sh", "has been edited since vdbeam farm wrote it");
+  expect_refused(with_job("sky.exr"), "sky.exr", "was not written by vdbeam farm");
   Names openjd = with_job("job.json");
   openjd[1] = "openjd";
   EXPECT_EQ(run(openjd).code, 0);

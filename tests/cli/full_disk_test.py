@@ -103,7 +103,7 @@ class Disk(unittest.TestCase):
         result = render(self.disk, "1", "--checkpoint", "1", passes=3)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("o.0001.checkpoint.exr: cannot be written: No space left", result.stderr)
-        self.assertIn("rendering goes on", result.stderr)
+        self.assertIn("rendering continues", result.stderr)
         self.check_complete([1])
 
     def test_no_room_for_anything_is_one_line(self):

@@ -58,7 +58,7 @@ TEST_F(Messages, InitSaysACommandThatWorks) {
 }
 
 TEST_F(Messages, FramesOfAStillSceneAreNoted) {
-  const std::string still = "nothing depends on the frame: all 2 pictures show the same";
+  const std::string still = "nothing depends on the frame: all 2 images will be the same";
   const auto result = render({cloud, "-f", "1-2", "-o", "c.####.exr", "--passes", "1"});
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_EQ(count(result.error, still), 1u) << result.error;

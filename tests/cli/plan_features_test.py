@@ -13,17 +13,17 @@ VIEW = {"view importance", "path guide", "kernel pilot"}
 GATHER = VIEW | {"forward peak", "final gathering", "shadow lattice", "boundary correction", "refined edges"}
 # Scene, options, estimator of the first pass, features that are on, and why one of the others is off.
 SCENES = [
-    ("cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light that they look for")),
+    ("cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
     ("cloud", ["--estimator", "beam"], "beam", GATHER - {"final gathering", "refined edges"},
      ("final gathering", "render.estimator names another method")),
-    ("cloud", ["--estimator", "path"], "path", set(), ("shadow lattice", "the estimator shoots no photons")),
-    ("smoke", ["-f", "8"], "gather", GATHER, ("branches", "photons carry the light: only probes of the bias walk")),
-    ("sunlit_cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light that they look for")),
+    ("cloud", ["--estimator", "path"], "path", set(), ("shadow lattice", "the estimator traces no photons")),
+    ("smoke", ["-f", "8"], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
+    ("sunlit_cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
     ("fire", ["-f", "14"], "beam", VIEW | {"forward peak", "shadow lattice", "boundary correction"},
-     ("hidden lights", "shadow rays reach every light that they look for")),
+     ("hidden lights", "shadow rays reach every light")),
     ("ball_in_smoke", [], "beam", GATHER - {"final gathering", "refined edges"},
-     ("hidden lights", "shadow rays reach every light that they look for")),
-    ("cloud_over_ground", [], "gather", GATHER, ("branches", "photons carry the light: only probes of the bias walk")),
+     ("hidden lights", "shadow rays reach every light")),
+    ("cloud_over_ground", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cornell_fog", [], "beam", VIEW | {"boundary correction"}, ("shadow lattice", "no light has a single direction")),
     ("glass_in_fog", [], "beam", VIEW | {"boundary correction"}, ("shadow lattice", "no light has a single direction")),
     ("headlights", [], "beam", VIEW | {"forward peak", "boundary correction"},
@@ -58,7 +58,7 @@ class PlanFeatures(InTempFolder):
     def test_text_and_headers_only(self):
         code, text = run(BINARY, "plan", str(DATA / "cloud.toml"))
         self.assertEqual(code, 0, text)
-        self.assertIn("final gathering      photons are gathered where walks", text)
+        self.assertIn("final gathering      photons are gathered at the end of", text)
         self.assertIn("features that are off", text)
         plan = self.plan("cloud", "--no-pilot")
         self.assertEqual([plan["features"], plan["schedule"]], [[], []])

@@ -83,13 +83,13 @@ TEST_F(RenderCommand, TwoReferencesGiveErrorsFreeOfTheirNoise) {
   ASSERT_EQ(render(arguments).code, 0);
   const Json report = Json::parse(read("r.json"));
   EXPECT_EQ(report["second_reference"], "b.exr");
-  const double told = report["passes"].back()["mrse"].get<double>();
+  const double reported = report["passes"].back()["mrse"].get<double>();
   const Json two =
                  Json::parse(run({"compare", "v.exr", "a.exr", "--second", "b.exr", "--json"}).out),
              one = Json::parse(run({"compare", "v.exr", "a.exr", "--json"}).out);
-  EXPECT_NEAR(told, two["mrse"].get<double>(), 0.01 * one["mrse"].get<double>());
+  EXPECT_NEAR(reported, two["mrse"].get<double>(), 0.01 * one["mrse"].get<double>());
   // The picture has 64 passes, the references 2 each: alone they would count 33 times as much.
-  EXPECT_LT(std::abs(told), 0.5 * one["mrse"].get<double>());
+  EXPECT_LT(std::abs(reported), 0.5 * one["mrse"].get<double>());
 }
 
 TEST_F(RenderCommand, WrongReferenceSizeIsRefusedBeforeRendering) {
@@ -97,9 +97,8 @@ TEST_F(RenderCommand, WrongReferenceSizeIsRefusedBeforeRendering) {
   const auto result =
       run({"render", cloud, "--resolution", "16x16", "--reference", "ref.exr", "-o", "a.exr"});
   EXPECT_EQ(result.code, 2);
-  EXPECT_EQ(result.error,
-            "--reference ref.exr: is 32x18, but the picture is 16x16; use --resolution "
-            "32x18\n");
+  EXPECT_EQ(result.error, "--reference ref.exr: is 32x18, but the image is 16x16; use --resolution "
+                          "32x18\n");
   EXPECT_FALSE(exists("a.exr"));
 }
 
@@ -113,7 +112,8 @@ TEST_F(RenderCommand, BareVdbAndDefaultName) {
 TEST_F(RenderCommand, SequenceOfABareVdb) {
   const auto none = render({smoke_pattern});
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.error.find("say which frames, e.g. -f 1,12,24"), std::string::npos) << none.error;
+  EXPECT_NE(none.error.find("give a range of frames, e.g. -f 1,12,24"), std::string::npos)
+      << none.error;
   const auto result = render({smoke_pattern, "-f", "1,24", "--passes", "1"});
   ASSERT_EQ(result.code, 0) << result.error;
   EXPECT_EQ(files(), (std::vector<std::string>{"smoke.0001.exr", "smoke.0024.exr"}));
@@ -172,7 +172,7 @@ TEST_F(RenderCommand, TimeLimitHoldsInsideTheFirstPass) {
       "--preview", "a.png", "--report",    "r.json", "--set",        "render.photons=20000000"};
   const auto result = run(arguments);
   EXPECT_EQ(result.code, 0) << result.error;
-  EXPECT_NE(result.error.find("the picture is a draft"), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("the image is a draft"), std::string::npos) << result.error;
   EXPECT_LT(result.processor_seconds, 20);
   EXPECT_TRUE(exists("a.png"));
   const Image image = read_image(file("a.exr"));
@@ -192,7 +192,7 @@ TEST_F(RenderCommand, TimeLimitHoldsInsideTheFirstPass) {
 }
 
 TEST_F(RenderCommand, QuickLookIsNoFinishedFrame) {
-  // Of a volume that is read within half a second, whatever instruments the program.
+  // The volume is read within half a second, also in an instrumented program.
   const std::string fog = VDBEAM_SOURCE_DIR "/data/fog.vdb";
   EXPECT_EQ(render({fog, "--time", "0.000001", "-o", "a.exr"}).code, 3);
   ASSERT_TRUE(exists("a.exr"));
@@ -210,7 +210,7 @@ TEST_F(RenderCommand, CheckpointOfMorePassesSaysSo) {
   finish(child);
   const auto result = render({cloud, "--passes", "1", "-o", "a.exr"});
   EXPECT_EQ(result.code, 0) << result.error;
-  EXPECT_NE(result.error.find(" passes, more than the 1 asked for; the frame begins anew"),
+  EXPECT_NE(result.error.find(" passes, more than the 1 asked for; the frame starts over"),
             std::string::npos)
       << result.error;
 }

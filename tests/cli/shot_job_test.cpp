@@ -127,7 +127,7 @@ protected:
       EXPECT_EQ(x.header(i).displayWindow(), y.header(i).displayWindow());
     }
   }
-  /// Names and values, of clocks and of the machine's state names alone, without those that tell of
+  /// Names and values, of clocks and of the machine's state names alone, without those about
   /// the parts.
   static std::map<std::string, std::string> attributes(const Image& image) {
     std::map<std::string, std::string> all;
@@ -182,7 +182,7 @@ TEST_F(ShotJob, GoesOnFromItsCheckpoint) {
     const auto resumed = run({"render", "s.toml", "-o", "a.exr", "--passes", std::to_string(passes),
                               "--set", "render.estimator=" + estimator_});
     ASSERT_EQ(resumed.code, 0) << resumed.error;
-    EXPECT_NE(resumed.error.find("goes on after"), std::string::npos) << resumed.error;
+    EXPECT_NE(resumed.error.find("resumes after"), std::string::npos) << resumed.error;
     must_run(render_words("whole.exr", passes));
     expect_same("a", "whole");
   }

@@ -144,11 +144,11 @@ TEST_F(SplitJob, FarmTellsAtOnceWhichFramesHaveNoVolume) {
     return run(words);
   };
   write("v.toml", "[[volume]]\nfile = 'v.####.vdb'\n[[light]]\ntype = 'environment'\n");
-  const auto told = farm("1-6");
-  EXPECT_EQ(told.code, 0) << told.error;
-  EXPECT_NE(told.error.find("note: 3 of 6 frames (3,4,6) cannot be rendered"), std::string::npos)
-      << told.error;
-  EXPECT_NE(told.error.find("v.0003.vdb"), std::string::npos) << told.error;
+  const auto noted = farm("1-6");
+  EXPECT_EQ(noted.code, 0) << noted.error;
+  EXPECT_NE(noted.error.find("note: 3 of 6 frames (3,4,6) cannot be rendered"), std::string::npos)
+      << noted.error;
+  EXPECT_NE(noted.error.find("v.0003.vdb"), std::string::npos) << noted.error;
   EXPECT_EQ(farm("1,2,5").error.find("cannot be rendered"), std::string::npos);
   EXPECT_EQ(farm("1-6", {"--also=--missing=hold"}).error.find("cannot be rendered"),
             std::string::npos);

@@ -24,7 +24,7 @@ TEST_F(InfoCommand, ShowsGridsAndWhatWouldBeRendered) {
     EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
 }
 
-/// Of every kind of volume, also those that cannot be rendered, and for the same reason.
+/// Every kind of volume is described, also those that cannot be rendered, with the same reason.
 TEST_F(InfoCommand, AgreesWithRenderAboutEveryKindOfVolume) {
   int refused = 0;
   for (const VolumeKind& kind : volume_kinds()) {
@@ -55,7 +55,7 @@ TEST_F(InfoCommand, TellsOfMeshes) {
   for (const char* text :
        {"uv.obj\n  triangles     1\n", "bounds        (-1, 0, 0) to (1, 3, 0)",
         "size          (2, 3, 0)", "UV            yes: u from 0 to 2, v from 0 to 1\n",
-        "bounds        (9, 0, 0) to (11, 3, 4)", "UV            no: a texture cannot be shown",
+        "bounds        (9, 0, 0) to (11, 3, 4)", "UV            none: textures cannot be used",
         "looks wrong   plain.obj: "})
     EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
 }
@@ -75,7 +75,7 @@ TEST_F(InfoCommand, TellsOfPictures) {
        {"size          2 x 1 pixels", "channels      B, G, R, Z\n",
         "linear, with the primaries of ACEScg", "R             0.25 to 4, mean 2.125",
         "G             -1 to 0.5, mean -0.25", "B             1 to 1, mean 1",
-        "as albedo     1 value above 1, taken for 1", "looks wrong   1 value below 0",
+        "as albedo     1 value above 1, clamped to 1", "looks wrong   1 value below 0",
         "looks wrong   1 value: infinite"})
     EXPECT_NE(exr.out.find(text), std::string::npos) << text << "\n" << exr.out;
   write_png(image, file("a.png"), 0, "srgb");
@@ -117,7 +117,7 @@ TEST_F(InitCommand, ReplacesOnlyWhenForced) {
   write("s.toml", "mine");
   const auto refused = run({"init", cloud_vdb, "-o", "s.toml"});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_EQ(refused.error, "-o s.toml: is there already; --force replaces it\n");
+  EXPECT_EQ(refused.error, "-o s.toml: exists; --force replaces it\n");
   EXPECT_EQ(read("s.toml"), "mine");
   EXPECT_EQ(run({"init", cloud_vdb, "-o", "s.toml", "--force"}).code, 0);
   EXPECT_NE(read("s.toml"), "mine");
@@ -126,7 +126,8 @@ TEST_F(InitCommand, ReplacesOnlyWhenForced) {
 TEST_F(PlanCommand, TellsStagesAndReasons) {
   const auto result = run({"plan", cloud, "--estimator", "path"});
   ASSERT_EQ(result.code, 0) << result.error;
-  EXPECT_NE(result.out.find("the path estimator shoots none"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("the path estimator traces no photons"), std::string::npos)
+      << result.out;
   EXPECT_NE(result.out.find("left out"), std::string::npos);
 }
 

@@ -58,7 +58,7 @@ TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{},
        "vdbeam: which command? render, info, init, plan, compare, merge, farm or help; "
-       "vdbeam --help tells what they do\n"},
+       "vdbeam --help describes them\n"},
       {{"rendr", "x.vdb"},
        "vdbeam: rendr is not one of its commands, which are render, info, init, plan, compare, "
        "merge, farm and help; did you mean render?\n"},
@@ -67,7 +67,7 @@ TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
       {{"--versoin"}, "vdbeam: there is no option --versoin; did you mean --version?\n"},
       {{"help", "rander"}, "vdbeam help: there is no command rander; did you mean render?\n"},
       {{"farm"},
-       "vdbeam farm: which command? slurm or openjd; vdbeam farm --help tells what they do\n"},
+       "vdbeam farm: which command? slurm or openjd; vdbeam farm --help describes them\n"},
       {{"farm", "slrum"},
        "vdbeam farm: slrum is not one of its commands, which are slurm and "
        "openjd; did you mean slurm?\n"},

@@ -81,16 +81,16 @@ TEST(ImageError, TwoReferencesTellHowCertainTheErrorIs) {
     });
   };
   constexpr int draws = 400;
-  double sum = 0, squares = 0, told = 0;
+  double sum = 0, squares = 0, stated = 0;
   for (int i = 0; i < draws; ++i) {
     const Image image = draw(), a = draw(), b = draw();
     const ImageError error = image_error(image, a, b);
     sum += error.mrse / draws;
     squares += error.mrse * error.mrse / draws;
-    told += error.mrse_error * error.mrse_error / draws;
+    stated += error.mrse_error * error.mrse_error / draws;
   }
-  // 4 standard errors of a variance from so many draws.
-  EXPECT_NEAR(told / (squares - sum * sum), 1, 4 * std::sqrt(2.0 / draws));
+  // 4 standard errors of a variance from `draws` draws.
+  EXPECT_NEAR(stated / (squares - sum * sum), 1, 4 * std::sqrt(2.0 / draws));
 }
 
 TEST(TemporalError, MatchesItsDefinitionByHand) {
@@ -115,7 +115,7 @@ TEST(TemporalError, IndependentNoiseHasTwiceItsMrse) {
   };
   const Image truth = constant({1, 1, 1}), a = noisy(), b = noisy();
   const double expected = image_error(a, truth).mrse + image_error(b, truth).mrse;
-  // The sum of n = 6144 products of two noises, against that of as many squares: 4 / sqrt(n).
+  // The sum of n = 6144 products of two noises, against that of n squares: 4 / sqrt(n).
   EXPECT_NEAR(temporal_error(a, b, truth, truth) / expected, 1, 0.05);
 }
 

@@ -127,7 +127,7 @@ void expect_agreement(const MemoryScene& scene, const PassMeans& truth, Estimato
   for (std::size_t c = 0; c < 3; ++c) {
     SCOPED_TRACE(testing::Message() << "channel " << c);
     test::expect_same_mean(means.total[c], truth.total[c], bias * truth.total[c].mean());
-    // Single scattering is told from the rest alike, whatever finds it; where forward peaks are
+    // Single scattering is separated in the same way by every method; where forward peaks are
     // taken out of multiple scattering, the two are parted only roughly.
     if (layers) {
       test::expect_same_mean(means.direct[c], truth.direct[c], bias * truth.total[c].mean());
@@ -191,7 +191,7 @@ TEST_P(Agreement, FinalGatheringWithPath) {
   }
 }
 
-/// The guard of the test above: it would tell a picture from its mirror image.
+/// The guard of the test above: it detects a mirrored image.
 TEST(AgreementOfRegions, SeesAMirroredPicture) {
   const PassMeans truth = truth_of(lamps());
   const PassMeans beam = test::render_passes(lamps(), EstimatorType::beam, 24);

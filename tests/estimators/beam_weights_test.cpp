@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-/// Along the ray through the middle of a box of 16 x 16 x 16 voxels, two layers of which alternate
+/// Along the ray through the middle of a box of 16 x 16 x 16 voxels, two alternating layers
 /// with two empty ones: what the table W gathers of light that has the shape of Tr sigma_s itself,
 /// relative to the truth.
 double gathered_share(double depth_per_voxel) {

@@ -1,4 +1,4 @@
-// What a pass tells of its kernels' blur is the difference to a pass with narrower kernels.
+// The kernels' blur that a pass measures is the difference to a pass with narrower kernels.
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ PassImage first_pass(const MemoryScene& scene, const std::vector<std::size_t>* b
   return image;
 }
 
-/// Of that difference 1 / (1 - 0.5^1.5) is the whole bias.
+/// The whole bias is 1 / (1 - 0.5^1.5) times that difference.
 TEST(BlurProbe, FollowsFromTheDifferenceToNarrowerKernels) {
   const float all_of_it = 1 / (1 - std::pow(0.5f, 1.5f));
   std::vector<std::size_t> pixels(40 * 24 / 3);

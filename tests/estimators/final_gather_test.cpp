@@ -73,8 +73,8 @@ TEST(FinalGather, LessensTheBlur) {
   EXPECT_LT(walks, along / 4);
 }
 
-/// At a probed pixel the blur is told by the same walks in narrower kernels, and no pixel changes
-/// for it.
+/// At a probed pixel the blur is measured by the same walks in narrower kernels, and no pixel
+/// changes for it.
 TEST(FinalGather, TellsItsBlur) {
   MemoryScene scene = lumpy_cloud(40, 48);
   RenderSettings& render = scene.scene.render;

@@ -147,7 +147,7 @@ TEST(ViewThinning, SavesPhotonsOfADenseMedium) {
   EXPECT_LT(stored_share(scene), 0.6);
 }
 
-/// Of photons more than two kernels beside the view, at most 4 / 1024 + exp(-2) of their share.
+/// Photons more than two kernels beside the view: at most 4 / 1024 + exp(-2) of their share.
 TEST(ViewThinning, StoresFewPhotonsOutsideTheView) {
   MemoryScene scene = noisy_cube(30);
   scene.look({0.4, 0.4, 3}, {0.4, 0.4, 0}, 4, 16, 16);
@@ -219,7 +219,7 @@ Brought bring(View& view, const ViewThinning& thinning, bool by_direction) {
   return brought;
 }
 
-/// Photons that bring alike are worth most: as many of them have less noise.
+/// Photons of equal contributions are worth most: the same number has less noise.
 TEST(ViewThinning, FollowsWhatIsScatteredTowardsTheCamera) {
   View view(noisy_cube(60));
   PhotonPassSettings settings;

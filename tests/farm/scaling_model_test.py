@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The model of docs/farm.md: its table is the script's, and its sums are what they should be."""
+"""The model of docs/how-to/farm.md: its table is the script's, and its sums are what they should be."""
 import pathlib
 import sys
 import unittest
@@ -16,7 +16,7 @@ class ScalingModel(unittest.TestCase):
     def test_documentation_shows_this_table(self):
         a = scaling_model.arguments([])
         table = scaling_model.table([scaling_model.model(a, m) for m in a.machines])
-        self.assertIn(table, (ROOT / "docs" / "farm.md").read_text())
+        self.assertIn(table, (ROOT / "docs" / "how-to" / "farm.md").read_text())
 
     def test_one_machine_renders_everything(self):
         one = self.run_model(1)

@@ -30,8 +30,8 @@ PassImage noisy_pass(int block, double sigma, std::mt19937& random) {
 }
 
 TEST(NoiseStatistics, CountsWhatPixelsShare) {
-  // Of n passes whose m squares are independent and Gaussian, the logarithm of true over estimated
-  // MRSE has the variance 2 / m + 2 / (m (n - 1)). It is known as well as 120 pairs of passes tell,
+  // For n passes whose m squares are independent and Gaussian, the logarithm of true over estimated
+  // MRSE has the variance 2 / m + 2 / (m (n - 1)). It is estimated from 120 pairs of passes,
   // to some 13 % of the variance; 4 times that is allowed.
   for (const int block : {1, 2, 4, 8}) {
     std::mt19937 random(7);
@@ -148,7 +148,7 @@ TEST(BiasStatistics, SeesABiasThatChangesSignFromPixelToPixel) {
   EXPECT_GT(estimate.high, estimate.noise + square);
 }
 
-/// Kernels of another width tell a bias that few, noisy probes do not.
+/// Kernels of another width reveal a bias that few, noisy probes do not.
 TEST(BiasStatistics, FollowsFromOtherKernels) {
   std::mt19937 random(13);
   std::normal_distribution<float> noise(0, 1), little_noise(0, 0.05f);
@@ -187,7 +187,7 @@ PassImage truncated_pass(float truncation, std::mt19937& random) {
   return pass;
 }
 
-/// Passes that take more of the forward peak out tell, beside those that take less, the bias of
+/// Passes that take more and less of the forward peak out reveal the bias of
 /// both.
 TEST(BiasStatistics, FollowsFromTruncation) {
   for (const int passes : {8, 11, 40, 200}) {
@@ -311,7 +311,7 @@ TEST(ErrorEstimate, IsUnknownBeforeThereIsASpread) {
   EXPECT_EQ(constant.error_estimate(true).high, 0);
 }
 
-/// What narrower kernels tell of the bias, beside path-traced rays that tell `probes`.
+/// The bias from narrower kernels, beside `probes` from path-traced rays.
 ErrorEstimate with_blur(double blur, double blur_error, double probes, double probes_error,
                         double hidden_error) {
   const BiasStatistics bias{probes, probes_error, 0, 0.01, blur, blur_error, 0, hidden_error};
@@ -321,7 +321,7 @@ ErrorEstimate with_blur(double blur, double blur_error, double probes, double pr
 TEST(ErrorEstimate, RaysThatAreTooFewDoNotOutvoteTheKernels) {
   const ErrorEstimate alone = with_blur(0.002, 0.0004, 0, 1e3, 0);
   EXPECT_NEAR(alone.bias_mrse, 0.00192, 0.00001); // shrunk a little
-  // Their errors are ten and three times what they could tell: the weight of the first is a
+  // Their errors are ten and three times the signal: the weight of the first is a
   // hundredth, (0.002024 / 0.02)^2, and (0.00192 - 0.01024 * 0.02) / 1.01024 = 0.001698.
   const ErrorEstimate noisy = with_blur(0.002, 0.0004, -0.02, 0.02, 0.006);
   EXPECT_NEAR(noisy.bias_mrse, 0.001698, 0.000002);
@@ -333,7 +333,7 @@ TEST(ErrorEstimate, RaysThatAreTooFewDoNotOutvoteTheKernels) {
 
 TEST(ErrorEstimate, FewBatchesThatAgreeByChanceMakeNoBias) {
   // 0.004 +- 0.001 that kernels of any width share: 0.004 less 2 (0.001 t / 1.96)^2 / 0.004, with
-  // t = 4.30 and 2.13 for 2 and 15 degrees of freedom, the first of which is known to 3 %.
+  // t = 4.30 and 2.13 for 2 and 15 degrees of freedom, the first is known to 3 %.
   const BiasStatistics bias{0, 1e3, 0, 0.01, 0, 0.0004, 0.004, 0.001};
   EXPECT_NEAR(combine_errors(0.002, {1, 0.1, 3}, bias, false).bias_mrse, 0.0016, 0.00015);
   EXPECT_NEAR(combine_errors(0.002, {1, 0.1, 16}, bias, false).bias_mrse, 0.0034, 0.00005);
@@ -344,7 +344,7 @@ TEST(ErrorEstimate, FewBatchesThatAgreeByChanceMakeNoBias) {
 TEST(ErrorEstimate, RaysThatTellNothingLeaveTheIntervalFinite) {
   const ErrorEstimate blind = with_blur(0.002, 0.0004, 0, 1e3, 1e3);
   EXPECT_NEAR(blind.high, 0.0039 + 2.13 * std::hypot(0.0039, 0.00202), 0.0004);
-  // Rays that know something tell more than the expectation.
+  // Significant rays count more than the expectation.
   EXPECT_LT(with_blur(0.002, 0.0004, 0, 1e3, 0.001).high, blind.high - 0.003);
 }
 

@@ -68,7 +68,7 @@ TEST(Film, Emission) {
   EXPECT_EQ(Film(2, 1).develop().find("volume_emission.R"), nullptr);
   Film none(2, 1);
   EXPECT_THROW(film.merge(none), std::invalid_argument);
-  // As many planes as a film without, and a double and a float for each channel.
+  // The planes of a film without, and a double and a float for each channel.
   EXPECT_EQ(film.planes().size(), none.planes().size() + 6);
 }
 

@@ -33,14 +33,13 @@ TEST(CornerNormals, are_of_unit_length) {
       EXPECT_NEAR(length(normal), 1, 1e-6f);
 }
 
-/// NaN, infinities and no length: the corner has none, and the notes tell so in one line.
+/// NaN, infinities and no length: the corner has none, and a note says so in one line.
 TEST(CornerNormals, that_cannot_be_used) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Mesh mesh = square_with({{NAN, 0, 1}, {0, 0, 0}, {0.6f, 0, 0.8f}, {0, infinity, 0}});
   ASSERT_EQ(mesh.notes.size(), 1u);
-  EXPECT_EQ(mesh.notes[0], "label: 4 of 6 corners of triangles have no normal, or one that is not "
-                           "finite or has no length: they are shaded as if the file had none "
-                           "there");
+  EXPECT_EQ(mesh.notes[0], "label: 4 of 6 triangle corners have no valid normal and are shaded "
+                           "without one");
   EXPECT_EQ(mesh.normals[0][0], Vec3f());
   complete_normals(mesh, 0);
   EXPECT_EQ(mesh.normals[0][0], Vec3f(0, 0, 1));
@@ -51,8 +50,8 @@ TEST(CornerNormals, that_cannot_be_used) {
 TEST(CornerNormals, of_the_back_are_turned_round) {
   const Mesh mesh = square_with({{0, 0, -1}, {0, 0.6f, -0.8f}, {0, 0, -1}, {0, 0, 1}});
   ASSERT_EQ(mesh.notes.size(), 1u);
-  EXPECT_EQ(mesh.notes[0], "label: the normals of 1 of 2 triangles point to the back, as the order "
-                           "of their vertices has it: they are turned round");
+  EXPECT_EQ(mesh.notes[0], "label: the normals of 1 of 2 triangles point to the back (by the "
+                           "vertex order) and are reversed");
   EXPECT_NEAR(mesh.normals[0][1].y, -0.6f, 1e-6f);
   EXPECT_NEAR(mesh.normals[0][1].z, 0.8f, 1e-6f);
   // Where others of the triangle point to the front, one that does not is left out.

@@ -230,7 +230,7 @@ TEST(MeshReader, normals_that_an_obj_names_in_vain) {
   EXPECT_EQ(read_mesh(path, {.normals = true}).notes.size(), 0u);
 }
 
-/// A name of which %20 is a part comes first.
+/// A name that contains %20 comes first.
 TEST(GltfFiles, are_named_by_uris) {
   const TempFolder folder;
   write_bytes(folder.file("a.gltf"), R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "100%.bin"}]})");

@@ -42,7 +42,7 @@ TEST(SmoothNormals, edges_stay_where_the_angle_is_larger) {
   }
 }
 
-/// Of two triangles back to back, as sheets have them, each keeps its side.
+/// Two triangles back to back, as in sheets, each keep their side.
 TEST(SmoothNormals, back_to_back) {
   Mesh mesh = fold(0);
   mesh.triangles = {{0, 1, 2}, {0, 2, 1}};

@@ -266,7 +266,7 @@ TEST(SurfaceSet, distances_are_those_of_the_nearest_point) {
   }
 }
 
-/// Of a stretched sphere the distance may be less than it is, as far as it is stretched.
+/// The distance of a stretched sphere may be underestimated by its stretch.
 TEST(SurfaceSet, the_distance_from_a_stretched_sphere_is_never_more) {
   Affine map = placed(1, {0, 0, 0});
   map.rows[2] = {0, 0, 0.25};
@@ -290,7 +290,7 @@ TEST(SurfaceSet, samples_uniformly_by_area) {
                         {make_mesh_shape(ball(48)), stretched},
                         {make_simple_shape(SurfaceShape::disk), stretched}},
                        5);
-  // Of 1 / pdf the mean is the area, and the mean of the normals is 0 on closed surfaces.
+  // The mean of 1 / pdf is the area, and the mean of the normals is 0 on closed surfaces.
   for (const std::size_t surface : {0, 1, 2}) {
     test::Samples area, closed;
     for (std::uint64_t i = 0; i < 20000; ++i) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int width = 37, height = 301;
 
-/// A float and a half channel, of which some blocks are constant.
+/// A float and a half channel, some of whose blocks are constant.
 struct Pixels {
   std::vector<float> depth = std::vector<float>(width * height);
   std::vector<Imath::half> red = std::vector<Imath::half>(width * height);

@@ -236,7 +236,7 @@ TEST(PassWorlds, TakeOutLessAndLess) {
   const World world = scene.world();
   OrderedWorlds worlds(world);
   float before = 1;
-  for (const int pass : {0, 65, 192, 576, 100000}) { // of which none is of those that take out less
+  for (const int pass : {0, 65, 192, 576, 100000}) { // none of them takes less out
     const World& similar = worlds.of(pass);
     ASSERT_TRUE(similar.medium.peak);
     EXPECT_LT(similar.medium.peak->forward[0], before);
@@ -265,7 +265,7 @@ TEST(PassWorlds, TellTruncationByTakingOutMoreAndLess) {
       const float b = truncation(worlds.of(pass + 1, walks).medium);
       EXPECT_NEAR(std::min(a, b) / std::max(a, b), std::pow(g, 4), 1e-4);
     }
-  int first_higher = 0; // of four pairs, of which half begin with it
+  int first_higher = 0; // of four pairs; half of them begin with it
   for (int pair = 8; pair < 12; ++pair)
     first_higher += worlds.order(2 * pair) > worlds.order(2 * pair + 1) ? 1 : 0;
   EXPECT_EQ(first_higher, 2);

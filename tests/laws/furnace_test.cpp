@@ -159,7 +159,7 @@ TEST_P(BeamFurnace, MarchToo) {
   MemoryScene scene = probe(test::uniform_field({1, 1, 1}, 1), {1, 1, 1}, GetParam());
   scene.scene.render.radius = 0.15;
   // A ray of unit length loses or gains in two zones of a radius, at most half of the light there,
-  // of which the correction leaves at most a quarter.
+  // the correction leaves at most a quarter of it.
   const double bias = 2 * 0.15 * 0.5 * 0.25 * std::min(1.0, GetParam().depth);
   const test::PassMeans means = test::render_passes(scene, EstimatorType::march, 24);
   expect_one(means, bias);

@@ -39,7 +39,8 @@ double henyey_greenstein(double cosine) {
   return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
-/// Share of a spot light's intensity at the cosine of an angle to its axis (docs/physics.md).
+/// Share of a spot light's intensity at the cosine of an angle to its axis
+/// (docs/theory/transport.md).
 double spot_share(const LightSettings& light, double cosine) {
   if (light.type != LightType::spot)
     return 1;

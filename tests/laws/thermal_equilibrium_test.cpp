@@ -86,7 +86,7 @@ TEST_P(ThermalEquilibrium, March) {
   MemoryScene scene = probe(GetParam());
   scene.scene.render.radius = 0.1;
   // Ball kernels reach out of the two faces: at most half of what is scattered within a radius of
-  // them, of which the correction leaves at most a quarter.
+  // them; the correction leaves at most a quarter.
   const double scattered = GetParam().albedo * std::min(1.0, GetParam().depth);
   expect_invisible(scene, EstimatorType::march, 24, 0.06, 2 * 0.1 * 0.5 * 0.25 * scattered);
 }

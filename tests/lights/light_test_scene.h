@@ -42,7 +42,7 @@ inline OccupiedRegion region_of(const std::vector<Parallelepiped>& boxes) {
   return region;
 }
 
-/// A light and the region it was made for, in a render space of scale 1 unless told otherwise.
+/// A light and the region it was made for, in a render space of scale 1 unless given otherwise.
 struct MadeLight {
   OccupiedRegion region;
   RenderSpace space;
@@ -135,7 +135,7 @@ inline Emission emit_many(const MadeLight& made, int count, const Parallelepiped
 inline void expect_mean(const Average& average, double expected, double sigmas = 4.5) {
   EXPECT_NEAR(average.mean(), expected, sigmas * average.error() + 2e-5 * std::abs(expected))
       << "standard error " << average.error();
-  EXPECT_LT(average.error(), 0.05 * std::abs(expected)) << "too few samples to tell";
+  EXPECT_LT(average.error(), 0.05 * std::abs(expected)) << "too few samples";
 }
 
 } // namespace vdbeam::test

@@ -72,7 +72,7 @@ class Packages(unittest.TestCase):
         self.assertTrue(os.path.getsize(picture))
 
     def test_documentation(self):
-        for name in ("README.md", "CHANGELOG.md", "LICENSE", "docs/scene.md", "docs/images/cloud.png",
+        for name in ("README.md", "CHANGELOG.md", "LICENSE", "docs/reference/scene.md", "docs/images/cloud.png",
                      "examples/smoke.toml", "examples/smoke/smoke.0001.vdb", "examples/fire.toml"):
             path = self.installed("share", "doc", "vdbeam", name)
             self.assertTrue(os.path.getsize(path), path)

@@ -14,7 +14,7 @@ from requirements import skip
 BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
 SOURCE = Path(__file__).resolve().parents[2]
 
-# What the library is made of (docs/architecture.md); header-only libraries leave no trace.
+# What the library is made of (docs/developer/architecture.md); header-only libraries leave no trace.
 LIBRARIES = {"openvdb", "tbb", "OpenEXR", "Imath", "png16", "z", "fmt", "tomlplusplus", "hwy", "xxhash",
              "embree3", "assimp", "OpenColorIO"}
 RUNTIME = {"stdc++", "m", "gcc_s", "c", "ld-linux-x86-64", "ld-linux-aarch64", "atomic"}

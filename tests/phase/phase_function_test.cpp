@@ -240,7 +240,7 @@ TEST(PhaseFunction, AzimuthIsUniform) {
 }
 
 // The distribution function of the sampled angle, integrated in double, must be the number that
-// drew it: exact where a float cosine could not tell the peak's inside.
+// drew it: exact where a float cosine does not resolve the peak.
 TEST(PhaseFunction, DraineInversionIsExact) {
   for (const double g : {0.0, 1e-9, 1e-3, 0.5, 0.9, 0.999})
     for (const double alpha : {0.0, 0.5, 1.0, 20.0, 500.0})

@@ -45,7 +45,7 @@ float exact_radius(const PhotonBlocks& blocks, std::size_t photon, std::size_t k
   return std::sqrt(squares[k]);
 }
 
-/// Distance to the farthest photon of the same cell, of which all have one radius and stand
+/// Distance to the farthest photon of the same cell, whose photons have one radius and stand
 /// together.
 float cell_reach(const PhotonBlocks& blocks, std::size_t photon) {
   const auto same = [&](std::size_t i) {
@@ -96,7 +96,7 @@ class KernelRadii : public testing::TestWithParam<RadiiCase> {};
 
 /// Against exact neighbours of 300 photons: the median of 300 ratios whose spread is at most 10 %
 /// is known to 0.7 % (one standard error), a k-th neighbour's own bias is 1 / (3 k). A cell that
-/// spans a gap between clusters, of which there are some in a thousand, has the neighbours of a
+/// spans a gap between clusters, a few in a thousand, has the neighbours of a
 /// place in the gap: no radius differs from that of exact neighbours by more than the way to such a
 /// place, which holds of every photon and any set.
 TEST_P(KernelRadii, AreThoseOfNeighbours) {

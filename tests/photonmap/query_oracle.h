@@ -96,7 +96,7 @@ struct Sum {
 /// Single-precision coordinates of size 1 to 2, turned into another frame.
 constexpr double position_rounding = 5e-7;
 
-/// How near an edge is too near to tell, in s and in knots.
+/// Distance to an edge below which the result is ambiguous, in s and in knots.
 struct Edges {
   double kernel = 1e-5, knots = 1e-3;
 };
@@ -127,8 +127,8 @@ struct RayWeights {
   std::function<double(std::size_t group, int channel, int knot)> at;
 };
 
-/// Of a ray that shares knots, distances and a linear phase function with the cone of rays around
-/// it; all 0 for a ray on its own.
+/// Evaluates a ray that shares knots, distances and a linear phase function with the cone of rays
+/// around it; all 0 for a ray on its own.
 struct Sharing {
   double square = 0; ///< squared tangent of the ray's angle with the cone's axis
   double phase = 0;  ///< relative error of a linear phase function

@@ -35,7 +35,7 @@ void expect_tile(const TestMap& map, BeamTile& tile, const std::vector<oracle::S
   EXPECT_LE(counts.contributions, possible);
 }
 
-/// Of the terms' magnitude, for rounding; what rays share is bounded photon by photon.
+/// Relative tolerance for rounding; what rays share is bounded photon by photon.
 constexpr double tolerance = 2e-5;
 
 struct TileCase {

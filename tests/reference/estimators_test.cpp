@@ -63,8 +63,8 @@ double width_of_lamps(const Scene& scene) {
 
 /// Path tracing finds light that glass and metal focus where it meets the lamp by chance, and a few
 /// passes miss what is rare without knowing it. So lamps become larger than what focuses their
-/// light, and send out as much as before; those without extent, of which it finds no such light at
-/// all, go out.
+/// light, and send out as much as before; lights without extent, whose focused light it never finds
+/// at all, go out.
 void widen_lights(Scene& scene) {
   const double size = width_of_lamps(scene);
   if (size == 0)
@@ -139,8 +139,8 @@ constexpr int passes = 20, path_passes = 64, late = 1000;
 
 class SlowSampleScenes : public testing::TestWithParam<fs::path> {};
 
-/// Late passes have kernels a third as wide as early ones. What they still blur is told by how much
-/// early ones differ from them: blur goes at least as the kernels' width (docs/physics.md,
+/// Late passes have kernels a third as wide as early ones. What they still blur is bounded by how
+/// much early ones differ from them: blur goes at least as the kernels' width (docs/theory/beam.md,
 /// "Errors"). Whatever else the estimators differ by must be chance, at 4 standard errors for the
 /// whole and for each region.
 TEST_P(SlowSampleScenes, LookTheSameWithEveryEstimator) {

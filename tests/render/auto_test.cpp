@@ -54,7 +54,7 @@ TEST(Gather, SaysWhereItGathersAlongRays) {
   const RenderResult result = render(scene);
   EXPECT_EQ(result.plan.schedule.at(0).estimator, "beam");
   const std::string note = "render.estimator = \"gather\" gathers along camera rays here: "
-                           "render.max_bounces counts every scattering";
+                           "render.max_bounces limits the scattering events";
   EXPECT_NE(std::find(result.notes.begin(), result.notes.end(), note), result.notes.end());
 }
 

@@ -62,7 +62,7 @@ TEST(Clamp, ALimitThatNothingReachesTakesNothing) {
   EXPECT_TRUE(notes_clamp(clamped)) << "that it took nothing is worth a line";
 }
 
-/// Parts and resumed renders tell the sum.
+/// Parts and resumed renders report the sum.
 TEST(Clamp, TalliesOfPartsAddUp) {
   const test::TempFolder folder;
   const Scene scene = small_cloud({"render.clamp=0.5"});

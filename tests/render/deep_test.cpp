@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FlatCase{"Overscan", "sunlit_cloud.toml", {"image.overscan=3"}}),
     [](const auto& test) { return test.param.name; });
 
-/// What lies before a plane, of which samples that it cuts give their homogeneous share, as OpenEXR
+/// What lies before a plane; samples that it cuts give their homogeneous share, as OpenEXR
 /// defines it (Interpreting OpenEXR Deep Pixels, "Splitting a volume sample").
 std::vector<std::array<float, 4>> flatten_before(const DeepImage& deep, float plane_z) {
   DeepImage front = deep;

@@ -132,7 +132,7 @@ void expect_calibrated(int inside) {
 }
 
 /// Noise and bias together against an image by path tracing; with more rays followed than by
-/// default, since so few pixels would tell no bias otherwise.
+/// default, since so few pixels would show no bias otherwise.
 TEST_P(ErrorCalibrationSlow, TrueErrorLiesInItsIntervalAndTargetsAreMet) {
   Case scene = GetParam()();
   RenderSettings& settings = scene.memory.scene.render;

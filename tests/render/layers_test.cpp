@@ -90,7 +90,7 @@ TEST(Layers, AreChosenByName) {
                                              "variance.R", "variance.G", "variance.B"}));
   EXPECT_FALSE(image.find("background.R")->half);
   EXPECT_TRUE(image.find("R")->half);
-  // The usual picture tells what they must be.
+  // The usual image gives the expected values.
   const Image usual = render(cloud()).image;
   for (std::size_t i = 0; i < plane(usual, "R").size(); ++i) {
     EXPECT_NEAR(plane(image, "background.G")[i], plane(usual, "G")[i] - plane(usual, "volume.G")[i],
@@ -103,13 +103,13 @@ TEST(Layers, AreChosenByName) {
 /// The variance of the mean of 8 passes is 1/8 of that of one pass: of many seeds' pictures it is
 /// what their spread shows.
 TEST(Layers, SlowVarianceIsThatOfThePicture) {
-  double told = 0, shown = 0;
+  double stated = 0, shown = 0;
   std::vector<Image> images;
   for (int seed = 1; seed <= 12; ++seed) {
     images.push_back(render(cloud({"layer.0.name=variance", "render.estimator=path",
                                    "render.seed=" + std::to_string(seed)}))
                          .image);
-    told += mean(plane(images.back(), "variance.G")) / 12;
+    stated += mean(plane(images.back(), "variance.G")) / 12;
   }
   for (std::size_t i = 0; i < plane(images[0], "G").size(); ++i) {
     double sum = 0, squares = 0;
@@ -122,7 +122,7 @@ TEST(Layers, SlowVarianceIsThatOfThePicture) {
   }
   // 576 pixels with 11 degrees of freedom each; a tenth is more than three standard errors of
   // both unless single pixels rule, which they do not here.
-  EXPECT_NEAR(told, shown, 0.15 * shown);
+  EXPECT_NEAR(stated, shown, 0.15 * shown);
 }
 
 TEST(Layers, CompressionOfTheFile) {

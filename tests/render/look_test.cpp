@@ -102,8 +102,8 @@ TEST_F(Look, MomentsDoNotReadFilesAgain) {
   }
 }
 
-/// Of the file only what can come into the box is read, whatever brings it there, and the plan
-/// knows.
+/// Only the part of the file that can come into the box is read, whatever brings it there, and the
+/// plan knows.
 TEST_F(Look, TheBoxIsAllThatIsRead) {
   VolumeOptions options;
   options.size = 96;

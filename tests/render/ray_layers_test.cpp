@@ -136,7 +136,7 @@ const std::string two_volumes =
     "extinction = 2\nemission = { intensity = \"density\", color = [1, 0.4, 0.1] }\n"
     "[[light]]\ntype = \"distant\"\ndirection = [0, -1, -1]\n";
 
-/// Overlapping volumes of several colours and phase functions, one of which glows.
+/// Overlapping volumes of several colours and phase functions, one of them emits light.
 TEST_P(LayersOfVolumes, AddUpToTheVolume) {
   const std::string estimator = std::string("render.estimator=") + GetParam();
   const std::string names[] = {"layer.0.name=volumes", "layer.1.name=volume", "layer.2.name=alpha"};

@@ -81,7 +81,7 @@ TEST(Seeds, TheDefaultFlickersLess) {
   const std::vector<Image> truth = render_pair("correlated", 99, 60);
   const double correlated = flicker(truth, "correlated"), per_frame = flicker(truth, "per_frame");
   EXPECT_GT(correlated, 0);
-  // Of single seeds on the like the ratio was 0.3 to 0.6.
+  // With single seeds on similar scenes the ratio was 0.3 to 0.6.
   EXPECT_LT(correlated, 0.75 * per_frame) << correlated << " " << per_frame;
 }
 

@@ -59,11 +59,11 @@ TEST_F(ShutterTest, TellsOfTooFewPasses) {
       all += note + "\n";
     return all;
   };
-  EXPECT_NE(notes_of("5").find("the open shutter was seen at 5 moments only"), std::string::npos);
+  EXPECT_NE(notes_of("5").find("motion blur has 5 motion samples only"), std::string::npos);
   EXPECT_EQ(notes_of("16").find("open shutter"), std::string::npos);
 }
 
-/// Volumes that stay sharp under an open shutter are told of.
+/// Volumes that stay sharp under an open shutter get a note.
 TEST_F(ShutterTest, TellsOfMissingVelocities) {
   const auto notes_of = [&](const std::vector<std::string>& more) {
     std::string all;
@@ -73,8 +73,7 @@ TEST_F(ShutterTest, TellsOfMissingVelocities) {
   };
   EXPECT_EQ(notes_of({"camera.shutter_close=0.5"}).find("velocities"), std::string::npos);
   write("noise", "ball.vdb");
-  EXPECT_NE(notes_of({"camera.shutter_close=0.5"}).find("has no grid of velocities"),
-            std::string::npos);
+  EXPECT_NE(notes_of({"camera.shutter_close=0.5"}).find("has no velocity grid"), std::string::npos);
   EXPECT_EQ(notes_of({}).find("velocities"), std::string::npos);
   EXPECT_EQ(notes_of({"camera.shutter_close=0.5", "volume.0.velocity=none"}).find("velocities"),
             std::string::npos);
@@ -82,7 +81,7 @@ TEST_F(ShutterTest, TellsOfMissingVelocities) {
 
 /// The blurred picture is the mean of the pictures at the moments: each pass is that of the scene
 /// with the volume moved. Optical depths are small, so opacity adds up to the mass of the ball, and
-/// its centre tells how far it came.
+/// its centre shows how far it came.
 TEST_F(ShutterTest, MovesABallByItsVelocity) {
   const auto centre = [](const Image& image, double& mass) {
     Vec3d sum;

@@ -35,24 +35,24 @@ TEST(Sight, TellsTheOpticalDepth) {
 
 TEST(Sight, NotesAMediumThatNobodySees) {
   const RenderResult thin = render_with({"volume.0.extinction=0.0001"});
-  EXPECT_NE(notes_of(thin).find("hardly anything of the medium can be seen: its optical depth is"),
+  EXPECT_NE(notes_of(thin).find("the medium is nearly invisible: its optical depth is"),
             std::string::npos)
       << notes_of(thin);
   const RenderResult far = render_with({"camera.far=0.01"});
-  EXPECT_NE(notes_of(far).find("camera.far = 0.01 is nearer than every volume"), std::string::npos)
+  EXPECT_NE(notes_of(far).find("camera.far = 0.01 clips every volume"), std::string::npos)
       << notes_of(far);
   const RenderResult inside = render_with({"mesh.0={type=\"sphere\", scale=1000}"});
-  EXPECT_NE(notes_of(inside).find("the camera is inside of mesh.0"), std::string::npos)
+  EXPECT_NE(notes_of(inside).find("the camera is inside mesh.0"), std::string::npos)
       << notes_of(inside);
 }
 
 TEST(Sight, NotesBlackAndGlaringPictures) {
   const auto dark = render_with({"light.0.irradiance=0", "light.1.radiance=0"});
   EXPECT_EQ(dark.picture.black, 1);
-  EXPECT_NE(notes_of(dark).find("the picture is black"), std::string::npos) << notes_of(dark);
+  EXPECT_NE(notes_of(dark).find("the image is black"), std::string::npos) << notes_of(dark);
   const auto bright = render_with({"light.0.irradiance=100000", "light.1.radiance=100000"});
   EXPECT_GT(bright.picture.over_one, 0.5);
-  EXPECT_NE(notes_of(bright).find("% of the picture is above 1"), std::string::npos)
+  EXPECT_NE(notes_of(bright).find("% of the image is above 1"), std::string::npos)
       << notes_of(bright);
   const auto usual = render_with({});
   EXPECT_EQ(notes_of(usual), "");

@@ -1,4 +1,4 @@
-// Motion blur against brute force: the mean of pictures of 64 files, each of which holds the volume
+// Motion blur against brute force: the mean of images of 64 files, each with the volume
 // moved by its velocity to a moment of the shutter's time by a tool that shares no code with the
 // renderer.
 #include "render/shutter.h"

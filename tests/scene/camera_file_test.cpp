@@ -49,7 +49,7 @@ TEST_F(CameraFileTest, InterpolatesAndHolds) {
   expect_near(camera(text, {99}).position, {10, 0, 0});
 }
 
-/// Frames that the file does not have are told; a camera that stands still has them all.
+/// Frames that the file does not have are reported; a camera that stands still has them all.
 TEST_F(CameraFileTest, TellsOfFramesBeyondTheFile) {
   const auto notes_of = [&](const std::string& text, int frame) {
     write("shot.cam", text);
@@ -231,7 +231,7 @@ TEST_F(CameraFileTest, TellsWhatIsWrong) {
             std::string::npos);
   write("shot.cam", "1 0 0 0 0 0 0\n");
   EXPECT_EQ(error_of("[camera]\nfile = \"shot.cam\"\nposition = [0, 0, 1]\n"),
-            "s.toml:3: camera.position excludes camera.file, which says where the camera is");
+            "s.toml:3: camera.position excludes camera.file, which places the camera");
 }
 
 /// The moments of a shutter and the frames of a sequence ask for it again and again.

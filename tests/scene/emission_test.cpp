@@ -97,7 +97,7 @@ TEST(DefaultEmission, FlameInTheColoursOfItsTemperature) {
   EXPECT_EQ(emission.scale, 4); // a mean line of 0.25 shows 1
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0], "fire.vdb: grid \"flame\" glows in the colours of \"temperature\", with "
-                      "strength 4; change it with --set volume.0.emission.scale=X (0: not at all)");
+                      "strength 4; change it with --set volume.0.emission.scale=X (0: off)");
 }
 
 TEST(DefaultEmission, FlamesWithoutTemperature) {

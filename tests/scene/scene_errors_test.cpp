@@ -73,10 +73,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{VOLUME "phase = { type = 'henyey_greenstein', anisotropy = 0.5 }\n",
                  "s.toml:3: unknown key volume.0.phase.anisotropy; did you mean g?"},
         BadScene{
-            "[[light]]\ntype = 'distant'\nkelvin = 5000\n",
-            "s.toml:3: unknown key light.0.kelvin; colour and strength of a light are one key: "
-            "irradiance of a distant light, intensity of a point or spot light, radiance of an "
-            "environment or sky, e.g. irradiance = [5, 4, 3]"},
+            "[[light]]\ntype = 'distant'\ncolor = [1, 0.5, 0]\n",
+            "s.toml:3: unknown key light.0.color; colour and strength of a light are one key: "
+            "irradiance of a distant light, intensity or power of a point or spot light, radiance "
+            "of "
+            "an environment or sky, e.g. irradiance = [5, 4, 3]; kelvin and exposure multiply it"},
         BadScene{"[[light]]\ntype = 'distant'\nelevation = 50\n",
                  "s.toml:3: unknown key light.0.elevation; direction = [x, y, z] is the way that a "
                  "distant or spot light travels"},
@@ -154,16 +155,18 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"beams\"; did you "
                  "mean beam?"},
         BadScene{
-            "[[light]]\ntype = 'sun'\n",
-            "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got \"sun\"; "
-            "did you mean distant?"},
-        BadScene{"[[light]]\ntype = 'dome'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"dome\"; did you mean environment?"},
-        BadScene{"[[light]]\ntype = 'area'\n",
-                 "s.toml:2: light.0.type must be distant, point, spot, environment or sky, got "
-                 "\"area\"; a light with an area is a [[mesh]] with material = { type = "
-                 "\"emissive\", radiance = 10 }"},
+            "[[light]]\ntype = 'directional'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere or "
+            "sun, got \"directional\"; did you mean distant?"},
+        BadScene{
+            "[[light]]\ntype = 'dome'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"dome\"; did you mean environment?"},
+        BadScene{
+            "[[light]]\ntype = 'area'\n",
+            "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
+            "or sun, got \"area\"; a light with an area is a [[mesh]] with material = { type = "
+            "\"emissive\", radiance = 10 }"},
         BadScene{"[[mesh]]\ntype = 'plane'\n",
                  "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"plane\"; did you "
                  "mean quad?"},
@@ -181,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
     Consistency, BadSceneFile,
     ::testing::Values(
         BadScene{"\n[[volume]]\nextinction = 3\n",
-                 "s.toml:2: volume.0 needs file: the VDB; ####, %04d or $F4 stands for the frame "
+                 "s.toml:2: volume.0 needs file: VDB file; ####, %04d or $F4 stands for the frame "
                  "number"},
         BadScene{"[[light]]\n", "s.toml:1: light.0 needs type: kind of light"},
         BadScene{"[[volume]]\nfile = 'fog.vdb'\n",
@@ -267,9 +270,9 @@ TEST_F(SceneErrors, WhatIsNoSceneIsNamed) {
     return std::string();
   };
   EXPECT_EQ(error_of_file(write("a.exr", "\x76\x2f\x31\x01...")),
-            "a.exr: is an OpenEXR picture, not a scene file or VDB");
+            "a.exr: is an OpenEXR image, not a scene file or VDB");
   EXPECT_EQ(error_of_file(write("a.png", "\x89PNG...")),
-            "a.png: is a PNG picture, not a scene file or VDB");
+            "a.png: is a PNG image, not a scene file or VDB");
   EXPECT_EQ(error_of_file("/dev/null"), "/dev/null: is a device, not a scene file or VDB");
   EXPECT_EQ(error_of_file(file("b.exr")), "there is no file b.exr; did you mean a.exr?");
 }
@@ -289,13 +292,12 @@ TEST_F(SceneErrors, WhatCannotBeMeantIsNoted) {
   EXPECT_EQ(notes(volume + light + "[camera]\nshutter_close = 180\n"),
             "s.toml:6: camera.shutter_close = 180 is in frames; if degrees are meant, write 0.5\n");
   EXPECT_EQ(notes(volume + light + "[camera]\nshutter_open = -0.25\nshutter_close = 0.25\n"), "");
-  EXPECT_EQ(
-      notes(volume + light + "[render]\ntarget_error = 1\n"),
-      "s.toml:6: render.target_error = 1 is reached by almost any picture after a few passes; "
-      "a clean one has about 0.001\n");
+  EXPECT_EQ(notes(volume + light + "[render]\ntarget_error = 1\n"),
+            "s.toml:6: render.target_error = 1 is reached by almost any image after a few passes; "
+            "a clean image has about 0.001\n");
   EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n"),
-            "s.toml: the image will have no A, since no [[layer]] is \"alpha\"; add one to lay it "
-            "over a plate\n");
+            "s.toml: the image will have no alpha, since no [[layer]] is \"alpha\"; add one for "
+            "compositing\n");
   EXPECT_EQ(notes(volume + light + "[[layer]]\nname = 'depth'\n[[layer]]\nname = 'alpha'\n"), "");
   EXPECT_EQ(notes(volume + "time = { speed = 2 }\n" + light),
             "s.toml:2: volume.0.time does nothing: file names a single file, not a sequence like "

@@ -31,7 +31,7 @@ TEST(SceneKeys, DefaultsAreValid) {
 }
 
 TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
-  std::ifstream stream(VDBEAM_SOURCE_DIR "/docs/scene.md");
+  std::ifstream stream(VDBEAM_SOURCE_DIR "/docs/reference/scene.md");
   std::stringstream text;
   text << stream.rdbuf();
   for (const SceneSection section :
@@ -39,7 +39,7 @@ TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
         SceneSection::emission, SceneSection::mesh, SceneSection::material, SceneSection::light,
         SceneSection::layer, SceneSection::render})
     EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
-        << "docs/scene.md lacks this table of " << section_name(section) << ":\n"
+        << "docs/reference/scene.md lacks this table of " << section_name(section) << ":\n"
         << key_table_markdown(section);
 }
 

@@ -13,7 +13,8 @@ struct Extreme {
   /// What beam may lack or have too much: the kernel reaches beyond the medium.
   double beam_bias = 0.03;
   std::uint64_t photons = 40000;
-  /// Not where photons cannot resolve the scene and render() says so (docs/stability.md).
+  /// Not where photons cannot resolve the scene and render() says so
+  /// (docs/developer/extreme-scenes.md).
   bool beam = true;
   int beam_passes = 24, path_passes = 24;
   /// Standard errors stay below these, or the test would see no defect.
@@ -147,7 +148,7 @@ MemoryScene overlapping() {
 }
 
 const Extreme extremes[] = {
-    // Of a medium that thin a pass has 40 photons, and kernels are as wide as the medium: 10 % too
+    // In a medium that thin a pass has 40 photons, and kernels are as wide as the medium: 10 % too
     // bright, a ten-thousandth of what the picture shows.
     //
     // name, scene, bias of beam, photons, whether beam is held to it, passes, standard errors

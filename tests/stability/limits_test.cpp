@@ -35,8 +35,8 @@ TEST(Memory, ABillionPhotonsAreRefused) {
   scene.scene.render.photons = 1000000000;
   EXPECT_EQ(complaint(scene.scene, 16 * gigabyte),
             "scene: render.photons: a map of 1000000000 photons would take 63.0 GB of the 16.0 GB "
-            "that this machine grants: ask for fewer photons and more passes, which give the same "
-            "picture");
+            "that this machine grants: use fewer photons and more passes, which give the same "
+            "image");
   EXPECT_EQ(complaint(scene.scene, 128 * gigabyte), "");
 }
 
@@ -67,7 +67,7 @@ TEST(Memory, AThousandLayersAreRefusedOrFit) {
   scene.scene.layers.push_back({"volumes"});
   EXPECT_EQ(complaint(scene.scene, 64 * gigabyte),
             "scene: image: 3840 x 2160 pixels with 1000 channels of layers would take 168.1 GB of "
-            "the 64.0 GB that this machine grants: ask for a smaller picture or fewer layers");
+            "the 64.0 GB that this machine grants: render a smaller image or fewer layers");
   EXPECT_EQ(complaint(scene.scene, 1024 * gigabyte), "");
 }
 
@@ -84,7 +84,7 @@ TEST(Memory, HugeImagesAreRefusedOrFit) {
   scene.scene.image = {16384, 16384};
   EXPECT_EQ(complaint(scene.scene, 16 * gigabyte),
             "scene: image: 16384 x 16384 pixels would take 79.5 GB of the 16.0 GB that this "
-            "machine grants: ask for a smaller picture");
+            "machine grants: render a smaller image");
   EXPECT_EQ(complaint(scene.scene, 128 * gigabyte), "");
   scene.scene.image = {65536, 65536}; // 2^32 pixels: no 32-bit product
   EXPECT_NE(complaint(scene.scene, 128 * gigabyte), "");
@@ -169,7 +169,7 @@ double brightness(const Scene& scene) {
   return sum / static_cast<double>(values.size());
 }
 
-/// What is denser than all that single precision tells apart looks like what just about is.
+/// Media denser than single precision resolves look like the densest that it does.
 TEST(Limits, ExtinctionAndDensityBeyondSinglePrecision) {
   const TempFolder folder;
   Scene scene = file_scene(folder);

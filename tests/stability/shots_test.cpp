@@ -43,7 +43,8 @@ protected:
   }
 };
 
-/// Of a lens far wider than its focus is distant, rays of neighbouring pixels come from all sides.
+/// With a lens far wider than its focus is distant, rays of neighbouring pixels come from all
+/// sides.
 TEST_F(Shots, LensesWiderThanTheirFocusLoseNoLight) {
   for (const char* radius : {"20", "100", "10000"}) {
     SCOPED_TRACE(radius);
@@ -70,7 +71,7 @@ TEST_F(Shots, VelocitiesOf1e6) {
     EXPECT_NEAR(wild.find("A")->data[i], still.find("A")->data[i], 1e-5f) << i;
 }
 
-/// A third of the voxels have a velocity that is not a number, infinite or 1e6: a note counts them,
+/// A third of the voxels have a velocity that is not finite, infinite or 1e6: a note counts them,
 /// and the layer shows how those around them move.
 TEST_F(Shots, WildVelocitiesInTheMotionLayer) {
   write("wild", "wild.vdb");
@@ -82,7 +83,7 @@ TEST_F(Shots, WildVelocitiesInTheMotionLayer) {
     expect_one(result.image);
     EXPECT_EQ(std::count_if(result.notes.begin(), result.notes.end(),
                             [](const std::string& note) {
-                              return note.find("voxels have a velocity that is not a number") !=
+                              return note.find("voxels have a velocity that is not finite") !=
                                      std::string::npos;
                             }),
               1);
@@ -113,7 +114,7 @@ TEST_F(Shots, ShutterOfNoLength) {
   const Image still = render_with({}).image;
   EXPECT_TRUE(
       same(still, render_with({"camera.shutter_open=0.5", "camera.shutter_close=0.5"}).image));
-  // The shortest that numbers can tell is as good as still.
+  // The shortest shutter that numbers resolve gives a still image.
   expect_one(render_with({"camera.shutter_close=1e-300"}).image);
 }
 

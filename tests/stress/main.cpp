@@ -69,10 +69,10 @@ private:
   }
 
   /// What is beyond the rest must be bias, which narrower kernels lower: with eight times the
-  /// photons in kernels of as many, radii are half as large. Where kernels are narrow, bias goes as
-  /// their square and at most twice what they change is left; where they are tens of mean free
-  /// paths wide, since the scene has fewer photons than its depth needs, it must at least become
-  /// less, with 64 times the photons if not before.
+  /// photons in kernels of the same number, radii are half as large. Where kernels are narrow, bias
+  /// goes as their square and at most twice what they change is left; where they are tens of mean
+  /// free paths wide, since the scene has fewer photons than its depth needs, it must at least
+  /// become less, with 64 times the photons if not before.
   bool converges(const PassMeans& coarse, const PassMeans& path, std::size_t type, int passes,
                  std::uint64_t shift, std::size_t channel) const {
     const Measured truth = measured(path.total[channel]), wide = measured(coarse.total[channel]);

@@ -10,7 +10,7 @@
 
 namespace vdbeam::test {
 
-constexpr int region_rows = 4; ///< and as many columns
+constexpr int region_rows = 4; ///< and 4 columns
 
 /// The mean over the image of what passes render, per channel, with the passes as samples.
 struct PassMeans {

@@ -10,7 +10,7 @@ using namespace test::surfaces;
 
 constexpr double albedo = 0.6, intensity = 4;
 
-/// A floor at z = 0, of which the camera sees the middle, from -0.15 to 0.15.
+/// A floor at z = 0; the camera sees the middle, from -0.15 to 0.15.
 MemoryScene floor_from_above() {
   MemoryScene scene;
   add_surface(scene, SurfaceShape::quad, scaled(1), diffuse(albedo));

@@ -177,7 +177,7 @@ TEST(SurfaceSky, through_clear_glass) {
   sky.angular_radius = 45;
   add_surface(scene, SurfaceShape::sphere, scaled(1), white_glass());
   scene.look({0, 0, 1000}, {0, 0, 0}, 0.01, 2, 2);
-  // Through the middle: two interfaces of T = 0.96, of which what is reflected within, to all
+  // Through the middle: two interfaces of T = 0.96, with internal reflections to all
   // orders, comes out to the front or the back: T / (2 - T) to the front.
   const double radiance = 1 / (M_PI * 0.5);
   const PassMeans means = render_passes(scene, EstimatorType::path, 2000);

@@ -56,6 +56,13 @@ const std::vector<Addition>& additions() {
          lamp.position = {30, 40, -20};
          lamp.intensity = Rgb(1e-4f);
        }},
+      {"a lamp in the cloud",
+       [](MemoryScene& s) {
+         LightSettings& lamp = s.add_light(LightType::point);
+         lamp.position = {0.1, 0.1, 0.1};
+         lamp.intensity = Rgb(1e-4f);
+       }},
+      {"the sun in a group of its own", [](MemoryScene& s) { s.scene.lights[0].group = "sun"; }},
       {"a limit that no path reaches", [](MemoryScene& s) { s.scene.render.max_bounces = 100000; }},
       {"a faint glow far off", [](MemoryScene& s) {
          s.add_box({-0.1, -40.1, -0.1}, {0.1, -40, 0.1}).albedo = Rgb();

@@ -1,4 +1,4 @@
-// The ground of a plate, of which the camera sees nothing but the shadows on it.
+// The ground of a plate: the camera sees only the shadows on it.
 #include "support/surface_test.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 using namespace test::surfaces;
 
-/// A catcher at z = 0, of which the camera sees -0.15 to 0.15 from straight above.
+/// A catcher at z = 0; the camera sees -0.15 to 0.15 from straight above.
 MemoryScene caught() {
   MemoryScene scene;
   add_surface(scene, SurfaceShape::quad, scaled(2), of_type(MaterialType::shadow_catcher));

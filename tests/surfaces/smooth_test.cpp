@@ -18,8 +18,8 @@ using namespace test::surfaces;
 /// What normal a file gives for a point of a ball, as its number and place.
 using NormalOf = std::function<Vec3d(int, const Vec3d&)>;
 
-/// A ball of radius 1 by `rings` rings of twice as many quadrilaterals, which are triangles at the
-/// poles. `normal_of` empty: without normals.
+/// A ball of radius 1 by `rings` rings of twice that number of quadrilaterals, which are triangles
+/// at the poles. `normal_of` empty: without normals.
 std::string write_ball(const TempFolder& folder, int rings, const NormalOf& normal_of = {}) {
   std::ostringstream text;
   text.precision(17);

@@ -133,7 +133,7 @@ TEST(TexturedLamp, stretched_sphere_and_both_sides) {
     expect_mean(powers(lamp_of(world), c), sum[c] * factor, 1e-3 * sum[c] * factor);
 }
 
-/// Every way to a point of the lamp has the density that the other ways are told.
+/// Every way to a point of the lamp has the density that the other strategies assume.
 TEST(TexturedLamp, densities_are_those_of_the_samples) {
   const TempFolder folder;
   const std::string picture = write_picture(folder, side, side, lamps);

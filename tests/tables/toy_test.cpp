@@ -90,8 +90,9 @@ std::span<const Feature* const> feature_table() {
 }
 
 std::span<const LightKind* const> light_table() {
-  static constexpr std::array table{&distant_light,     &point_light, &spot_light,
-                                    &environment_light, &sky_light,   &lantern_light};
+  static constexpr std::array table{&distant_light,     &point_light,  &spot_light,
+                                    &environment_light, &sky_light,    &atmosphere_light,
+                                    &sun_light,         &lantern_light};
   return table;
 }
 

@@ -45,7 +45,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(command[:3], ["vdb_render", "cloud.vdb", "out.exr"])
         self.assertEqual(command[command.index("-name") + 1], "density")
         self.assertEqual(command[command.index("-res") + 1], "640x360")
-        # 0.4, 0.4, 0.2 per voxel, of which the albedo scatters.
+        # 0.4, 0.4, 0.2 per voxel; the albedo of it scatters.
         np.testing.assert_allclose(option(command, "-scatter", 3), [0.3, 0.4, 0.1])
         np.testing.assert_allclose(option(command, "-absorb", 3), [0.1, 0, 0.1])
         # Towards the light, and irradiance / (4 pi).

@@ -85,7 +85,7 @@ TEST(BoundedTracking, FlightsFollowTheIntegral) {
         ++counts[hit.volume ? static_cast<std::size_t>(hit.t / 1.5f * bins) : bins];
       }
       EXPECT_GT(test::chi_squared_test(counts, expected), test::family_level(6));
-      // Of the looser majorants most flights take as many collisions as they may.
+      // With the looser majorants most flights take the greatest number of collisions.
       EXPECT_EQ(tentative > flights * std::uint64_t{most_tentative_collisions} / 2, peak > 1);
     }
 }

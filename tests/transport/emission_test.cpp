@@ -32,7 +32,8 @@ MemoryScene cube(double extinction) {
 }
 
 TEST(EmissionIntegral, ConstantEmitter) {
-  // Deep media have a skin that single precision resolves ever less (docs/stability.md).
+  // Deep media have a skin that single precision resolves ever less
+  // (docs/developer/extreme-scenes.md).
   for (const auto& [sigma, tolerance] :
        {std::pair(0.0, 3e-5),
         {1e-3, 3e-5},
@@ -42,7 +43,7 @@ TEST(EmissionIntegral, ConstantEmitter) {
         {100.0, 3e-5},
         {1e4, 2e-4},
         {1e6, 0.1},
-        {2e6, 0.5}}) { // no medium is tracked at more (docs/stability.md)
+        {2e6, 0.5}}) { // no medium is tracked at more (docs/developer/extreme-scenes.md)
     for (const bool brick : {false, true}) {
       MemoryScene scene = cube(sigma);
       DensityField field = brick ? closed_field(one_cell, [](int, int, int) { return 2.0; })

@@ -7,7 +7,7 @@
 namespace vdbeam {
 namespace {
 
-/// 24^3 voxels, of which the last third along x is uniform.
+/// 24^3 voxels; the last third along x is uniform.
 DensityGrid grid() {
   DensityGrid grid;
   grid.field = test::make_field(24, 24, 24, [](int i, int j, int k) {

@@ -3,7 +3,7 @@
     tools/attack.sh --mutants 10000                   damaged files and commands, of all kinds in turn
     tools/attack.sh --mutants 1000 --kind volume --seed 5000
     tools/attack.sh --one volume:5017                 one mutant again, as a breach names it
-    tools/attack.sh --hours 8                         as many mutants as fit
+    tools/attack.sh --hours 8                         mutants for eight hours
     tools/attack.sh --kills 200                       kills at chosen calls and at random moments
     tools/attack.sh --pipes                           pipes, devices, sockets, folders and loops of links as files
 

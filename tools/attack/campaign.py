@@ -104,7 +104,7 @@ class Campaign:
         (target / "command.sh").write_text(f"vdbeam {shlex.join(map(str, case.words))}\n")
 
     def mutants(self, kinds, count, seed, hours=None):
-        """`count` mutants of these kinds in turn, from number `seed` on, or as many as the hours give."""
+        """`count` mutants of these kinds in turn, from number `seed` on, or until the hours are over."""
         begin = time.monotonic()
         done = 0
         while done < count and (hours is None or time.monotonic() - begin < 3600 * hours):

@@ -72,7 +72,7 @@ class Result:
 
 
 def run(words, folder, limit=None, patience=None, environment=None):
-    """Runs vdbeam in a folder. Where `patience` is given, a SIGTERM comes after so many seconds: what was asked for may
+    """Runs vdbeam in a folder. Where `patience` is given, a SIGTERM comes after this number of seconds: what was asked for may
     be long work, which must end at once then."""
     begin = time.monotonic()
     by_group = limit is not None and limit.reset_peak()
@@ -112,7 +112,7 @@ def stat_fields(process):
 
 
 def used_seconds(process):
-    """Of the process and of the children that it has waited for."""
+    """Processor time of the process and of the children that it has waited for."""
     return sum(map(int, stat_fields(process)[11:15])) / os.sysconf("SC_CLK_TCK")
 
 

@@ -136,7 +136,7 @@ def kill_at(job, number):
 
 
 def kill_by(job, sent, seconds):
-    """Sends a signal after so many seconds."""
+    """Sends a signal after some seconds."""
     job.restart()
     process = job.start()
     try:

@@ -95,6 +95,15 @@ def make_pictures(folder):
     tool(*rgb, "-d", "float", "-otex", "picture.tx")
 
 
+def make_profiles(folder):
+    """Photometric files: round, with planes, and with a tilt."""
+    head = "IESNA:LM-63-2002\n[MANUFAC] none\n"
+    (folder / "round.ies").write_text(head + "TILT=NONE\n1 900 1 3 1 1 2 0 0 0\n1 1 9\n0 45 90\n0\n90 40 1\n")
+    (folder / "planes.ies").write_text(head + "TILT=NONE\r\n1 -1 1.5 2 3 1 1 0.1 0.1 0\r\n1 1 9\r\n0 180\r\n"
+                                       "0 90 180\r\n9 4\r\n9 3\r\n9 2\r\n")
+    (folder / "tilt.ies").write_text("lamp\nTILT=INCLUDE\n1\n2\n0 90\n1 0.8\n1 900 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n9,4\n")
+
+
 SCENE = """# Every section once, as small as it gets.
 [image]
 width = 8
@@ -111,6 +120,12 @@ phase = { type = "two_lobe", g = 0.6, g2 = -0.2, blend = 0.3 }
 emission = { intensity = "density", color = [0.1, 0.05, 0.02], scale = 1 }
 translate = [0, 0.1, 0]
 noise_amplitude = 0.01
+[[volume]]
+shape = "height"
+box_lower = [-2, -1, -2]
+box_upper = [2, 1, 2]
+scale_height = 0.3
+extinction = 0.5
 [[mesh]]
 file = "mesh.obj"
 translate = [0, -1.5, 0]
@@ -129,6 +144,15 @@ group = "sun"
 type = "environment"
 radiance = 0.5
 image = "rgbe.hdr"
+[[light]]
+type = "spot"
+position = [1, 2, 1]
+direction = [-1, -2, -1]
+power = [3, 4, 5]
+kelvin = 3000
+exposure = 1
+ies = "planes.ies"
+image = "rgb8.png"
 [[layer]]
 name = "Z"
 [render]
@@ -158,7 +182,8 @@ def make_films(folder):
     render("--pass-range", "0-0", "-o", "first_deep.exr", "--set", "image.deep=true")
 
 
-MAKERS = {"volume": make_volumes, "mesh": make_meshes, "camera": make_cameras, "picture": make_pictures, "film": make_films}
+MAKERS = {"volume": make_volumes, "mesh": make_meshes, "camera": make_cameras, "picture": make_pictures,
+          "profile": make_profiles, "film": make_films}
 
 
 def make(folder):

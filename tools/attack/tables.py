@@ -85,7 +85,7 @@ class Argument:
 
 @functools.cache
 def arguments(command):
-    """Of a command, e.g. "farm slurm": those that take a value. Stops where a placeholder is unknown."""
+    """The options of a command, e.g. "farm slurm", that take a value. Stops where a placeholder is unknown."""
     found, docs, part = [], [], ""
     for line in printed("help", *command.split()).splitlines():
         if not line.startswith(" "):
@@ -108,7 +108,7 @@ def arguments(command):
 
 @functools.cache
 def commands():
-    """Every command, e.g. "render", "farm slurm", but those that only tell about the program."""
+    """Every command, e.g. "render", "farm slurm", but those that only describe the program."""
     found = []
 
     def walk(name):

@@ -39,7 +39,7 @@ def scene_with(key, path, owner=None):
     """A scene in which the key names the file."""
     line = f'{key.name} = "{path}"'
     if owner:
-        line = f'type = "{owner}"\n{line}'
+        line = f'{"shape" if key.section == "volume" else "type"} = "{owner}"\n{line}'
     around = AROUND.get(key.section, f"[{key.section}]\n{{line}}\n")
     rest = "".join(text for name, text in SURROUNDINGS.items() if name != key.section.split(".")[0])
     return around.format(line=line) + rest + REST
@@ -62,7 +62,7 @@ class Targets:
         self.kinds = [*self.readable, "scene", "values", "command", "clash"]
 
     def find_doors(self):
-        """The kinds of which a sound file renders behind each key. A key that takes none stops the campaign."""
+        """The kinds for which a sound file renders behind each key. A key that takes none stops the campaign."""
         found = {}
         for key in filter(lambda key: key.is_file, tables.keys()):
             owner = (key.owners or [None])[0]
@@ -104,7 +104,7 @@ class Targets:
         return name, headers.damaged(name, (self.sound / name).read_bytes(), rng)
 
     def file(self, kind, rng):
-        """A damaged volume, mesh, picture or camera behind a key of a scene, or as an argument."""
+        """A damaged volume, mesh, picture, camera or profile behind a key of a scene, or as an argument."""
         name, data = self.damaged(kind, rng)
         files = {name: data}
         beside = {".bin": name.replace("buffer", "parts").replace(".bin", ".gltf"), ".mtl": "mesh.obj"}
@@ -196,7 +196,7 @@ class Targets:
         return Case("", {"scene.toml": (self.sound / scene).read_bytes()}, words + sets, patience=5)
 
     def value_of(self, key, rng):
-        """Of the right type in most cases, from a table of sound, extreme and absurd ones."""
+        """A value of the right type in most cases, from a table of sound, extreme and absurd ones."""
         if key.is_file:
             return rng.choice(self.files[rng.choice(list(self.readable))])
         examples = key.examples()

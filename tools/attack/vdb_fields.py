@@ -119,7 +119,7 @@ class Vdb:
         self.at = ends[2]
 
     def tree(self):
-        """Of floats: where values are wider or narrower, other bytes are hit, which does no harm."""
+        """Fields of floats: where values are wider or narrower, other bytes are hit, which does no harm."""
         self.number("<i", "number of buffers", INTEGERS)
         self.number("<f", "background", FLOATS)
         tiles = self.number("<I", "number of root tiles", INTEGERS)

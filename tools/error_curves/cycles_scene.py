@@ -12,7 +12,7 @@ What has to be minded (Blender 3.4):
    thick, hence step_rate;
  - a sun's strength is the irradiance on a plane that faces it, a world's strength is radiance;
  - a point's power is 4 pi times its radiant intensity;
- - paths end after 4 bounces unless told otherwise; pixels are filtered unless told otherwise.
+ - paths end after 4 bounces and pixels are filtered, unless the scene sets these explicitly.
 """
 
 import json

@@ -15,7 +15,7 @@ CYCLES_SCENE = Path(__file__).with_name("cycles_scene.py")
 # A step of one voxel is 5 to 10 % too bright where voxels are optically thick.
 STEP_RATES = (1.0, 0.25)
 SKIES = {"sky": ("type", "radiance", "zenith", "horizon", "ground"),
-         "environment": ("type", "radiance", "image", "rotation")}  # and the keys that tell what they look like
+         "environment": ("type", "radiance", "image", "rotation")}  # and the keys of their look
 
 
 class NotWithinMeans(Exception):
@@ -23,7 +23,7 @@ class NotWithinMeans(Exception):
 
 
 def errors(image, references):
-    """The metrics of docs/physics.md that curves need, free of the references' noise where there are two."""
+    """The metrics of docs/theory/error-estimate.md that curves need, free of the references' noise where there are two."""
     truth = sum(references) / len(references)
     products = (image - references[0]) * (image - references[-1])
     return {"rmse": float(np.sqrt(max(0, products.mean()))),
@@ -44,7 +44,7 @@ def check_for_cycles(settings):
         check_surface(mesh, material)
     skies = [light for light in settings.get("light", []) if light["type"] in SKIES]
     if len({light["visible"] for light in skies}) > 1:
-        raise NotWithinMeans("skies of which the camera sees some")
+        raise NotWithinMeans("skies that the camera sees")
     for light in settings.get("light", []):
         if light["type"] not in ("distant", "point", *SKIES):
             raise NotWithinMeans(f"a light of type {light['type']}")
@@ -67,7 +67,7 @@ def half_voxels(binary, volume):
                           check=False).stdout
     found = re.search(r"voxel (\S+) x (\S+) x (\S+)", text)
     if not found:
-        raise ReportError(f"{volume['file']}: vdbeam info tells no voxel size")
+        raise ReportError(f"{volume['file']}: vdbeam info prints no voxel size")
     return [float(size) / 2 for size in found.groups()]
 
 
@@ -109,7 +109,7 @@ def cycles_job(binary, settings, stem):
 
 
 def render_cycles(job, stem, limit=None, **how):
-    """Renders `stem`.exr; `how`: seconds or samples, threads, seed, step_rate. What Blender tells of it. After `limit`
+    """Renders `stem`.exr; `how`: seconds or samples, threads, seed, step_rate. Blender's messages about it. After `limit`
     seconds subprocess.TimeoutExpired is raised."""
     job = {"seconds": 0, "samples": 0, **job, **how, "image": str(Path(f"{stem}.exr").resolve()),
            "result": f"{stem}.blender.json"}

@@ -92,8 +92,8 @@ def version():
 
 
 def run_vdb_render(binary, scene, settings, references, _, seconds, threads, folder):
-    """A run per pair of steps, whose `passes` are pictures with more and more samples per pixel, as many as
-    fit in the time by what the one before took. It draws no random numbers: one run stands for all seeds.
+    """A run per pair of steps, whose `passes` are images with more and more samples per pixel, as long as
+    the time allows. It draws no random numbers: one run stands for all seeds.
     Raises NotWithinMeans."""
     if shutil.which("vdb_render") is None:
         raise NotWithinMeans("it is not installed (Debian: libopenvdb-tools)")

@@ -11,10 +11,10 @@ namespace vdbeam {
 
 namespace {
 
-/// Paths of the pilot: this share of a pass, within limits, and no more than leave so many photons.
+/// Paths of the pilot: this share of a pass, within limits, and at most this many photons.
 constexpr double pilot_share = 0.25;
 constexpr double fewest_paths = 512, most_paths = 8192, most_photons = 1e6;
-/// Fewer photons tell nothing.
+/// With fewer photons no guide is fitted.
 constexpr std::size_t fewest_photons = 256;
 /// Cells with fewer visits than this take most of their value from those around them.
 constexpr double prior_visits = 8;
@@ -41,7 +41,7 @@ struct BlockSums {
 };
 
 /// The ratio of value to measure, block by block. Where visits are few it leans on the ratio over
-/// the 8 blocks of which the block is one, and so on upwards.
+/// the 2 x 2 x 2 blocks around, and so on upwards.
 std::vector<double> ratios(const BlockSums& sums) {
   const Vec3<int>& n = sums.counts;
   if (sums.value.size() == 1)
@@ -87,8 +87,8 @@ public:
 
   const MediumBlocks& blocks() const { return blocks_; }
 
-  /// What paths brought after they met a block, per unit of flux. Leaves in `brought`, by path and
-  /// 0 at first, what all of its photons bring.
+  /// Contribution of paths after they met a block, per unit of flux. Leaves in `brought`, by path
+  /// and 0 at first, what all of its photons bring.
   std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
     BlockSums sums(blocks_.counts());
     const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not

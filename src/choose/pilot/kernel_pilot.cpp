@@ -13,17 +13,17 @@ namespace vdbeam {
 
 namespace {
 
-/// Of a tile's pixels, one in so many is told to the caller: fewer are passed over where not so
-/// many samples would be left, of which some dark pixel might weigh more than all others.
+/// Every 48th pixel of a tile becomes a sample; the step shrinks until enough samples remain, since
+/// a dark pixel among few could outweigh the others.
 constexpr std::size_t pixels_between_samples = 48, fewest_samples = 64;
 /// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
-/// against all that they blur, less where they are as wide (measured, docs/decisions.md).
+/// against all that they blur, less where they are as wide (measured, research-log/decisions.md).
 constexpr double bias_power = 0.5;
-/// What is best for the clouds that were looked at, and by how many factors of two it differs among
-/// them (standard deviation): what is expected of a scene before the trial tells more.
+/// Best value for the clouds that were measured, and by how many factors of two it differs among
+/// them (standard deviation): prior of a scene, before the trial.
 constexpr double usual_neighbours = 512, usual_octaves = 1;
 /// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
-/// matters little (docs/decisions.md).
+/// matters little (research-log/decisions.md).
 constexpr int balanced_passes = 32;
 /// Adaptive radii are accurate from 32 neighbours on (docs/performance.md); fewer are never chosen.
 constexpr double fewest_neighbours = 32;
@@ -52,7 +52,7 @@ private:
   }
 };
 
-/// One in so many of the tile's pixels, with their weights.
+/// A regular sample of the tile's pixels, with their weights.
 void add_pixels(const TrialTile& view, std::size_t step, double dark,
                 std::vector<TrialPixel>& pixels) {
   const std::size_t channels = view.channels();

@@ -20,7 +20,7 @@ struct TrialPixel {
   Rgb weight; ///< of squares of its error: 1 / (brightness + a little of the picture's mean)^2
 };
 
-/// What the pictures of two trials tell about kernels: means over pixels that see the medium, in
+/// Kernel errors measured on the images of two trials: means over pixels that see the medium, in
 /// units like MRSE.
 struct KernelErrors {
   double noise_narrow = 0, noise_wide = 0; ///< variance of a map of the trial
@@ -38,7 +38,7 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
                              std::uint64_t& rays);
 
 /// How noise and bias of a picture follow from the number of photons in a kernel. Noise falls with
-/// a power of it that the trials tell; bias is taken to grow with another (docs/decisions.md).
+/// a power of it that the trials measure; bias is assumed to grow with another power.
 class KernelModel {
 public:
   /// `paths_share`: light paths of a trial's map over those of a pass. `alpha`: by which kernels
@@ -48,7 +48,7 @@ public:
 
   /// Photons in a kernel at which noise and bias together are least.
   double best_neighbours() const;
-  /// Mean square error of what photons bring to a picture of so many passes.
+  /// Mean square error of the photons' light in an image of `passes` passes.
   double error(double neighbours, int passes) const;
 
 private:
@@ -57,8 +57,8 @@ private:
     double bias_factor = 0; ///< of their squared bias
   };
   Balance balance(int passes) const;
-  /// Of the squared bias, from what was measured of it and the standard error of that, and from
-  /// what kernels other scenes need: the less the trial tells, the more these count.
+  /// Expected squared bias: the measured value, combined with a prior from other scenes, which is
+  /// weighted by the measurement's standard error.
   double expected_bias(double measured, double error) const;
 
   double narrow_, wide_;   ///< photons in the kernels of the trials
@@ -68,7 +68,7 @@ private:
   double alpha_;
 };
 
-/// What a trial tells about pictures in kernels of the width that was chosen, or of any other.
+/// Result of a trial: error model by kernel width, sampled pixels, and the regression over pixels.
 struct KernelTrialResult {
   KernelModel model;
   std::vector<TrialPixel> pixels;

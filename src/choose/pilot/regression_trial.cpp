@@ -12,7 +12,7 @@ namespace vdbeam {
 namespace {
 
 /// Kernels have blurred already what the tiles gather. Squared bias of the pictures of walks is so
-/// many times as large (docs/decisions.md).
+/// many times as large (research-log/decisions.md).
 constexpr double blur_of_walks = 1.5;
 
 /// Sums over a tile's pixels that are fitted to others of the tile only.

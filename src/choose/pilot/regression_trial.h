@@ -5,7 +5,7 @@
 
 namespace vdbeam {
 
-/// What regression over pixels would do to what the tiles gather in narrow kernels, and from that
+/// Effect of regression over pixels on the tiles' gathers in narrow kernels, and from that
 /// to what walks find. `dark`: of the weights (trial_weight).
 RegressionTrial measure_regression(const EstimatorInput& input, const std::vector<TrialTile>& tiles,
                                    double dark);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_tiles = 120;
 
-/// What the tile's rays gather from each map.
+/// Gathers the tile's rays from each map.
 std::vector<std::vector<float>> gather(const EstimatorInput& input,
                                        const std::vector<PhotonMap>& maps, BeamTile& tile) {
   std::vector<std::vector<float>> pictures;

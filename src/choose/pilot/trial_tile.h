@@ -21,15 +21,15 @@ struct TilePlace {
 /// Tiles spread over the picture, at which trials look; all of them where it is small.
 std::vector<TilePlace> choose_trial_tiles(const Camera& camera);
 
-/// What a tile's rays see of the maps of two trials.
+/// Values of a tile's rays from the maps of two trials.
 struct TrialTile {
   TilePlace place;
   /// By map, what the rays gather: one channel after another, in each the rays as in TileRays.
   std::vector<std::vector<float>> narrow, wide;
-  // Of the rays that meet the medium:
+  // Per ray that meets the medium:
   std::vector<std::size_t> pixels; ///< of the picture
   std::vector<std::size_t> rays;   ///< of the tile
-  // And of each channel of each of them:
+  // Per channel of each of them:
   std::vector<std::size_t> places; ///< in a map's picture
   std::vector<double> known;       ///< light that does not come from photons
   double brightness = 0;           ///< sum over these
@@ -53,7 +53,7 @@ struct Spread {
   Spread(const std::vector<std::vector<float>>& pictures, std::size_t place);
 };
 
-/// Sums of a value that each of some maps tells with its own noise.
+/// Running sums of one value measured on independent maps.
 struct PairedSums {
   double sum = 0, squares = 0;
   int count = 0;
@@ -63,12 +63,12 @@ struct PairedSums {
     squares += value * value;
     ++count;
   }
-  /// The square of what the maps agree on: the mean over pairs of different maps, of which noise is
+  /// The square of what the maps agree on: the mean over pairs of different maps, in which noise is
   /// no part.
   double common_square() const { return (sum * sum - squares) / (count * (count - 1.0)); }
 };
 
-/// Of the square of a pixel's error.
+/// Weight of a pixel's squared error, as in MRSE.
 inline double trial_weight(double brightness, double dark) {
   const double offset_brightness = std::max(0.0, brightness) + dark;
   return 1 / (offset_brightness * offset_brightness);

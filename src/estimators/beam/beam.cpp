@@ -66,7 +66,8 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
                   map.groups() > 0 ? &groups : nullptr);
     return GroupedLight(sum, groups);
   };
-  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along}, image, statistics);
+  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along, &blur}, image,
+              statistics);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
@@ -116,7 +117,7 @@ constexpr std::string_view beam_keys[] = {"photons",      "store",       "direct
 
 const EstimatorKind beam_estimator{
     .name = "beam",
-    .help = "the beam radiance estimate: photons, gathered along whole camera rays",
+    .help = "the beam radiance estimate: photons, gathered along the camera ray",
     .unbiased = false,
     .stages = gather_stages,
     .keys = beam_keys,

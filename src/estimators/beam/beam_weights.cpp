@@ -181,7 +181,7 @@ private:
     return table.weights + at * static_cast<std::size_t>(table.rays) + ray;
   }
 
-  /// Of the volumes that something reaches the ray from in this interval.
+  /// Albedos of the volumes that contribute to the ray in this interval.
   void find_albedos(const Vec3f& point) {
     for (std::size_t v = 0; v < albedos_.size(); ++v)
       if (after_[v] > before_[v])

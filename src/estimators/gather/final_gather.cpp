@@ -13,7 +13,7 @@ namespace vdbeam {
 
 namespace {
 
-/// Walks end after so many scatterings at the latest, wherever they are: in very dense media
+/// Greatest number of scatterings of a walk: in very dense media
 /// kernels are far wider than walks could go in reasonable time.
 constexpr int most_scatterings = 8;
 /// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth
@@ -169,7 +169,7 @@ void FinalGather::meet_surface(Walk& walk) const {
   walk.add(light * walk.throughput);
 }
 
-/// What the collision at the walk's place scatters of lights with shadow rays.
+/// Scattered light of lights with shadow rays at the walk's collision.
 void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const {
   const Ray& flight = walk.segment.ray;
   for (std::size_t l = 0; l < world_.lights.size(); ++l) {
@@ -192,7 +192,7 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
   }
 }
 
-/// What the collision at the walk's place scatters of the light that photons carry. The photons
+/// Scattered light of photons at the walk's collision. The photons
 /// may have its albedo already.
 void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();

@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// What the walks of a camera ray gather, the mean over the walks.
+/// Light gathered by the walks of a camera ray: the mean over the walks.
 struct GatheredLight {
   GroupedLight direct;   ///< scattered once, of lights for which there are no shadow rays
   GroupedLight indirect; ///< scattered more often
@@ -19,7 +19,7 @@ struct GatheredLight {
 /// at each collision on its way; there the photons' density is what scatters into its last flight.
 /// A walk that meets a surface ends there, with the light that the surface sends back. So kernels
 /// blur only what walks are about to blur anyway, and most of their bias is gone, for noise of the
-/// walks' own (docs/physics.md, "Final gathering").
+/// walks' own (docs/theory/beam.md, "Final gathering").
 class FinalGather {
 public:
   /// `map`: of the world's photons, as the plan has them; `surfaces`: light of what walks meet;
@@ -28,7 +28,7 @@ public:
   FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
               const SurfaceLighting& surfaces, const PhotonMap* compared = nullptr);
 
-  /// So many walks from the ray, whose profile is not empty, their distances stratified.
+  /// `walks` walks from the ray, whose profile is not empty, at stratified distances.
   /// `ray_weight`: of the ray among those of its pixel.
   GatheredLight gather(const Ray& ray, const DepthProfile& profile, int walks, float ray_weight,
                        Rng& rng, RenderStatistics& counts, const RaySink& sink = {}) const;

@@ -17,7 +17,8 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
               {true, gather,
                [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
                  return walks.gather_along(ray, profile, rng);
-               }},
+               },
+               &blur},
               image, statistics);
   walks.fit(blur, image);
   image.blur = blur.take();
@@ -35,8 +36,8 @@ constexpr std::string_view gather_keys[] = {
 
 const EstimatorKind gather_estimator{
     .name = "gather",
-    .help = "final gathering: photons, gathered where random walks from the camera ray arrive; "
-            "along camera rays where a limit of bounces excludes that",
+    .help =
+        "final gathering: photons, gathered at the end of short random walks from the camera ray",
     .unbiased = false,
     .stages = gather_stages,
     .keys = gather_keys,

@@ -4,8 +4,6 @@
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
 
-#include <cmath>
-
 namespace vdbeam {
 
 namespace {
@@ -25,28 +23,15 @@ void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
       pieces[i + c] += light[static_cast<int>(c)] * pieces[i + 3] / all;
 }
 
-/// The radius of the narrow fit: half of the other, so that both have much of their noise in
-/// common; the pixel's own light where half would change little.
-float narrower(float radius) {
-  return radius <= 1 ? 0 : radius / 2;
-}
-
-/// All that the fit blurs over what it blurs beyond the narrow one; 0 where nothing is fitted.
-float blur_over_difference(float narrow, float wide) {
-  if (!(wide > 0))
-    return 0;
-  const double of_narrow = std::sqrt(PixelRegression::blur(narrow) / PixelRegression::blur(wide));
-  return static_cast<float>(1 / (1 - of_narrow));
-}
-
 } // namespace
 
 GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec)
     : wide_(input), window_(wanted(input)), photons_(photons),
       surfaces_(surface_lighting(input, photons)),
       regression_(input.camera, input.world.space.scale, spec.regression_radius),
-      narrow_(input.camera, input.world.space.scale, narrower(regression_.radius())),
-      blur_over_difference_(blur_over_difference(narrow_.radius(), regression_.radius())),
+      narrow_(input.camera, input.world.space.scale,
+              PixelRegression::narrower(regression_.radius())),
+      blur_over_difference_(PixelRegression::blur_over_difference(regression_.radius())),
       walks_(spec.gather_walks) {
   wide_.window = widened(window_, regression_.reach(), input.camera);
   const auto pixels = static_cast<std::size_t>(input.camera.width()) *

@@ -12,11 +12,11 @@ namespace vdbeam {
 
 class BlurProbe;
 
-/// The camera side of a pass that gathers finally: walks from the rays of all pixels, and then the
+/// The camera side of a pass of final gathering: walks from the rays of all pixels, and then the
 /// fit of what they found to the pixels around.
 class GatherPass {
 public:
-  /// The arguments must outlive this. The picture has as many pixels as the camera.
+  /// The arguments must outlive this. The image has the camera's size.
   GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec);
 
   /// The input, its window widened to the pixels to which those that are wanted are fitted.
@@ -25,14 +25,14 @@ public:
   /// Sends the walks of a tile's rays; of any thread, each tile once.
   void gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image);
 
-  /// What a few walks from a ray gather that goes on behind a mirror or glass.
+  /// Light gathered by a few walks from a ray that continues behind a mirror or glass.
   GroupedLight gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const;
 
   /// After all tiles: adds the fitted light to `image`, which has the pixels' opacity and depth.
   /// Tiles around which some were not finished are no longer finished themselves.
   void fit(BlurProbe& blur, PassImage& image) const;
 
-  /// What a pass takes beyond its picture; groups of lights and layers of volumes twice.
+  /// Memory of a pass beyond its image [bytes]; light groups and layers of volumes count twice.
   static constexpr std::size_t bytes_per_pixel() { return 2 * sizeof(Rgb); }
 
 private:
@@ -48,7 +48,7 @@ private:
   PixelRegression regression_, narrow_; ///< the latter shows how much the former blurs
   float blur_over_difference_; ///< all that the fit blurs over what it blurs beyond the narrow one
   int walks_;                  ///< of a ray
-  /// What the walks of each pixel gathered and, among surfaces, its medium's opacity and depth.
+  /// Light gathered by the walks of each pixel and, among surfaces, its medium's opacity and depth.
   PassImage walked_;
 };
 

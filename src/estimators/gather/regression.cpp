@@ -36,6 +36,12 @@ double PixelRegression::blur(float radius) {
   return mean_square * mean_square / std::sqrt(1 + mean_square * mean_square);
 }
 
+float PixelRegression::blur_over_difference(float radius) {
+  if (!(radius > 0))
+    return 0;
+  return static_cast<float>(1 / (1 - std::sqrt(blur(narrower(radius)) / blur(radius))));
+}
+
 float PixelRegression::deepest(const SeenMedium& seen, int x, int y, float distance) const {
   const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
                                            static_cast<double>(distance) * world_scale_);

@@ -22,8 +22,8 @@ public:
     reach_ = scatter_photons_ ? 4 * photons.map().mean_radius() : 0;
   }
 
-  /// What the photons scatter into the ray, and in `straight` what of it comes straight from
-  /// lights.
+  /// Light that the photons scatter into the ray, and in `straight` the part that comes straight
+  /// from lights.
   GroupedLight march(const CameraRay& camera, const DepthProfile& profile, Rng& rng,
                      RenderStatistics& counts, Rgb& straight, const RaySink& sink = {}) {
     const Medium& medium = world_.medium;
@@ -66,7 +66,7 @@ public:
   }
 
 private:
-  /// What the volumes scatter of their extinction at a point, where the photons do not tell.
+  /// Scattering coefficient at a point, where photons do not contain it.
   void find_albedos(const Vec3f& point) {
     albedos_.clear();
     for (const Volume& volume : world_.medium.volumes)
@@ -151,8 +151,7 @@ constexpr std::string_view march_keys[] = {
 
 const EstimatorKind march_estimator{
     .name = "march",
-    .help =
-        "conventional photon mapping: the same photons, gathered step by step along camera rays",
+    .help = "conventional photon mapping: photons, gathered step by step along the camera ray",
     .unbiased = false,
     .stages = {Stage::surfaces, Stage::photons, Stage::surface_photons, Stage::map,
                Stage::neighbours, Stage::photon_directions, Stage::photon_color,

@@ -6,7 +6,7 @@ namespace vdbeam {
 
 namespace {
 
-// Numbers: measured on a cumulus of droplets in low sun (docs/decisions.md).
+// Numbers: measured on a cumulus of droplets in low sun (research-log/decisions.md).
 
 /// Branches per scattering, before those that go elsewhere than about the light are left out.
 constexpr float branches = 0.25f;

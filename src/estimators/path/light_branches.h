@@ -14,7 +14,7 @@ namespace vdbeam {
 /// each scattering a walk now and then sends a branch of its own in a direction drawn by the phase
 /// function about the light's direction instead of its own. With p the density of the walk's own
 /// direction and c q that of branches, both carry p/(p + c q), which leaves the mean as it is:
-/// flights at the light become many and faint (docs/physics.md, "The reference").
+/// flights at the light become many and faint (docs/theory/transport.md, "The reference").
 ///
 /// This is the idea of DXTRAN in neutron transport (X-5 Monte Carlo Team, *MCNP: A General Monte
 /// Carlo N-Particle Transport Code*, 2003), for directions in place of a region.
@@ -35,7 +35,7 @@ public:
   /// c q, the density of branches [1/sr], 0 for directions that are not about a light.
   float density(const PhaseFunction& phase, const Vec3f& direction) const;
 
-  /// What a flight in this direction is about to bring, in units of one far from narrow lights:
+  /// Expected contribution of a flight in this direction, in units of one far from narrow lights:
   /// roulette looks at it, or it would end the faint walks that branches are made for.
   float importance(const Vec3f& direction) const;
 

@@ -51,7 +51,7 @@ PathEstimator::PathEstimator(const EstimatorInput& input)
   direct_samples_ = samples > 0 ? samples : std::max(4, walks_per_ray_ / 4);
 }
 
-/// What a thread keeps from pixel to pixel.
+/// Buffers that a thread keeps from pixel to pixel.
 struct PathEstimator::Scratch {
   DepthProfile profile;
   std::vector<PathWalk> walks;
@@ -76,7 +76,7 @@ void PathEstimator::begin_walk(const CameraRay& camera, const ScatterPoint& poin
   scratch.walks.back().volume = medium.volumes[volume].setting;
 }
 
-/// What is seen of the surface at which a camera ray ends, the mean over a few paths.
+/// Radiance of the surface at which a camera ray ends: the mean over a few paths.
 SeenSurface PathEstimator::seen_surface(const CameraRay& camera, const RngKey& key,
                                         std::size_t pixel) const {
   if (!camera.hit)
@@ -236,7 +236,7 @@ void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
 
 const EstimatorKind path_estimator{
     .name = "path",
-    .help = "volumetric path tracing, without bias: the reference",
+    .help = "unbiased volumetric path tracing, the reference",
     .unbiased = true,
     .stages = {Stage::surfaces, Stage::depth_profiles, Stage::emission, Stage::shadow_rays,
                Stage::spectral_tracking, Stage::paths},

@@ -16,10 +16,10 @@ public:
 
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
-  /// What these pixels of the pass show, along the same camera rays as every estimator's.
+  /// Radiance of these pixels of the pass, along the same camera rays as every estimator's.
   std::vector<Rgb> radiance(int pass, const std::vector<std::size_t>& pixels) const;
 
-  /// Pixels of the picture to the pixels of a picture one row high; `finished` tells which ones
+  /// Pixels of the picture to the pixels of a picture one row high; `finished` marks which ones
   /// were done before the input's `stop` asked to end.
   /// Adds what it counts to `statistics`.
   void render_pixels(int pass, const std::vector<std::size_t>& pixels, PassImage& image,

@@ -35,7 +35,7 @@ GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direct
   return sum;
 }
 
-/// What the surface at which the flight ends adds; false where the walk ends there.
+/// Adds the light of the surface at which the flight ends; false where the walk ends there.
 bool WalkTracer::meet_surface(PathWalk& walk) const {
   const Vec3f& direction = walk.segment.ray.direction;
   const SurfaceVertex vertex(*world_.surfaces, *walk.end, direction);
