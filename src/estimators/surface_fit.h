@@ -25,7 +25,7 @@ public:
   /// By how many pixels it reaches to each side.
   static constexpr int reach = 3;
   /// Memory of a pass per pixel [bytes].
-  static constexpr std::size_t bytes_per_pixel();
+  static constexpr std::size_t bytes_per_pixel(std::size_t groups);
 
   /// The pixel shows a surface through the transmittance `tr`. Any thread may call it, one per
   /// pixel.
@@ -61,8 +61,8 @@ private:
   std::vector<std::vector<Rgb>> groups_; ///< Pixel::light of each group, by pixel
 };
 
-constexpr std::size_t SurfaceFit::bytes_per_pixel() {
-  return sizeof(Pixel);
+constexpr std::size_t SurfaceFit::bytes_per_pixel(std::size_t groups) {
+  return sizeof(Pixel) + groups * sizeof(Rgb);
 }
 
 } // namespace vdbeam

@@ -30,9 +30,9 @@ struct PhotonList {
   UnfilledArray<std::uint32_t> path;
 
   std::size_t size() const { return position.size(); }
-  static constexpr std::size_t bytes_per_photon(bool directions) {
+  static constexpr std::size_t bytes_per_photon(bool directions, bool groups) {
     return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t) +
-           sizeof(std::uint16_t);
+           (groups ? sizeof(std::uint16_t) : 0);
   }
 };
 

@@ -60,8 +60,9 @@ public:
     copy_in_parallel(rows_, other.rows_.data());
     return other;
   }
-  static constexpr std::size_t bytes_per_photon(int channels, bool directions) {
-    return static_cast<std::size_t>(4 + channels + (directions ? 3 : 0)) * sizeof(float);
+  static constexpr std::size_t bytes_per_photon(int channels, bool directions, bool groups) {
+    return static_cast<std::size_t>(4 + channels + (directions ? 3 : 0) + (groups ? 1 : 0)) *
+           sizeof(float);
   }
 
 private:

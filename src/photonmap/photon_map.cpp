@@ -232,12 +232,12 @@ std::size_t PhotonMap::size() const {
 std::size_t PhotonMap::bytes() const {
   return data_->blocks.bytes() + data_->tree.bytes();
 }
-std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions) {
+std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions, bool groups) {
   // A group of boxes of the tree's lowest level has 8 blocks; higher levels add a seventh.
   constexpr std::size_t tree = sizeof(BoxGroup) / (8 * PhotonBlocks::width) + 1;
   // The second order is gone before the map comes, which takes as much or more.
-  return PhotonList::bytes_per_photon(directions) + sizeof(OrderedPhoton) +
-         PhotonBlocks::bytes_per_photon(channels, directions) + tree;
+  return PhotonList::bytes_per_photon(directions, groups) + sizeof(OrderedPhoton) +
+         PhotonBlocks::bytes_per_photon(channels, directions, groups) + tree;
 }
 int PhotonMap::channels() const {
   return data_->blocks.channels();

@@ -77,7 +77,7 @@ public:
   std::size_t size() const;
   std::size_t bytes() const;
   /// Memory for building a map, per photon [bytes]: the list, its order, and the map.
-  static std::size_t build_bytes_per_photon(int channels, bool directions);
+  static std::size_t build_bytes_per_photon(int channels, bool directions, bool groups);
   int channels() const;
   bool has_directions() const;
   MapTimes times() const;

@@ -7,6 +7,7 @@
 #include "film/film.h"
 #include "image/deep_layout.h"
 #include "layers/plane_layers.h"
+#include "lights/light_groups.h"
 #include "machine/threads.h"
 #include "medium/shadow_lattice.h"
 #include "photonmap/photon_blocks.h"
@@ -156,14 +157,16 @@ private:
   void add_photons() {
     const double count = photons();
     const bool directions = plan_.needs(Stage::photon_directions);
+    const bool groups = !light_group_names(scene_).empty();
     const int channels = plan_.needs(Stage::photon_color) ? 3 : 1;
-    const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions);
+    const std::size_t each = PhotonMap::build_bytes_per_photon(channels, directions, groups);
     add("photons", "render.photons", "use fewer photons and more passes", 0, times(count, each), 0);
     // Where nothing but the camera moves and photons are stored evenly, frames share their maps.
     if (scene_.render.seeds == SeedPolicy::correlated &&
         scene_.render.thinning == PhotonThinning::even && count > 0) {
-      const std::uint64_t maps = times(count * scene_.render.passes.value_or(1 << 20),
-                                       PhotonBlocks::bytes_per_photon(channels, directions));
+      const std::uint64_t maps =
+          times(count * scene_.render.passes.value_or(1 << 20),
+                PhotonBlocks::bytes_per_photon(channels, directions, groups));
       const std::uint64_t kept = std::min(maps, photon_cache_capacity());
       add("photon cache", "render.seeds", "set render.seeds = \"per_frame\"", 0, kept, kept);
     }

@@ -203,8 +203,8 @@ std::uint64_t deep_memory(const ImageSettings& image) {
 }
 
 /// The largest number stands for whatever does not fit in 64 bits.
-std::uint64_t photon_memory(std::uint64_t photons, int channels, bool directions) {
-  const std::uint64_t bytes = PhotonMap::build_bytes_per_photon(channels, directions);
+std::uint64_t photon_memory(std::uint64_t photons, int channels, bool directions, bool groups) {
+  const std::uint64_t bytes = PhotonMap::build_bytes_per_photon(channels, directions, groups);
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   return photons > most / bytes ? most : photons * bytes;
 }
@@ -220,24 +220,22 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   plan.shadow_ray_lights = needs.shadow_ray_lights;
   plan.unbiased =
       !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
+  const std::size_t groups = light_group_names(scene).size();
+  const std::uint64_t pixels = static_cast<std::uint64_t>(scene.image.raster_width()) *
+                               static_cast<std::uint64_t>(scene.image.raster_height());
   if (needs.photons)
     plan.photon_bytes = photon_memory(scene.render.photons.value_or(usual_photons),
-                                      needs.colored ? 3 : 1, needs.anisotropic);
+                                      needs.colored ? 3 : 1, needs.anisotropic, groups > 0);
   if (scene.image.deep)
     plan.deep_bytes = deep_memory(scene.image);
   plan.film_bytes = film_memory(
-      scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(),
-      light_group_names(scene).size(),
+      scene.image, scene.image.raster_width(), scene.image.raster_height(), scene.glows(), groups,
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   if (!scene.surfaces.empty() && estimator.shoots_photons())
-    plan.film_bytes += SurfaceFit::bytes_per_pixel() *
-                       static_cast<std::uint64_t>(scene.image.raster_width()) *
-                       static_cast<std::uint64_t>(scene.image.raster_height());
+    plan.film_bytes += SurfaceFit::bytes_per_pixel(groups) * pixels;
   if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
       scene.render.final_gather != FinalGathering::never)
-    plan.film_bytes += GatherPass::bytes_per_pixel() *
-                       static_cast<std::uint64_t>(scene.image.raster_width()) *
-                       static_cast<std::uint64_t>(scene.image.raster_height());
+    plan.film_bytes += GatherPass::bytes_per_pixel(groups) * pixels;
   return plan;
 }
 

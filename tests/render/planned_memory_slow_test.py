@@ -34,8 +34,9 @@ class Drawing:
     def draw(self):
         chance = self.random.random
         estimator = self.random.choice(["beam", "path", "path", "march", "auto"])
-        self.options += ["--estimator", estimator, "--passes", "1"]
         dear = estimator != "path"
+        # The film takes its memory with the first pass, beside the photons of the second.
+        self.options += ["--estimator", estimator, "--passes", "2" if dear else "1"]
         size = self.random.choice([(480, 270), (640, 360)] if dear else [(960, 540), (1280, 720), (640, 360)])
         if not dear:
             self.set("render.max_bounces", 1)

@@ -33,7 +33,9 @@ public:
   void fit(BlurProbe& blur, PassImage& image) const;
 
   /// Memory of a pass beyond its image [bytes]; light groups and layers of volumes count twice.
-  static constexpr std::size_t bytes_per_pixel() { return 2 * sizeof(Rgb); }
+  static constexpr std::size_t bytes_per_pixel(std::size_t groups) {
+    return (2 + groups) * sizeof(Rgb);
+  }
 
 private:
   void fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const;
