@@ -1,5 +1,5 @@
-// All that a thread reads ends where its token says so; each of these readers would go on to the end
-// of its file.
+// All that a thread reads ends where its token says so; each of these readers would go on to the
+// end of its file.
 #include "machine/stop_reading.h"
 
 #include "geometry/mesh_reader.h"
