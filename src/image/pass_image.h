@@ -80,7 +80,7 @@ struct PassImage {
     return static_cast<std::size_t>(y / tile_width) * static_cast<std::size_t>(tile_columns()) +
            static_cast<std::size_t>(x / tile_width);
   }
-  /// Adds light to one of the sums above, and what comes from each group to the group's.
+  /// Adds light to one of the sums above, and the light of each group to the sum of that group.
   void add(std::vector<Rgb> PassImage::*sum, std::size_t pixel, const GroupedLight& light) {
     (this->*sum)[pixel] += light.sum();
     add_to_groups(pixel, light);

@@ -9,8 +9,7 @@ void add_light_keys(KeyTable& table) {
   table
       .add("direction", &L::direction,
            "direction in which the light travels; of an atmosphere the sun's, of a point light "
-           "that of its "
-           "ies")
+           "that of its ies")
       .always_written();
   table
       .add("irradiance", &L::irradiance,
@@ -40,8 +39,7 @@ void add_light_keys(KeyTable& table) {
   table
       .add("ies", &L::ies,
            "photometric file (IES LM-63, type C) with the shape of the intensity; its absolute "
-           "values "
-           "are not used; empty: none")
+           "values are not used; empty: none")
       .file(InputKind::profile);
   table
       .add("radiance", &L::radiance,
@@ -70,8 +68,7 @@ void add_light_keys(KeyTable& table) {
   table
       .add("image", &L::image,
            "of an environment a lat-long EXR or HDR image, empty: constant; of a spot light an "
-           "EXR, HDR or "
-           "PNG image that it projects, its shorter side as wide as the cone")
+           "EXR, HDR or PNG image that it projects, its shorter side as wide as the cone")
       .file(InputKind::picture);
   table
       .add("rotation", &L::rotation,

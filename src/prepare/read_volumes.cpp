@@ -46,8 +46,8 @@ std::string colors_text(const VolumeSettings& volume) {
                                                  static_cast<int>(volume.emission.color_space));
 }
 
-/// The box that a volume is clipped to, and what places it there; of a volume without a file its
-/// shape, which is placed afterwards.
+/// The clipping box of a volume and its place. A volume without a file has its shape instead, which
+/// is placed afterwards.
 std::string box_text(const VolumeSettings& volume) {
   if (volume.fog.made() || !volume.box_lower || !volume.box_upper)
     return fog_text(volume);
