@@ -18,7 +18,7 @@ struct VolumeOptions {
   int size = 64;          ///< voxels across
   double density = 1;     ///< of the medium where it is constant, its largest value elsewhere
   double extent = 2;      ///< world units across; the volume is centred at 0 unless it is "far"
-  std::uint64_t seed = 1; ///< of the kinds with noise
+  std::uint64_t seed = 1; ///< of the kinds with noise and of clouds
   std::string name = "density"; ///< of the grid
 };
 
