@@ -16,7 +16,8 @@ Scene load_scene(const std::string& path, const FrameTime& frame = {},
 
 /// The text of a commented scene file for this volume (`vdbeam init`), with paths relative to
 /// `folder` (empty: the current one). Throws InputError and FrameError for an unreadable VDB.
-std::string scene_template(const std::string& vdb_path, const std::string& folder = "");
+std::string scene_template(const std::string& vdb_path, const std::string& folder = "",
+                           bool all_keys = false);
 
 /// Checks ranges and consistency of a scene that a program has filled. Throws InputError.
 void validate_scene(const Scene& scene);

@@ -21,12 +21,12 @@ namespace fs = std::filesystem;
 
 struct InitOptions {
   std::string volume, output;
-  bool force = false;
+  bool force = false, all = false;
 };
 
 int run_init(const InitOptions& options) {
   if (options.output.empty() || is_stdout(options.output)) {
-    print_output(scene_template(options.volume));
+    print_output(scene_template(options.volume, "", options.all));
     return 0;
   }
   check_output_path("-o", options.output, {1});
@@ -37,7 +37,7 @@ int run_init(const InitOptions& options) {
   if (!options.force && fs::exists(options.output, error))
     throw InputError(one_line(fmt::format("-o {}: exists; --force replaces it", options.output)));
   const std::string text =
-      scene_template(options.volume, fs::path(options.output).parent_path().string());
+      scene_template(options.volume, fs::path(options.output).parent_path().string(), options.all);
   AtomicFile file(options.output);
   file.write(text.data(), text.size());
   file.commit();
@@ -57,6 +57,7 @@ CommandRun add_init(CLI::App& app) {
       ->option_text("VDB");
   app.add_option("-o,--output", options->output, "Scene file to write; default: standard output")
       ->option_text("FILE.toml");
+  app.add_flag("--all", options->all, "Write all keys, not only those that matter first");
   app.add_flag("--force", options->force, "Replace an existing file");
   app.footer(R"(Examples:
   vdbeam init cloud.vdb -o cloud.toml

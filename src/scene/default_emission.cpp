@@ -11,9 +11,9 @@
 namespace vdbeam {
 namespace {
 
-/// Radiance of a mean line through the flames, before the smoke dims it. The brightest are several
-/// times as bright.
-constexpr double target_radiance = 1;
+/// Radiance of a mean line through the flames, before the smoke dims it. The core, several times
+/// brighter, is white-hot where smoke leaves it open.
+constexpr double target_radiance = 3;
 /// Temperatures [K] of the hottest flame, and of a flame without a temperature grid: sooty flames
 /// have 1200 to 2200 K.
 constexpr double hottest_flame = 2200, mean_flame = 1700;
@@ -29,7 +29,7 @@ struct GridExtent {
   bool glows() const { return maximum > 0 && std::isfinite(maximum) && line > 0; }
 };
 
-constexpr const char* flame_names[] = {"flame", "flames", "fire", "heat", "burn"};
+constexpr const char* flame_names[] = {"flame", "flame_noise", "flames", "fire", "heat", "burn"};
 
 GridExtent find_extent(const std::vector<std::vector<GridSummary>>& summaries,
                        const std::string& name) {

@@ -1,6 +1,7 @@
 #include "scene/default_scene.h"
 
 #include "scene/default_emission.h"
+#include "scene/default_look.h"
 #include "text/frame_range.h"
 #include "text/text.h"
 #include "vdb/density_kind.h"
@@ -15,13 +16,6 @@
 
 namespace vdbeam {
 namespace {
-
-/// Optical depth of a mean line: deep enough to shade the form, thin enough that light comes
-/// through the edges.
-constexpr double target_optical_depth = 25;
-/// Optical depth of the densest value over the shortest side: keeps a thin, dense plume in a large
-/// box from becoming solid.
-constexpr double largest_optical_depth = 100;
 
 bool is_density(const GridSummary& grid) {
   return !is_level_set(grid) && !why_no_density(kind_of(grid));
@@ -92,6 +86,7 @@ struct VolumeOutline {
   std::vector<Vec3d> points; ///< a body around them holds all that is to be seen
   double mean_depth = 0;     ///< of a mean line along the longest side, at extinction 1
   double largest_depth = 0;  ///< of the densest value along the shortest side, at extinction 1
+  double voxels = 0;         ///< along the longest side
 
   void extend(const GridSummary& summary) {
     if (summary.active_voxels == 0)
@@ -105,6 +100,7 @@ struct VolumeOutline {
       sides[static_cast<std::size_t>(i)] = count * summary.voxel_size[i];
     }
     const auto [shortest, longest] = std::minmax_element(sides.begin(), sides.end());
+    voxels = std::max(voxels, *longest / summary.voxel_size[longest - sides.begin()]);
     // The inside of a level set is rendered as density 1; like a ball it fills half of its box.
     const bool level_set = is_level_set(summary);
     const double fill = level_set ? 0.5 : static_cast<double>(summary.active_voxels) / cells;
@@ -131,8 +127,8 @@ struct VolumeOutline {
           add_box(Vec3d(x, y, column[0]) / steps, Vec3d(x + 1, y + 1, column[1] + 1) / steps);
       }
   }
-  double extinction() const {
-    return std::min(target_optical_depth / mean_depth, largest_optical_depth / largest_depth);
+  double extinction(const DefaultLook& look) const {
+    return std::min(look.mean_depth / mean_depth, look.largest_depth / largest_depth);
   }
 };
 
@@ -244,12 +240,15 @@ void frame_camera(Scene& scene, const std::vector<Vec3d>& points, const Vec3d& u
   camera.position = round_point(target + towards * distance, size);
 }
 
-/// A sunny day; `dusk`: what glows shows in the dark only.
-void light_scene(Scene& scene, const Vec3d& up_axis, bool dusk) {
+/// A sunny day; for a fire dusk, since what glows shows in the dark only.
+void light_scene(Scene& scene, const Vec3d& up_axis, Subject subject) {
+  const DefaultLook& look = default_look(subject);
+  const bool dusk = subject == Subject::fire;
   LightSettings sun;
   sun.type = LightType::distant;
-  sun.direction = round_point(Viewer(up_axis).direction(-0.75, -0.5, -0.42), 1);
-  sun.irradiance = dusk ? Rgb(0.12f, 0.16f, 0.25f) : Rgb(7.0f, 5.6f, 4.0f);
+  sun.direction =
+      round_point(Viewer(up_axis).direction(look.sunlight.x, look.sunlight.y, look.sunlight.z), 1);
+  sun.irradiance = look.irradiance;
   sun.angular_radius = 0.27;
   LightSettings sky;
   sky.type = LightType::sky;
@@ -298,9 +297,16 @@ Scene make_default_scene(const std::string& path,
   volume.file = path;
   volume.density = shape.grid;
   volume.phase.type = PhaseType::henyey_greenstein;
-  volume.phase.g = 0.5;
   std::vector<std::string> fire_notes;
   volume.emission = default_emission(path, summaries, fire_notes);
+  const Subject subject = volume.emission.glows()   ? Subject::fire
+                          : is_simulated(summaries) ? Subject::smoke
+                                                    : Subject::cloud;
+  const DefaultLook& look = default_look(subject);
+  volume.phase.g = look.g;
+  volume.albedo = Rgb(look.albedo);
+  if (shape.voxels < look.fewest_voxels)
+    volume.interpolation = Interpolation::cubic;
   if (volume.emission.glows() && is_fire_grid(shape.grid) && !wishes.grid) {
     volume.extinction = 0;
     scene.notes.push_back(
@@ -308,7 +314,7 @@ Scene make_default_scene(const std::string& path,
                     "of grid \"{}\": --set volume.0.extinction=X",
                     path, shape.grid));
   } else if (shape.mean_depth > 0 && shape.largest_depth > 0) {
-    volume.extinction = round_to_digits(shape.extinction(), 2);
+    volume.extinction = round_to_digits(shape.extinction(look), 2);
     scene.notes.push_back(fmt::format("{}: extinction {} chosen: the optical depth along the "
                                       "longest side is about {:.2g}; change "
                                       "it with --set volume.0.extinction=X",
@@ -316,9 +322,11 @@ Scene make_default_scene(const std::string& path,
                                       volume.extinction * shape.mean_depth));
   }
   scene.notes.insert(scene.notes.end(), fire_notes.begin(), fire_notes.end());
-  const bool fire = volume.glows();
-  volume.albedo = Rgb(fire ? 0.7f : 0.98f); // the smoke of a fire is dark
-  light_scene(scene, up, fire);
+  if (subject == Subject::smoke)
+    scene.notes.push_back(fmt::format("{}: taken as smoke, since a simulation wrote it; for a "
+                                      "cloud: --set volume.0.albedo=0.98",
+                                      path));
+  light_scene(scene, up, subject);
   scene.volumes.push_back(volume);
   return scene;
 }

@@ -27,7 +27,8 @@ Scene make_default_scene(const std::string& path,
                          const std::vector<std::vector<GridSummary>>& summaries,
                          const FramingWishes& wishes);
 
-/// A commented scene file; `file` is the volume's path as it is to be written there.
-std::string scene_text(const Scene& scene, const std::string& file);
+/// A commented scene file with the keys that matter first, or with `all_keys`; `file` is the
+/// volume's path as it is to be written there.
+std::string scene_text(const Scene& scene, const std::string& file, bool all_keys = false);
 
 } // namespace vdbeam

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 
 namespace vdbeam {
 namespace {
@@ -24,14 +25,41 @@ std::string quote(const std::string& text) {
   return result + "\"";
 }
 
+/// The keys that are changed first in a new scene; the template shows them even where they have
+/// their defaults.
+bool comes_first(const SceneKey& key) {
+  static const std::map<SceneSection, std::vector<std::string>> names{
+      {SceneSection::image, {"width", "height"}},
+      {SceneSection::camera, {"position", "look_at", "up", "fov"}},
+      {SceneSection::volume, {"file", "density", "extinction", "albedo"}},
+      {SceneSection::light, {"type", "direction", "irradiance", "radiance", "exposure"}},
+      {SceneSection::render, {"passes", "time", "target_error"}}};
+  const auto found = names.find(key.section);
+  return found != names.end() &&
+         std::find(found->second.begin(), found->second.end(), key.name) != found->second.end();
+}
+
+constexpr const char* other_tables = R"(
+# [[mesh]]                              # a floor; type = "file" and file = "prop.obj" read a mesh
+# type = "quad"
+# scale = 10
+# rotate = [{}, 0, 0]
+# translate = [0, 0, 0]
+# material = {{ type = "diffuse", albedo = 0.3 }}
+
+# [[layer]]                             # without [[layer]] all usual layers are written, else only these
+# name = "alpha"
+)";
+
 class Writer {
 public:
-  Writer(const Scene& scene, std::string file) : scene_(scene), file_(std::move(file)) {}
+  Writer(const Scene& scene, std::string file, bool all_keys)
+      : scene_(scene), file_(std::move(file)), all_keys_(all_keys) {}
 
   std::string write() {
-    text_ =
-        "# A vdbeam scene. docs/reference/scene.md and `vdbeam --help-scene` explain every key;\n"
-        "# commented lines show the defaults.\n";
+    text_ = "# A vdbeam scene. docs/reference/scene.md and `vdbeam help scene` explain every key;\n"
+            "# commented lines show the defaults.";
+    text_ += all_keys_ ? "\n" : " `vdbeam init --all` writes all keys.\n";
     add_section(SceneSection::image, 0, "[image]");
     add_section(SceneSection::camera, 0, "[camera]");
     for (std::size_t i = 0; i < scene_.volumes.size(); ++i) {
@@ -44,6 +72,7 @@ public:
     }
     for (std::size_t i = 0; i < scene_.lights.size(); ++i)
       add_section(SceneSection::light, i, "[[light]]");
+    text_ += fmt::format(other_tables, scene_.camera.up.z > 0.5 ? 0 : -90);
     add_section(SceneSection::render, 0, "[render]");
     return text_;
   }
@@ -53,10 +82,16 @@ private:
     text_ += "\n" + header + "\n";
     for (const SceneKey& key : scene_keys())
       if (key.section == section && takes_key(scene_, index, key))
-        text_ += line(key, index);
+        if (const Line line = make_line(key, index); all_keys_ || line.written || comes_first(key))
+          text_ += line.text;
   }
 
-  std::string line(const SceneKey& key, std::size_t index) const {
+  struct Line {
+    std::string text;
+    bool written; ///< not commented out
+  };
+
+  Line make_line(const SceneKey& key, std::size_t index) const {
     KeyValue value = key.get ? key.get(scene_, index) : KeyValue{};
     if (key.section == SceneSection::render && key.name == "passes" &&
         std::holds_alternative<std::monostate>(value))
@@ -72,16 +107,18 @@ private:
       text = quote(key.choices.front());
     const bool written = !absent && (!as_default || key.required || key.always_written);
     const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
-    return fmt::format("{:<40}# {}{}\n",
-                       fmt::format("{}{} = {}", written ? "" : "# ", key.name, text) + " ", key.doc,
-                       unit);
+    return {fmt::format("{:<40}# {}{}\n",
+                        fmt::format("{}{} = {}", written ? "" : "# ", key.name, text) + " ",
+                        key.doc, unit),
+            written};
   }
 
   /// A table inside a volume's, in one line.
   std::string part_line(SceneSection section, const char* name, std::size_t index) const {
     std::string items;
     for (const SceneKey& key : scene_keys())
-      if (key.section == section && takes_key(scene_, index, key))
+      if (key.section == section && takes_key(scene_, index, key) &&
+          (all_keys_ || key.format(key.get(scene_, index)) != key.default_text()))
         items += fmt::format("{}{} = {}", items.empty() ? "" : ", ", key.name,
                              key.kind == KeyKind::text
                                  ? quote(std::get<std::string>(key.get(scene_, index)))
@@ -91,23 +128,24 @@ private:
 
   const Scene& scene_;
   std::string file_;
+  bool all_keys_;
   std::string text_;
 };
 
 } // namespace
 
-std::string scene_text(const Scene& scene, const std::string& file) {
-  return Writer(scene, file).write();
+std::string scene_text(const Scene& scene, const std::string& file, bool all_keys) {
+  return Writer(scene, file, all_keys).write();
 }
 
-std::string scene_template(const std::string& vdb_path, const std::string& folder) {
+std::string scene_template(const std::string& vdb_path, const std::string& folder, bool all_keys) {
   namespace fs = std::filesystem;
   const Scene scene = make_default_scene(vdb_path, {});
   std::error_code error;
   const fs::path base = fs::absolute(folder.empty() ? fs::path(".") : fs::path(folder), error);
   const fs::path relative =
       fs::absolute(vdb_path, error).lexically_normal().lexically_relative(base.lexically_normal());
-  return scene_text(scene, relative.empty() ? vdb_path : relative.string());
+  return scene_text(scene, relative.empty() ? vdb_path : relative.string(), all_keys);
 }
 
 } // namespace vdbeam

@@ -2,6 +2,7 @@
 #include "vdbeam/render.h"
 #include "volume_factory.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdbeam {
@@ -60,7 +61,9 @@ TEST_F(DefaultScene, TemplateGivesTheSameScene) {
 }
 
 TEST_F(DefaultScene, CommentedLinesOfTheTemplateAreValidToo) {
-  std::string text = scene_template(cloud, folder_.string());
+  std::string text = scene_template(cloud, folder_.string(), true);
+  const std::size_t tables = text.find("# [[mesh]]"); // tested below
+  text.erase(tables, text.find("[render]") - tables);
   std::string uncommented;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -71,6 +74,61 @@ TEST_F(DefaultScene, CommentedLinesOfTheTemplateAreValidToo) {
   EXPECT_NE(uncommented, text);
   const std::string path = write("all.toml", uncommented);
   EXPECT_NO_THROW(load_scene(path));
+}
+
+std::size_t count_keys(const std::string& text) {
+  std::size_t count = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    count += line.find(" = ") < line.find("# ", 2) ? 1 : 0;
+  return count;
+}
+
+/// All keys or the first ones: the scene is the same. The tables of meshes and layers are valid
+/// where the comment marks are removed.
+TEST_F(DefaultScene, TemplateShowsTheKeysThatMatterFirst) {
+  const std::string text = scene_template(cloud, folder_.string());
+  const std::string all_keys = scene_template(cloud, folder_.string(), true);
+  EXPECT_LT(count_keys(text), 40u) << text;
+  EXPECT_GT(count_keys(all_keys), 100u);
+  const Scene scene = load_scene(write("first.toml", text));
+  EXPECT_EQ(scene_hash(scene), scene_hash(load_scene(write("all.toml", all_keys))));
+  const std::size_t mesh = text.find("# [[mesh]]"), render = text.find("[render]");
+  ASSERT_LT(mesh, render);
+  std::string tables = text.substr(mesh, render - mesh);
+  for (std::size_t at = 0; at < tables.size(); at = tables.find('\n', at) + 1)
+    if (tables.compare(at, 2, "# ") == 0)
+      tables.erase(at, 2);
+  const Scene more =
+      load_scene(write("more.toml", text.substr(0, mesh) + tables + text.substr(render)));
+  EXPECT_EQ(more.surfaces.size(), 1u);
+  EXPECT_EQ(more.layers.size(), 1u);
+}
+
+/// The depth and albedo of a simulation are those of smoke, of a fire those of soot.
+TEST_F(DefaultScene, SmokeIsThinnerAndDarkerThanACloud) {
+  const Scene water = load_scene(cloud);
+  const Scene smoke = load_scene(VDBEAM_SOURCE_DIR "/data/smoke/smoke.0024.vdb");
+  const Scene fire = load_scene(VDBEAM_SOURCE_DIR "/data/fire/fire.0014.vdb");
+  EXPECT_EQ(water.volumes[0].albedo.x, 0.98f);
+  EXPECT_EQ(smoke.volumes[0].albedo.x, 0.75f);
+  EXPECT_EQ(fire.volumes[0].albedo.x, 0.5f);
+  EXPECT_EQ(smoke.volumes[0].interpolation, Interpolation::linear);
+  EXPECT_EQ(fire.volumes[0].interpolation, Interpolation::cubic);
+  // Sunlight comes from the side and from behind: it travels towards the camera, along -y.
+  EXPECT_LT(smoke.lights[0].direction.y, 0);
+  EXPECT_TRUE(std::any_of(smoke.notes.begin(), smoke.notes.end(), [](const std::string& note) {
+    return note.find("taken as smoke") != std::string::npos;
+  }));
+}
+
+TEST_F(DefaultScene, HeatOrVelocityMakesAFileASmoke) {
+  VolumeOptions options;
+  options.size = 16;
+  write_volume("simulation", file("simulation.vdb"), options);
+  write_volume("noise", file("noise.vdb"), options);
+  EXPECT_EQ(load_scene(file("simulation.vdb")).volumes[0].albedo.x, 0.75f);
+  EXPECT_EQ(load_scene(file("noise.vdb")).volumes[0].albedo.x, 0.98f);
 }
 
 TEST_F(DefaultScene, FileNamesAreQuoted) {

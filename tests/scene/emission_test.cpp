@@ -94,10 +94,10 @@ TEST(DefaultEmission, FlameInTheColoursOfItsTemperature) {
   EXPECT_EQ(emission.intensity, "flame");
   EXPECT_EQ(emission.temperature, "temperature");
   EXPECT_EQ(emission.kelvin, 1100);
-  EXPECT_EQ(emission.scale, 4); // a mean line of 0.25 shows 1
+  EXPECT_EQ(emission.scale, 12); // a mean line of 0.25 shows 3
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0], "fire.vdb: grid \"flame\" glows in the colours of \"temperature\", with "
-                      "strength 4; change it with --set volume.0.emission.scale=X (0: off)");
+                      "strength 12; change it with --set volume.0.emission.scale=X (0: off)");
 }
 
 TEST(DefaultEmission, FlamesWithoutTemperature) {
@@ -168,7 +168,10 @@ TEST(DefaultEmission, InitWritesItAndItIsRead) {
   EXPECT_NE(scene_text(scene, "fire.vdb").find("\n# emission = {"), std::string::npos);
   scene.volumes[0].emission.intensity = "flame \"1\"";
   scene.volumes[0].emission.scale = 7;
-  const std::string text = scene_text(scene, "fire.vdb");
+  EXPECT_NE(scene_text(scene, "fire.vdb")
+                .find("\nemission = { intensity = \"flame \\\"1\\\"\", scale = 7 }"),
+            std::string::npos);
+  const std::string text = scene_text(scene, "fire.vdb", true);
   EXPECT_NE(
       text.find("\nemission = { intensity = \"flame \\\"1\\\"\", temperature = \"\", kelvin = 1"),
       std::string::npos)
