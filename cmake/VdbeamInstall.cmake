@@ -34,7 +34,7 @@ if(TARGET vdbeam_cli)
           COMPONENT program)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program
-          PATTERN reference EXCLUDE)
+          PATTERN reference EXCLUDE PATTERN gallery EXCLUDE)
 endif()
 install(TARGETS vdbeam EXPORT vdbeamTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/vdbeam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -25,6 +25,7 @@ BINARY = os.environ.get("VDBEAM_BINARY", str(BUILD / "vdbeam"))
 CLOUDS = {
     "storm.vdb": ["storm", "--size", "480", "--extent", "20", "--seed", "1"],
     "cumulus.vdb": ["cumulus", "--size", "400", "--extent", "4", "--seed", "4"],
+    "fogbank.vdb": ["fogbank", "--size", "320", "--extent", "40"],
     "field.vdb": ["field", "--size", "1400", "--extent", "40"],
 }
 SIMULATED = {"plume.vdb": "plume", "explosion.vdb": "explosion"}
