@@ -22,7 +22,7 @@ float weakest_channel(const Volume& volume) {
   return std::min(scale.x, std::min(scale.y, scale.z));
 }
 
-/// Of a piece: more than can be seen of it, unless a channel sees far.
+/// Parts of a piece at most: more than can be seen of it, unless a channel sees far.
 constexpr float most_parts = 1024;
 
 } // namespace

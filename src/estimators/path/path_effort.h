@@ -18,7 +18,7 @@ struct PartDraws {
   float weight = 0;
 };
 
-/// How often `path` draws each part for a ray of which that part is all that is seen.
+/// How often `path` draws each part for a ray that sees nothing but that part.
 struct PathEffort {
   static constexpr int most = 32;
   std::array<float, path_part_count> draws{4, 4, 4};
@@ -49,7 +49,8 @@ struct PathTrial {
 // Processor time [ns] of what `path` does; only ratios count (research-log/decisions.md).
 inline constexpr double time_of_camera_ray = 10000, time_of_walk = 1000,
                         time_of_walk_collision = 80, time_of_surface_path = 2000;
-/// Of a shadow ray: through voxels, and through layers, whose optical depth has a closed form.
+/// The time of a shadow ray [ns]: layers, whose optical depth has a closed form, take less than
+/// voxels.
 double time_of_shadow_ray(const Medium& medium);
 
 } // namespace vdbeam

@@ -13,8 +13,9 @@ constexpr std::uint64_t first_effort_pass = ~std::uint64_t(0) - 300;
 constexpr std::size_t rays_per_pixel = 2, draws_per_ray = 2;
 constexpr std::size_t most_pixels = 1024, pixels_per_trial = 32;
 constexpr std::uint32_t most_rounds = 1024;
-/// Of the mean brightness, added to a pixel's in the weight of its squared error: the brightness of
-/// a few draws is too small where they found little, and such pixels would outweigh the others.
+/// The part of the mean brightness that is added to a pixel's in the weight of its squared error:
+/// the brightness of a few draws is too small where they found little, and such pixels would
+/// outweigh the others.
 constexpr double dark_offset = 0.05;
 
 /// One pixel from each stratum of the whole picture, whatever part of it is rendered.
