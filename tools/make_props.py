@@ -99,9 +99,9 @@ def make_windows():
 
 
 def write_plain(path):
-    """A plain of 400 x 400, over which a texture is repeated every 40."""
-    corners = [(-200, 200), (200, 200), (200, -200), (-200, -200)]
-    lines = [f"v {x} 0 {z}" for x, z in corners] + ["vt 0 0", "vt 10 0", "vt 10 10", "vt 0 10", "f 1/1 2/2 3/3 4/4"]
+    """A plain of 2000 x 2000, over which a texture is repeated every 40."""
+    corners = [(-1000, 1000), (1000, 1000), (1000, -1000), (-1000, -1000)]
+    lines = [f"v {x} 0 {z}" for x, z in corners] + ["vt 0 0", "vt 50 0", "vt 50 50", "vt 0 50", "f 1/1 2/2 3/3 4/4"]
     path.write_text("\n".join(lines) + "\n")
 
 

@@ -69,7 +69,7 @@ class Gallery(unittest.TestCase):
     def test_scenes_have_their_size_and_passes(self):
         for scene in SCENES:
             values = tomllib.loads(scene.read_text())
-            self.assertGreaterEqual(values["image"]["width"], 1280, scene.name)
+            self.assertGreaterEqual(values["image"]["width"], 960, scene.name)
             self.assertIn("passes", values["render"], scene.name)
 
     def test_meshes_are_sound(self):
