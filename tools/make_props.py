@@ -116,13 +116,13 @@ def make_blocks():
 
 
 def field_colour(kind, wave):
-    greens = [(0.40, 0.44, 0.30), (0.45, 0.48, 0.34), (0.36, 0.42, 0.28), (0.55, 0.53, 0.40), (0.50, 0.46, 0.37), (0.34, 0.40, 0.27),
-              (0.58, 0.56, 0.43)]
-    return [c * (1 + 0.05 * wave) for c in greens[kind % len(greens)]]
+    soils = [(0.66, 0.62, 0.46), (0.70, 0.64, 0.49), (0.60, 0.60, 0.44), (0.72, 0.67, 0.53), (0.56, 0.58, 0.42), (0.67, 0.60, 0.47),
+             (0.62, 0.62, 0.45)]
+    return [c * (1 + 0.05 * wave) for c in soils[kind % len(soils)]]
 
 
 def make_fields(path, size=1024):
-    """A patchwork of fields with woods and a river, as an sRGB PNG."""
+    """A patchwork of dry fields with woods and a river, as an sRGB PNG."""
     dice, cells = random.Random(5), 60
     seeds = {(i, j): (i + dice.random(), j + dice.random(), dice.randrange(1000)) for i in range(cells) for j in range(cells)}
     wood, bend = waves(8, 12, 0.6), waves(9, 9, 1.1)
@@ -135,10 +135,10 @@ def make_fields(path, size=1024):
                        key=lambda s: max(abs((s[0] - u + cells / 2) % cells - cells / 2) * 0.8,
                                          abs((s[1] - v + cells / 2) % cells - cells / 2)))
             colour = field_colour(near[2], wood(u, 2 * v))
-            if wood(0.33 * u, 0.33 * v) > 0.42:
-                colour = (0.25, 0.31, 0.22)
+            if wood(0.33 * u, 0.33 * v) > 0.75:
+                colour = (0.46, 0.50, 0.37)
             if abs(x / size - 0.5 - 0.16 * bend(0.12 * v, 0.7)) < 0.0035:
-                colour = (0.42, 0.48, 0.53)
+                colour = (0.50, 0.56, 0.60)
             row += bytes(min(255, int(255 * c)) for c in colour)
         rows.append(bytes(row))
 
