@@ -48,6 +48,7 @@ class Gallery(unittest.TestCase):
         for scene in SCENES:
             # The samples name their grids differently.
             text = scene.read_text().replace("density_noise", "density").replace("flame_noise", "flame")
+            text = text.replace('"../', f'"{ROOT}/data/')
             copy = Path(self.folder.name, scene.name)
             copy.write_text(text)
             done = run(BINARY, "plan", copy)

@@ -47,7 +47,7 @@ class Pages(unittest.TestCase):
         lines = commands("docs/tutorial.md")
         self.assertGreater(len(lines), 10)
         output = self.type(lines)
-        self.assertIn('rendered      grid "density", with extinction 82', output)  # as the page quotes it
+        self.assertIn('rendered      grid "density", with extinction 37', output)  # as the page quotes it
         self.assertIn("looks wrong   flame: is empty", output)
         self.has("first.png", "look.0012.png", "dense.exr", "shot.0001.exr", "shot.sh", "element.exr", "comp.exr")
 
@@ -60,9 +60,12 @@ class Pages(unittest.TestCase):
     def test_pictures_of_readme_and_gallery(self):
         """The commands beside pictures name scenes, keys and options that exist."""
         for page in ("README.md", "docs/gallery.md"):
-            found = re.findall(r"`(vdbeam render data/[^`]*)`", (ROOT / page).read_text(encoding="utf-8"))
-            self.assertGreater(len(found), 2, page)
-            for line in found:
+            text = (ROOT / page).read_text(encoding="utf-8")
+            scenes = re.findall(r"tools/gallery\.py (\w+)", text)
+            self.assertGreater(len(scenes), 2, page)
+            for scene in scenes:
+                self.assertTrue((ROOT / f"data/gallery/{scene}.toml").is_file(), f"{page}: {scene}")
+            for line in re.findall(r"`(vdbeam render data/[^`]*)`", text):
                 scene = re.match(r"vdbeam render (\S+)", line).group(1)
                 self.assertTrue((ROOT / scene).is_file(), line)
                 self.assertRegex(line, r"-o \S+\.exr --passes \d+")
