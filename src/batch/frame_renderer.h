@@ -22,6 +22,7 @@ struct FrameOptions {
   std::optional<PassRange> pass_range; ///< the output is a partial image of these passes
   std::optional<PixelRegion> region;
   CheckpointSettings checkpoint;  ///< without its path
+  SnapshotInterval snapshot;      ///< when snapshot and preview show the image so far
   std::vector<std::string> parts; ///< partial images to join instead of rendering; usually none
   std::string merged;             ///< what the passes of `pass_range` are merged into, or empty
 };
@@ -81,8 +82,10 @@ private:
   std::string why_no_image(const std::string& path, const LoadedFrame& loaded) const;
   std::string why_no_part(const std::string& path, const LoadedFrame& loaded) const;
   /// Nothing where no preview is asked for.
-  void write_preview(const Image& image, int frame) const;
-  void write_snapshot(const Image& image, int frame) const;
+  void write_preview(const RenderResult& result, int frame) const;
+  void write_snapshot(const RenderResult& result, int frame) const;
+  void show(const LoadedFrame& loaded, RenderResult& so_far) const;
+  RenderHooks picture_hooks(const LoadedFrame& loaded, Progress& progress) const;
   void write_files(const LoadedFrame& loaded, RenderResult& result) const;
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 
