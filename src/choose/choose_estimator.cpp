@@ -31,11 +31,10 @@ constexpr std::size_t wanted_trial_rays = 1000;
 /// those of `beam` are too small rather than too large.
 constexpr double safe_lead = 1.25;
 
-// Processor time [ns] of what a pass consists of, fitted to 39 scenes, in which the ratio of the
-// two estimators came out right within 30 % (research-log/decisions.md). Only ratios count.
-constexpr double time_of_ray = 10000, time_of_shadow_ray = 5000, time_of_query = 8000,
-                 time_of_light_collision = 150, time_of_photon = 2000, time_of_walks = 20000,
-                 time_of_walk_collision = 80;
+// Processor time [ns] of what a pass of photons consists of beside (path_effort.h), fitted to 39
+// scenes, in which the ratio of the two estimators came out right within 30 %
+// (research-log/decisions.md). Only ratios count.
+constexpr double time_of_query = 8000, time_of_light_collision = 150, time_of_photon = 2000;
 /// Correction of the sum of these, which overestimates a pass of `beam` relative to one of `path`.
 constexpr double beam_share = 0.56;
 
@@ -118,15 +117,17 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
   // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
   const double beside = std::min(
       path_spread, spread_beside_photons(photon_input, passes.photons(), pixels, beam_counts));
+  const double of_shadow_ray = time_of_shadow_ray(photon_input.world.medium);
   const double path_time =
-      time_of_ray + time_of_walks +
-      (time_of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
+      time_of_camera_ray +
+      (of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
+       time_of_walk * static_cast<double>(path_counts.camera_walks) +
        time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
           rays;
   const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(photon_input);
   const double beam_time =
-      beam_share * (time_of_ray + time_of_query +
-                    time_of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
+      beam_share * (time_of_camera_ray + time_of_query +
+                    of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
                     paths_per_ray * (time_of_light_collision * plan.collisions_per_path +
                                      time_of_photon * plan.stored_per_path));
   const double of_photons = choices.gathers_finally(0)

@@ -22,6 +22,9 @@ float weakest_channel(const Volume& volume) {
   return std::min(scale.x, std::min(scale.y, scale.z));
 }
 
+/// Parts of a piece at most: more than can be seen of it, unless a channel sees far.
+constexpr float most_parts = 1024;
+
 } // namespace
 
 void DepthProfile::build_single(const Volume& volume, const Segment& segment, float limit) {
@@ -34,8 +37,8 @@ void DepthProfile::build_single(const Volume& volume, const Segment& segment, fl
     }
     if (t_.empty())
       return true;
-    // Within an optically thick cube a straight line is far from the truth, so it is cut up.
-    const int parts = static_cast<int>(std::min(32.0f, std::ceil(piece)));
+    // Within an optically thick piece a straight line is far from the truth, so it is cut up.
+    const int parts = static_cast<int>(std::min(most_parts, std::ceil(piece)));
     float t = t_a;
     for (int i = 1; i < parts && sum * weakest < limit; ++i) {
       const float t_next = t_a + (t_b - t_a) * static_cast<float>(i) / static_cast<float>(parts);

@@ -2,6 +2,28 @@
 
 namespace vdbeam {
 
+LayeredSegment::LayeredSegment(const Volume& volume, const Segment& segment)
+    : layers_(*volume.field.layers()), extinction_(volume.extinction),
+      top_(layers_.upper(layers_.count() - 1)) {
+  const Vec3f o = volume.local_point(segment.ray.origin);
+  const Vec3f d = volume.local_vector(segment.ray.direction);
+  origin_ = o.y;
+  slope_ = d.y;
+  const Vec3f size = Vec3f(volume.field.cell_counts()) * float{DensityField::cell_width};
+  const GridTraversal box(o / size, d / size, Vec3<int>(1), segment.t_begin, segment.t_end);
+  if (box.done())
+    return;
+  t_begin_ = box.t();
+  t_end_ = box.t_exit();
+}
+
+float LayeredSegment::optical_depth() const {
+  if (empty())
+    return 0;
+  const double mean = layers_.mean_density(height(t_begin_), height(t_end_));
+  return extinction_ * static_cast<float>(std::max(mean, 0.0)) * (t_end_ - t_begin_);
+}
+
 namespace {
 
 /// Per channel; ends once `weakest`, the sum over the volumes of the depth in their weakest
@@ -15,10 +37,13 @@ Rgb optical_depth(const Medium& medium, const Segment& segment, float limit, flo
     const float scale =
         std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
     float sum = 0;
-    for_each_piece(volume, segment, [&](float, float, float piece) {
-      sum += piece;
-      return weakest + sum * scale < limit;
-    });
+    if (volume.field.layers())
+      sum = LayeredSegment(volume, segment).optical_depth();
+    else
+      for_each_piece(volume, segment, [&](float, float, float piece) {
+        sum += piece;
+        return weakest + sum * scale < limit;
+      });
     weakest += sum * scale;
     tau += volume.channel_scale * sum;
     if (taken_out && medium.peak)

@@ -94,11 +94,51 @@ inline float cube_optical_depth(const Volume& volume, const Ray& ray, float t_a,
           volume.density_inside(ray.at(middle + offset)));
 }
 
+/// The part of a ray in a volume whose density changes along local y alone.
+class LayeredSegment {
+public:
+  LayeredSegment(const Volume& volume, const Segment& segment);
+
+  bool empty() const { return !(t_begin_ < t_end_); }
+  /// Optical depth for the strongest channel, in closed form.
+  float optical_depth() const;
+  /// The same as for_each_piece, with one piece for each layer.
+  template <class Visit>
+  void for_each_piece(const Visit& visit) const {
+    const bool up = slope_ > 0;
+    std::size_t layer = layers_.layer_at(height(t_begin_));
+    for (float t = t_begin_; t < t_end_; up ? ++layer : --layer) {
+      const bool is_last = up ? layer + 1 == layers_.count() : layer == 0;
+      const float plane = up ? layers_.upper(layer) : layers_.lower(layer);
+      const auto next = static_cast<float>((plane - origin_) / slope_);
+      const float t_b = is_last || slope_ == 0 ? t_end_ : std::clamp(next, t, t_end_);
+      if (t_b > t && !layers_.is_empty(layer) && !visit(t, t_b, depth_of(layer, t, t_b)))
+        return;
+      t = t_b;
+    }
+  }
+
+private:
+  /// Local height, kept inside the field, which rounding may leave.
+  double height(float t) const { return std::clamp(origin_ + slope_ * t, 0.0, double{top_}); }
+  float depth_of(std::size_t layer, float t_a, float t_b) const {
+    const double sum = layers_.density(layer, height(t_a)) + layers_.density(layer, height(t_b));
+    return extinction_ * static_cast<float>(0.5 * std::max(sum, 0.0)) * (t_b - t_a);
+  }
+
+  const DensityLayers& layers_;
+  float extinction_, top_;
+  double origin_, slope_; ///< of the local height, as a function of t
+  float t_begin_ = 0, t_end_ = 0;
+};
+
 /// Calls visit(t_a, t_b, tau) for consecutive pieces of the segment inside `volume`, tau being the
 /// exact optical depth of the piece for the strongest channel; empty stretches are skipped. Ends
 /// when visit returns false.
 template <class Visit>
 void for_each_piece(const Volume& volume, const Segment& segment, const Visit& visit) {
+  if (volume.field.layers())
+    return LayeredSegment(volume, segment).for_each_piece(visit);
   const Vec3f o = volume.local_point(segment.ray.origin);
   const Vec3f d = volume.local_vector(segment.ray.direction);
   constexpr int width = DensityField::cell_width;

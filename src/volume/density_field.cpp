@@ -113,6 +113,7 @@ DensityField::DensityField(Vec3<std::int64_t> origin, Vec3<int> cell_counts,
   maxima_ = SharedArray<float>(std::move(maxima));
   maximum_ = summary.maximum;
   occupied_ = summary.occupied;
+  layers_ = DensityLayers::find(*this);
 }
 
 std::size_t DensityField::limit_values(float most) {
@@ -131,8 +132,9 @@ std::size_t DensityField::limit_values(float most) {
   };
   limit(maxima_);
   maximum_ = most;
-  const std::size_t in_bricks = limit(bricks_);
-  return in_bricks + limit(uniform_values_);
+  const std::size_t changed = limit(bricks_) + limit(uniform_values_);
+  layers_ = DensityLayers::find(*this);
+  return changed;
 }
 
 std::size_t DensityField::bytes() const {

@@ -2,6 +2,7 @@
 
 #include "math/affine.h"
 #include "math/shared_array.h"
+#include "volume/density_layers.h"
 
 #include <cmath>
 #include <cstdint>
@@ -63,6 +64,9 @@ public:
   /// Tight box of the non-empty cells, in local coordinates, shrunk to where the field is not 0.
   const Boxf& occupied() const { return occupied_; }
 
+  /// Null where the density does not change along y alone.
+  const DensityLayers* layers() const { return layers_.get(); }
+
   std::size_t brick_count() const { return bricks_.size() / brick_size; }
   std::size_t bytes() const;
 
@@ -76,6 +80,7 @@ private:
   SharedArray<float> maxima_;
   float maximum_ = 0;
   Boxf occupied_;
+  std::shared_ptr<const DensityLayers> layers_;
 };
 
 /// The trilinear value between the lattice points at `p` and one further along each axis.

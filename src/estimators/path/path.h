@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimators/estimator.h"
+#include "estimators/path/path_effort.h"
 #include "estimators/path/path_walk.h"
 #include "medium/distance_sampling.h"
 #include "rays/profile_shading.h"
@@ -28,24 +29,33 @@ public:
 private:
   struct Scratch;
 
+  /// A camera ray with its depth profile, what of it reaches its end, and where its light goes.
+  struct RayTask;
+
   RngKey key(int pass) const;
+  CameraRay camera_ray_of(const RngKey& key, std::size_t pixel) const;
   void render_pixel(const RngKey& key, std::size_t pixel, Scratch& scratch, std::size_t target,
                     PassImage& image) const;
-  void trace(const CameraRay& camera, const RngKey& key, std::size_t pixel, Scratch& scratch,
-             std::size_t target, PassImage& image) const;
-  void begin_walk(const CameraRay& camera, const ScatterPoint& point, std::size_t target, Rng& rng,
+  void begin_walk(const RayTask& ray, const ScatterPoint& point, float share, Rng& rng,
                   const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
-  SeenSurface seen_surface(const CameraRay& camera, const RngKey& key, std::size_t pixel) const;
-  static void add_deep_light(const PathWalk& walk, float share, PassImage& image);
+  SeenSurface seen_surface(const RayTask& ray, Scratch& scratch) const;
+  void scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
+  void send_walks(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
+  static void add_deep_light(const PathWalk& walk, PassImage& image);
   void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
+
+  /// The effort that a pilot finds best.
+  PathEffort measure_effort() const;
+  struct TrialRay;
+  TrialRay try_ray(std::size_t pixel, std::uint64_t first_pass) const;
+  void try_draw(RayTask task, std::size_t draw, Scratch& scratch, TrialRay& result) const;
+  static PathTrial trial_of(const std::array<TrialRay, 2>& rays, double weight);
 
   EstimatorInput input_;
   std::vector<bool> shadow_rays_; ///< per light: next-event estimation finds it
   WalkTracer tracer_;
-  bool scatters_ = false;                   ///< light is scattered towards the camera
-  int direct_samples_ = 1;                  ///< shadow-ray samples per camera ray
-  int walks_per_ray_ = 1;                   ///< walks per camera ray
-  std::uint64_t uncounted_pilot_paths_ = 0; ///< go to the first pass's statistics
+  bool scatters_ = false; ///< light is scattered towards the camera
+  PathEffort effort_;
 };
 
 } // namespace vdbeam

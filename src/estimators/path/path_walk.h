@@ -18,6 +18,7 @@ struct PathWalk : Flight {
   std::size_t target = 0; ///< pixel of the image to which its light is added
   std::size_t piece = 0;  ///< of the pixel's deep layout in which it began
   std::size_t volume = 0; ///< of the scene, that scatters its light to the camera
+  float share = 1;        ///< what its light counts in the pixel
 
   float least_weight = roulette_below;  ///< under which Russian roulette begins
   const PhaseFunction* phase = nullptr; ///< at the last real collision
@@ -74,10 +75,10 @@ public:
   /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
   /// the medium, and they on to other surfaces, to which photons bring it.
   /// `emits`: with what the surface itself emits. `straight`, unless it is null, gets the part that
-  /// shadow rays from the surface find.
+  /// shadow rays from the surface find. `steps`, unless it is null, counts the walks' steps.
   GroupedLight from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                             bool all_light = true, bool emits = true,
-                            GroupedLight* straight = nullptr) const;
+                            GroupedLight* straight = nullptr, std::uint64_t* steps = nullptr) const;
 
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
   /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of

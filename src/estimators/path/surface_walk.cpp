@@ -8,7 +8,8 @@
 namespace vdbeam {
 
 GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                                      bool all_light, bool emits, GroupedLight* straight) const {
+                                      bool all_light, bool emits, GroupedLight* straight,
+                                      std::uint64_t* steps) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
@@ -18,8 +19,9 @@ GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direct
     sum.add(vertex.emitted(), group_of(world_, vertex));
   std::vector<PathWalk> branches;
   const auto follow = [&](PathWalk& walk, bool goes_on) {
-    while (goes_on)
-      goes_on = step(walk, branches);
+    for (; goes_on; goes_on = step(walk, branches))
+      if (steps)
+        ++*steps;
     sum += walk.direct + walk.indirect;
   };
   const bool leaves = bounce(first, vertex, true);

@@ -1,0 +1,51 @@
+#include "estimators/path/path_effort.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbeam {
+
+PartDraws PathEffort::draws_of(PathPart part, float share, float u) const {
+  const float expected = draws[static_cast<std::size_t>(part)] * share;
+  if (expected >= 1) {
+    const int count = static_cast<int>(std::lround(expected));
+    return {count, 1 / static_cast<float>(count)};
+  }
+  return u < expected ? PartDraws{1, 1 / expected} : PartDraws{};
+}
+
+PathTrial& PathTrial::operator+=(const PathTrial& other) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].variance += other.parts[i].variance;
+    parts[i].time += other.parts[i].time;
+  }
+  ray_variance += other.ray_variance;
+  ray_time += other.ray_time;
+  return *this;
+}
+
+PathEffort PathTrial::best_effort() const {
+  // A few rays do not show how little the variance is that draws do not change.
+  constexpr double least_share_of_rays = 0.05;
+  double of_draws = 0;
+  for (const Part& part : parts)
+    of_draws += part.variance;
+  const double of_rays = std::max(ray_variance, least_share_of_rays * of_draws);
+  PathEffort effort;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double square = parts[i].variance * ray_time / (parts[i].time * of_rays);
+    effort.draws[i] = std::isfinite(square) ? std::clamp(static_cast<float>(std::sqrt(square)),
+                                                         1.0f, static_cast<float>(PathEffort::most))
+                                            : 1;
+  }
+  return effort;
+}
+
+double time_of_shadow_ray(const Medium& medium) {
+  constexpr double through_voxels = 5000, through_layers = 500;
+  const bool has_voxels = std::any_of(medium.volumes.begin(), medium.volumes.end(),
+                                      [](const Volume& volume) { return !volume.field.layers(); });
+  return has_voxels ? through_voxels : through_layers;
+}
+
+} // namespace vdbeam

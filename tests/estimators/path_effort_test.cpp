@@ -1,0 +1,77 @@
+// How `path` divides its time among the parts of a camera ray's light.
+#include "estimators/path/path_effort.h"
+
+#include "math/rng.h"
+#include "support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vdbeam {
+namespace {
+
+PathTrial trial() {
+  PathTrial trial;
+  trial.parts = {{{0.5, 300}, {6, 2000}, {2, 1000}}};
+  trial.ray_variance = 1;
+  trial.ray_time = 10000;
+  return trial;
+}
+
+/// Variance times time, which the effort is to make small.
+double product(const PathTrial& trial, const PathEffort& effort) {
+  double variance = trial.ray_variance, time = trial.ray_time;
+  for (std::size_t i = 0; i < path_part_count; ++i) {
+    variance += trial.parts[i].variance / static_cast<double>(effort.draws[i]);
+    time += trial.parts[i].time * static_cast<double>(effort.draws[i]);
+  }
+  return variance * time;
+}
+
+TEST(PathEffort, NoOtherDrawsDoBetter) {
+  const PathTrial measured = trial();
+  const PathEffort best = measured.best_effort();
+  for (std::size_t i = 0; i < path_part_count; ++i)
+    for (const float factor : {0.8f, 1.25f}) {
+      PathEffort other = best;
+      other.draws[i] *= factor;
+      EXPECT_GT(product(measured, other), product(measured, best)) << i << " " << factor;
+    }
+}
+
+TEST(PathEffort, StaysWithinItsLimits) {
+  PathTrial measured = trial();
+  measured.parts[0] = {};          // nothing scatters
+  measured.parts[1].time = 1e12;   // endless walks
+  measured.parts[2].variance = 50; // dark surfaces with bright spots
+  measured.parts[2].time = 1;
+  measured.ray_variance = -1; // as products of noise may be
+  const PathEffort effort = measured.best_effort();
+  EXPECT_EQ(effort.draws[0], 1);
+  EXPECT_EQ(effort.draws[1], 1);
+  EXPECT_EQ(effort.draws[2], PathEffort::most);
+  for (const float draws : PathTrial().best_effort().draws)
+    EXPECT_EQ(draws, 1);
+}
+
+TEST(PathEffort, DrawsHaveTheRightMean) {
+  PathEffort effort;
+  effort.of(PathPart::walks) = 6;
+  Rng rng({}, RngStage::test, 1);
+  for (const float share : {1.0f, 0.4f, 0.1f, 0.002f}) {
+    test::Samples whole, count;
+    for (int i = 0; i < 200000; ++i) {
+      const PartDraws draws = effort.draws_of(PathPart::walks, share, rng.uniform());
+      whole.add(static_cast<double>(static_cast<float>(draws.count) * draws.weight));
+      count.add(draws.count);
+    }
+    test::expect_mean(whole, 1);
+    EXPECT_NEAR(count.mean(), 6 * static_cast<double>(share), 0.5 + 5 * count.error());
+    EXPECT_LT(whole.error(), 0.03);
+  }
+  EXPECT_EQ(effort.draws_of(PathPart::walks, 0, 0).count, 0);
+}
+
+} // namespace
+} // namespace vdbeam
