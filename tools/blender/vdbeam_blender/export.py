@@ -1,9 +1,8 @@
 """Writes scenes: of one frame for the render engine, of a range of frames for a farm."""
 import math
 import os
-import shutil
 
-from . import animate, camera, meshes, notes as notes_module, read_scene, toml_text
+from . import animate, camera, notes as notes_module, read_scene, sequence, toml_text
 
 MOMENTS = 5  # times at which a shutter's motion is read
 
@@ -33,31 +32,12 @@ def write_scene(options, times, go_to, comments=()):
     reader = read_scene.SceneReader(options, notes)
     scenes = {time: reader.read(go_to(time), time) for time in times}
     if options.sequence:
-        name_sequences(scenes, options.folder)
+        sequence.name_sequences(scenes, options.folder)
     merged = animate.merge(scenes, notes)
     read_scene.write_camera(options.folder, reader.matrices)
     with open(os.path.join(options.folder, "scene.toml"), "w", encoding="utf-8") as file:
         file.write(toml_text.scene_text(merged, comments))
     return notes.lines
-
-
-def name_sequences(scenes, folder):
-    """Makes files of meshes that change from frame to frame into sequences NAME.####.ply."""
-    files = {}
-    for time, scene in scenes.items():
-        for mesh in scene.get("mesh", []):
-            if "file" in mesh:
-                files.setdefault(mesh["name"], {})[time] = mesh["file"]
-    for name, by_time in files.items():
-        if len(set(by_time.values())) == 1:
-            continue
-        stem = meshes.safe_name(name)
-        for time, file in by_time.items():
-            shutil.copyfile(os.path.join(folder, file), os.path.join(folder, f"{stem}.{int(time):04d}.ply"))
-        for scene in scenes.values():
-            for mesh in scene.get("mesh", []):
-                if mesh["name"] == name:
-                    mesh["file"] = f"{stem}.####.ply"
 
 
 def split_time(time):

@@ -1,14 +1,10 @@
 """Writes triangles as PLY files, which are named after their content: what is the same is written once."""
 import hashlib
 import os
-import re
 
 import numpy
 
-
-def safe_name(name):
-    """A file's name without characters that paths or frame patterns use."""
-    return re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80]
+from . import sequence
 
 
 def corner_table(positions, normals, uvs):
@@ -36,7 +32,7 @@ def ply_bytes(positions, normals, uvs=None):
 
 def write(folder, name, data):
     """Writes the file unless it is there, and returns its name, which has the content's hash."""
-    file = f"{safe_name(name)}_{hashlib.sha256(data).hexdigest()[:12]}.ply"
+    file = f"{sequence.safe_name(name)}_{hashlib.sha256(data).hexdigest()[:12]}.ply"
     path = os.path.join(folder, file)
     if not os.path.exists(path):
         with open(path, "wb") as out:

@@ -1,6 +1,12 @@
-"""Which file of a VDB sequence a frame shows, by Blender's rules for volume objects."""
+"""Sequences of files: which one of a VDB sequence a frame shows, and meshes that change from frame to frame."""
 import os
 import re
+import shutil
+
+
+def safe_name(name):
+    """A file's name without characters that paths or frame patterns use."""
+    return re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80]
 
 
 def pattern_of(path):
@@ -34,3 +40,22 @@ def file_number(frame, volume):
     else:
         place = max(1, min(place, duration))
     return place + volume["offset"]
+
+
+def name_sequences(scenes, folder):
+    """Makes files of meshes that change from frame to frame into sequences like NAME.####.ply."""
+    files = {}
+    for time, scene in scenes.items():
+        for mesh in scene.get("mesh", []):
+            if "file" in mesh:
+                files.setdefault(mesh["name"], {})[time] = mesh["file"]
+    for name, by_time in files.items():
+        if len(set(by_time.values())) == 1:
+            continue
+        stem, ending = safe_name(name), os.path.splitext(next(iter(by_time.values())))[1]
+        for time, file in by_time.items():
+            shutil.copyfile(os.path.join(folder, file), os.path.join(folder, f"{stem}.{int(time):04d}{ending}"))
+        for scene in scenes.values():
+            for mesh in scene.get("mesh", []):
+                if mesh["name"] == name:
+                    mesh["file"] = f"{stem}.####{ending}"
