@@ -93,7 +93,8 @@ struct RenderHooks {
   std::atomic<bool>* snapshot = nullptr;
   /// When on_snapshot gets the image so far without being asked.
   SnapshotInterval snapshot_interval;
-  std::function<void(RenderResult&)> on_snapshot;
+  /// `asked`: by `snapshot`, not by the interval.
+  std::function<void(RenderResult&, bool asked)> on_snapshot;
   /// Gets a quick look before the first pass, which takes a part of the time of a pass.
   std::function<void(RenderResult&)> on_quick_look;
 };

@@ -188,9 +188,14 @@ void FrameRenderer::write_snapshot(const RenderResult& result, int frame) const 
   send_file(Output::snapshot, file, frame, result);
 }
 
-/// Shows what there is so far to those who asked for it at intervals.
-void FrameRenderer::show(const LoadedFrame& loaded, RenderResult& so_far) const {
-  write_preview(so_far, loaded.frame());
+/// Writes what there is so far for those who wait for it at intervals, or asked for it now.
+void FrameRenderer::write_so_far(const LoadedFrame& loaded, RenderResult& so_far,
+                                 bool asked) const {
+  const bool at_intervals = options_.snapshot.wanted();
+  if (at_intervals || (so_far.quick_look && options_.early_preview))
+    write_preview(so_far, loaded.frame());
+  if (!at_intervals && !asked)
+    return;
   add_metadata(so_far.image, loaded, so_far);
   so_far.image.numbers.erase("vdbeam:complete");
   write_snapshot(so_far, loaded.frame());
@@ -205,6 +210,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   context.reference = substitute_frame(files.reference, loaded.frame());
   context.second_reference = substitute_frame(files.second_reference, loaded.frame());
   const bool complete = result.stopped_by != "stop";
+  display(loaded, result.image);
   std::optional<FrameError> lost;
   const auto attempt = [&](const auto& write) { // of what is not worth an image
     try {
@@ -281,22 +287,31 @@ RenderHooks FrameRenderer::picture_hooks(const LoadedFrame& loaded, Progress& pr
     send_step(frame, step, pass);
   };
   hooks.snapshot = &snapshot_requested();
+  // A viewer is shown a few images a second, unless files are written more often.
+  constexpr double display_interval = 0.25; // seconds
   hooks.snapshot_interval = options_.snapshot;
-  if (options_.snapshot.wanted()) {
-    hooks.on_snapshot = [&](RenderResult& so_far) { show(loaded, so_far); };
-    hooks.on_quick_look = hooks.on_snapshot;
-    return hooks;
-  }
-  hooks.on_snapshot = [&](RenderResult& so_far) {
-    add_image_metadata(so_far.image, loaded.scene, so_far, loaded.hash);
-    so_far.image.numbers.erase("vdbeam:complete");
-    write_snapshot(so_far, loaded.frame());
-    progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
-                              passes_text(so_far.passes.back().pass)));
+  if (options_.display && !options_.snapshot.wanted())
+    hooks.snapshot_interval.seconds = display_interval;
+  hooks.on_snapshot = [&](RenderResult& so_far, bool asked) {
+    display(loaded, so_far.image);
+    write_so_far(loaded, so_far, asked);
+    if (asked)
+      progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
+                                passes_text(so_far.passes.back().pass)));
   };
-  if (options_.early_preview && !options_.files.preview.empty())
-    hooks.on_quick_look = [&](RenderResult& look) { write_preview(look, loaded.frame()); };
+  const bool preview = options_.early_preview && !options_.files.preview.empty();
+  if (preview || hooks.snapshot_interval.wanted())
+    hooks.on_quick_look = [&](RenderResult& look) {
+      display(loaded, look.image);
+      write_so_far(loaded, look, false);
+    };
   return hooks;
+}
+
+void FrameRenderer::display(const LoadedFrame& loaded, const Image& image) const {
+  if (options_.display)
+    options_.display->show(std::filesystem::path(output(loaded.frame())).filename().string(),
+                           image);
 }
 
 bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,

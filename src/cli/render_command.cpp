@@ -9,6 +9,7 @@
 #include "cli/scene_options.h"
 #include "cli/usage_error.h"
 #include "cli/view_option.h"
+#include "console/display.h"
 #include "console/signals.h"
 #include "console/streams.h"
 #include "farm/farm_job.h"
@@ -39,7 +40,7 @@ const char* const examples = R"(Examples:
 struct RenderOptions {
   SceneOptions scene;
   BatchOptions batch;
-  std::string frames, pass_range, region, checkpoint, snapshot;
+  std::string frames, pass_range, region, checkpoint, snapshot, display;
   bool no_resume = false, overwrite = false;
 };
 
@@ -181,6 +182,8 @@ int run_render(RenderOptions& options) {
   if (frame.exposure != 0 && files.preview.empty() &&
       output_format(files.output).extension == ".exr" && !frame.quiet)
     log("note: --exposure affects only a --preview or a .png; there is none");
+  if (!options.display.empty())
+    options.batch.frame.display = std::make_shared<Display>(options.display);
   handle_signals();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }
@@ -214,6 +217,9 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
                  "Write the image so far to NAME.snapshot.exr and --preview at this interval: 2s, "
                  "or a number of passes")
       ->option_text("T|N");
+  app.add_option("--display", options.display,
+                 "Show the image in the viewer tev while it is rendered, e.g. localhost:14158")
+      ->option_text("HOST:PORT");
   app.add_flag("--no-resume", options.no_resume, "Do not resume from a checkpoint");
   app.add_flag("--skip-existing", batch.skip_existing,
                "Skip frames whose finished image of this scene exists");
@@ -273,8 +279,8 @@ void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Print errors only");
   add_batch_options(app, *options);
   group_options(app, "Output",
-                {"-o", "--preview", "--snapshot", "--exposure", "--region", "--reference",
-                 "--second-reference", "--report"});
+                {"-o", "--preview", "--snapshot", "--display", "--exposure", "--region",
+                 "--reference", "--second-reference", "--report"});
   group_options(app, "Sequences and farms",
                 {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
                  "--no-resume", "--pass-range", "--summary", "--progress"});

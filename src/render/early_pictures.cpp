@@ -178,7 +178,7 @@ void PassLoop::take_snapshot() {
     return;
   result_.image = develop_layers(film_, scene_.layers); // deep images are no part of snapshots
   finish_image();
-  attempt([&] { hooks_.on_snapshot(result_); });
+  attempt([&] { hooks_.on_snapshot(result_, asked); });
   since_snapshot_.restart();
   last_snapshot_passes_ = film_.passes();
 }

@@ -6,6 +6,9 @@ import subprocess
 import sys
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import requirements  # noqa: E402
+
 
 def inside_blender():
     """Whether this Python is Blender's."""
@@ -20,8 +23,7 @@ def start(file):
     """Runs the tests of a file inside Blender and exits with their result, 77 where Blender is missing."""
     blender = os.environ.get("BLENDER", shutil.which("blender"))
     if not blender:
-        print("needs Blender 3.4 or newer (apt-get install blender, or BLENDER=path); skipped")
-        sys.exit(77)
+        requirements.skip("blender", "needs Blender 3.4 or newer (apt-get install blender, or BLENDER=path)")
     program = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
     # Debian's Blender takes its modules from the first Python on the PATH, which may lack NumPy.
     environment = {**os.environ, "PATH": os.defpath, "VDBEAM_BINARY": str(pathlib.Path(program).resolve())}

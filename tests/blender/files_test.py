@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The files that the Blender add-on reads and writes, and the passes that they fill, without Blender."""
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -10,14 +9,12 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools" / "blender"), str(ROOT / "tests" / "support")]
 
+import requirements  # noqa: E402
+
 try:
     import numpy
-except ImportError:
-    SYSTEM = "/usr/bin/python3"  # has Debian's NumPy, where the first Python on the PATH has none
-    if sys.executable != SYSTEM and os.path.exists(SYSTEM):
-        os.execv(SYSTEM, [SYSTEM, "-B", *sys.argv])
-    print("needs NumPy (python3-numpy), which Blender brings with it; skipped")
-    sys.exit(77)
+except ImportError as problem:
+    requirements.import_failed(problem)
 
 from program import BINARY, DATA, InTempFolder  # noqa: E402
 from vdbeam_blender import exr, layers, meshes  # noqa: E402
