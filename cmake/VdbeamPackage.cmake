@@ -1,4 +1,5 @@
-# cpack: vdbeam_VERSION_ARCH.deb with the program, libvdbeam-dev_VERSION_ARCH.deb with the library.
+# cpack: vdbeam_VERSION_ARCH.deb with the program, libvdbeam-dev_VERSION_ARCH.deb with the library,
+# python3-vdbeam_VERSION_ARCH.deb with the Python module.
 # dpkg-shlibdeps finds what the program depends on.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME vdbeam)
@@ -14,6 +15,9 @@ set(VDBEAM_MAINTAINER "${vdbeam_packager}" CACHE STRING "Maintainer of the Debia
 set(CPACK_PACKAGE_CONTACT "${VDBEAM_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program development)
+if(TARGET vdbeam_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -26,4 +30,10 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvdbeam-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libopenvdb-dev, libtbb-dev, libopenexr-dev, libimath-dev, libpng-dev, zlib1g-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libhwy-dev, libxxhash-dev, libembree-dev, libassimp-dev, libopencolorio-dev")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vdbeam)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3-numpy")
 include(CPack)

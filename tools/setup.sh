@@ -12,6 +12,8 @@ packages=(
   libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev libembree-dev libassimp-dev
   libopencolorio-dev
+  # the Python module
+  pybind11-dev python3-dev
   # tests and benchmarks
   libgtest-dev libboost-math-dev libbenchmark-dev openimageio-tools openexr
   # tools

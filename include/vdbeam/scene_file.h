@@ -14,6 +14,11 @@ namespace vdbeam {
 Scene load_scene(const std::string& path, const FrameTime& frame = {},
                  const std::vector<std::string>& overrides = {});
 
+/// The same from the text of a scene file. `path` stands for the file's in messages; relative paths
+/// begin at its folder.
+Scene parse_scene(const std::string& text, const std::string& path, const FrameTime& frame = {},
+                  const std::vector<std::string>& overrides = {});
+
 /// The text of a commented scene file for this volume (`vdbeam init`), with paths relative to
 /// `folder` (empty: the current one). Throws InputError and FrameError for an unreadable VDB.
 std::string scene_template(const std::string& vdb_path, const std::string& folder = "");

@@ -185,6 +185,13 @@ SceneDocument::SceneDocument(const std::string& path, const std::vector<Override
     apply_override(root_, entry);
 }
 
+SceneDocument::SceneDocument(const std::string& text, const std::string& path,
+                             const std::vector<Override>& overrides)
+    : path_(path), folder_(fs::path(path).parent_path()), root_(parse_toml(text, path)) {
+  for (const Override& entry : overrides)
+    apply_override(root_, entry);
+}
+
 Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const {
   const auto at = [&](const FrameTime& moment) {
     return SceneReader(path_, folder_, *camera_file_, moment, missing).read(root_);
@@ -289,13 +296,26 @@ std::vector<int> SceneDocument::frames_on_disk() const {
   return vdbeam::frames_on_disk(first_pattern());
 }
 
-Scene load_scene(const std::string& path, const FrameTime& frame,
-                 const std::vector<std::string>& overrides) {
+namespace {
+
+std::vector<Override> parse_overrides(const std::vector<std::string>& overrides) {
   std::vector<Override> entries;
   entries.reserve(overrides.size());
   for (const std::string& text : overrides)
     entries.push_back(parse_override(text));
-  return SceneDocument(path, entries).scene_at(frame);
+  return entries;
+}
+
+} // namespace
+
+Scene load_scene(const std::string& path, const FrameTime& frame,
+                 const std::vector<std::string>& overrides) {
+  return SceneDocument(path, parse_overrides(overrides)).scene_at(frame);
+}
+
+Scene parse_scene(const std::string& text, const std::string& path, const FrameTime& frame,
+                  const std::vector<std::string>& overrides) {
+  return SceneDocument(text, path, parse_overrides(overrides)).scene_at(frame);
 }
 
 } // namespace vdbeam

@@ -20,6 +20,10 @@ public:
   /// nowhere. A VDB's header and values are read to choose camera and extinction.
   SceneDocument(const std::string& path, const std::vector<Override>& overrides);
 
+  /// The same from a file's text, which `path` names in messages.
+  SceneDocument(const std::string& text, const std::string& path,
+                const std::vector<Override>& overrides);
+
   /// Throws InputError as load_scene.
   Scene scene_at(const FrameTime& frame, MissingFile missing = MissingFile::error) const;
 

@@ -1,0 +1,118 @@
+"""Rendering and comparing."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Callable, Mapping, Optional, Union
+
+import numpy as np
+
+from . import _core
+from ._scene import Scene
+
+Rgb = Union["np.ndarray[Any, Any]", "Frame", str, "os.PathLike[str]"]
+
+
+class Session:
+    """What is kept from one render to the next: volumes, lights and meshes that did not change are not read
+    again. Use one session at a time."""
+
+    def __init__(self) -> None:
+        self._core = _core.Session()
+
+    def render(self, scene: Scene, **options: Any) -> "Frame":
+        """Like `vdbeam.render`, with what earlier renders of this session have read."""
+        return render(scene, session=self, **options)
+
+
+class Frame:
+    """A rendered frame."""
+
+    def __init__(self, frame: "_core.Frame") -> None:
+        self._core = frame
+        #: The image's planes by name ("R", "volume_direct.R", "depth.Z", ...): arrays of height by width floats, in
+        #: scene-linear units. They share the memory of the frame, which lives as long as one of them.
+        self.layers: dict[str, np.ndarray] = frame.planes
+        #: The report that the program writes with `--report`: plan, seconds by stage, counts, memory, passes.
+        self.report: dict[str, Any] = json.loads(frame.report)
+        #: The state of the image after each pass.
+        self.passes: list[_core.PassRecord] = frame.passes
+        #: What was repaired, chosen or found odd.
+        self.notes: list[str] = frame.notes
+
+    @property
+    def rgb(self) -> np.ndarray:
+        """The image: height by width by 3, a copy."""
+        return np.stack([self.layers[name] for name in "RGB"], axis=-1)
+
+    @property
+    def alpha(self) -> Optional[np.ndarray]:
+        """The opacity, or None where the scene has no such layer."""
+        return self.layers.get("A")
+
+    @property
+    def error(self) -> tuple[float, float, float]:
+        """Estimated error (MRSE) of the image, and its 95 % interval."""
+        last = self.passes[-1]
+        return last.error_estimate, last.error_low, last.error_high
+
+    @property
+    def stopped_by(self) -> str:
+        """What ended the render: "passes", "time", "target_error" or "stop"."""
+        return self.report["stopped_by"]
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes all layers as an EXR, which is never half there."""
+        self._core.image.write_exr(os.fspath(path))
+
+    def save_preview(self, path: Union[str, "os.PathLike[str]"], exposure: float = 0, view: str = "filmic") -> None:
+        """Writes a PNG of the image times 2^exposure. `view`: "filmic" or "srgb"."""
+        self._core.image.write_png(os.fspath(path), float(exposure), view)
+
+
+def _array(image: Rgb) -> np.ndarray:
+    if isinstance(image, Frame):
+        return image.rgb
+    return read_image(image) if isinstance(image, (str, os.PathLike)) else np.asarray(image)
+
+
+def render(scene: Scene, settings: Optional[Mapping[str, Any]] = None, *,
+           on_pass: Optional[Callable[[_core.PassRecord], Optional[bool]]] = None,
+           on_image: Optional[Callable[[np.ndarray], Optional[bool]]] = None,
+           on_note: Optional[Callable[[str], Optional[bool]]] = None, reference: Optional[Rgb] = None,
+           second_reference: Optional[Rgb] = None, session: Optional[Session] = None) -> Frame:
+    """Renders one frame.
+
+    `settings` are applied as in `Scene`. `on_pass` is called after each pass with its record, `on_image` with the
+    image so far, height by width by 3, `on_note` with each line for the user. They are called on another thread;
+    one that returns False ends the render, whose frame then holds the finished passes. An exception in one of them
+    ends it too, and is raised here. So does KeyboardInterrupt, at any time.
+
+    `reference`: the true image, for `mrse` in the records; `second_reference`: an independent one, which removes the
+    noise of both. Images are arrays, frames or paths.
+    """
+    if settings:
+        scene = scene.with_settings(settings)
+    of_image = None
+    if on_image is not None:
+        def of_image(image: "_core.Image") -> Optional[bool]:
+            planes = image.planes
+            return on_image(np.stack([planes[name] for name in "RGB"], axis=-1))
+    frame = _core.render(scene._core, (session or Session())._core,
+                         None if reference is None else _array(reference),
+                         None if second_reference is None else _array(second_reference), on_pass, of_image, on_note)
+    return Frame(frame)
+
+
+def compare(image: Rgb, reference: Rgb, second_reference: Optional[Rgb] = None) -> dict[str, float]:
+    """Errors of an image against a reference: `rmse`, `mrse`, `relmse`, `bias` and `flip`. With a second,
+    independent reference their noise cancels, and `mrse_error` is the standard error of `mrse`."""
+    second = None if second_reference is None else _array(second_reference)
+    return _core.compare(_array(image), _array(reference), second)
+
+
+def read_image(path: Union[str, "os.PathLike[str]"]) -> np.ndarray:
+    """R, G and B of an EXR, HDR or PNG file: height by width by 3, linear."""
+    planes = _core.read_image(os.fspath(path)).planes
+    return np.stack([planes[name] for name in "RGB"], axis=-1)

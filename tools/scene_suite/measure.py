@@ -1,0 +1,84 @@
+"""Renders the suite's scenes and compares them with references by `path`."""
+import dataclasses
+import pathlib
+
+import numpy as np
+
+# Processor time [ns] of what a render counts, so that work needs no clock. Only ratios matter.
+TIME_OF = {"light_collisions": 150, "photons_stored": 2000, "contributions": 12, "shadow_rays": 3000,
+           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000}
+
+
+@dataclasses.dataclass
+class Outcome:
+    """One scene: errors (MRSE) against the two references, and counted work [s]."""
+    scene: str
+    estimator: str
+    passes: int
+    mrse: float
+    mrse_error: float  # standard error of mrse, by the noise of the references
+    stated: float
+    low: float
+    high: float
+    work: float
+    seconds: float
+    path_mrse: float
+    path_work: float
+    path_seconds: float
+
+    @property
+    def holds(self):
+        """The stated interval contains the true error, as far as the references show it."""
+        return self.low - 2 * self.mrse_error <= self.mrse <= self.high + 2 * self.mrse_error
+
+    @property
+    def lead(self):
+        """How many times longer `path` works for the same error."""
+        return self.path_mrse * self.path_work / (self.mrse * self.work)
+
+
+def work_of(frame):
+    counts = frame.report["counts"]
+    return 1e-9 * sum(time * counts[name] for name, time in TIME_OF.items())
+
+
+def with_image(keys, width):
+    return {**keys, "image": {"width": width, "height": width * 9 // 16}}
+
+
+class Suite:
+    """Renders scenes at one size; references are kept in a folder, by the scenes' hashes."""
+
+    def __init__(self, vdbeam, width, reference_passes, folder=None):
+        self._vdbeam, self._width, self._passes = vdbeam, width, reference_passes
+        self._folder = pathlib.Path(folder) if folder else None
+
+    def _render(self, keys, settings, references=()):
+        vdbeam = self._vdbeam
+        frame = vdbeam.render(vdbeam.Scene(with_image(keys, self._width)), settings,
+                              **dict(zip(("reference", "second_reference"), references)))
+        return frame
+
+    def _reference(self, keys, seed):
+        settings = {"render.estimator": "path", "render.passes": self._passes, "render.seed": seed}
+        vdbeam = self._vdbeam
+        scene = vdbeam.Scene({k: v for k, v in with_image(keys, self._width).items() if k != "layer"}, settings)
+        path = self._folder / f"{scene.hash()}.npy" if self._folder else None
+        if path and path.exists():
+            return np.load(path)
+        image = vdbeam.render(scene).rgb
+        if path:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            np.save(path, image)
+        return image
+
+    def measure(self, name, keys, passes, path_passes, seed=1):
+        references = [self._reference(keys, 1001), self._reference(keys, 1002)]
+        frame = self._render(keys, {"render.passes": passes, "render.seed": seed}, references)
+        path = self._render(keys, {"render.passes": path_passes, "render.estimator": "path", "render.seed": seed},
+                            references)
+        errors = self._vdbeam.compare(frame, *references)
+        last = frame.passes[-1]
+        return Outcome(name, frame.report["plan"]["estimator"], passes, errors["mrse"], errors["mrse_error"],
+                       last.error_estimate, last.error_low, last.error_high, work_of(frame), last.seconds,
+                       path.passes[-1].mrse, work_of(path), path.passes[-1].seconds)
