@@ -224,6 +224,21 @@ class Engine(unittest.TestCase):
             apart = numpy.abs(planes[letter] - expected[f"Combined.{letter}"]).max()
             self.assertLess(apart, 2e-3, letter)
 
+    def test_blend_file_on_the_command_line(self):
+        """A saved file is rendered by a Blender that only has the add-on on its path of scripts."""
+        scene = self.smoke()
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        shot = self.folder / "shot.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+        package = DATA.parent / "tools" / "blender" / "vdbeam_blender"
+        shutil.copytree(package, self.folder / "addons" / package.name)
+        result = subprocess.run([bpy.app.binary_path, "-b", "--addons", package.name, shot, "-o", "//frame.####", "-f",
+                                 "7"], env={**os.environ, "BLENDER_USER_SCRIPTS": str(self.folder)},
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        image = exr.read(self.folder / "frame.0007.exr")[0]
+        self.assertGreater(numpy.abs(image["R"] - 0.5).max(), 0.1)
+
     def test_zip_is_installed_and_removed(self):
         """In a Blender of its own: the zip registers the engine, its settings and its panel, and takes them back."""
         archive = self.folder / "vdbeam_blender.zip"

@@ -90,6 +90,46 @@ class UsdScene(InTempFolder):
         self.assertAlmostEqual(math.hypot(*(transform[k] for k in (1, 5, 9))), 0.5)
         self.assertEqual(meshes["/lights/lid"]["type"], "disk")
 
+    def dome(self, up, light):
+        """The environment of a stage with a dome."""
+        text = f"""#usda 1.0
+(
+    upAxis = "{up}"
+)
+def Camera "cam" {{ }}
+def {light}
+{{
+    asset inputs:texture:file = @sky.exr@
+    float3 xformOp:rotateXYZ = (%s)
+    uniform token[] xformOpOrder = ["xformOp:rotateXYZ"]
+}}
+"""
+        def rotation(turn):
+            pathlib.Path(self.file("dome.usda")).write_text(text % turn, encoding="utf-8")
+            self.notes = self.convert(stage="dome.usda")
+            light = tomllib.loads(pathlib.Path(self.file("scene.toml")).read_text(encoding="utf-8"))["light"][0]
+            self.assertEqual((light["type"], light["image"]), ("environment", "sky.exr"))
+            return light["rotation"]
+        return rotation
+
+    def test_domes_turn_about_the_up_axis(self):
+        """With Y up an image has the same place as in vdbeam; with Z up, DomeLight_1 stands upright by itself, and a
+        DomeLight by a quarter turn about X."""
+        if tomllib is None:
+            self.skipTest("needs Python 3.11")
+        rotation = self.dome("Y", 'DomeLight "sky"')
+        self.assertAlmostEqual(rotation("0, 0, 0"), 0)
+        self.assertAlmostEqual(rotation("0, 30, 0"), 30)
+        self.assertNotIn("tilted", self.notes)
+        rotation("40, 0, 0")
+        self.assertIn("tilted", self.notes)
+        rotation = self.dome("Z", 'DomeLight_1 "sky"')
+        self.assertAlmostEqual(rotation("0, 0, 30"), 30)
+        rotation = self.dome("Z", 'DomeLight "sky"')
+        self.assertAlmostEqual(rotation("90, 0, 0"), 0)
+        self.assertAlmostEqual(rotation("90, 0, 30"), 30)
+        self.assertNotIn("tilted", self.notes)
+
     def test_mesh_and_what_is_left_out(self):
         meshes = {mesh["name"]: mesh for mesh in self.scene()["mesh"]}
         self.assertEqual(meshes["/world/ground"]["material"], {"type": "diffuse", "albedo": [0.4, 0.3, 0.2]})
