@@ -58,6 +58,7 @@ def volume_keys(obj, data, matrix, notes):
         notes.add(obj.name, "its material has no volume shader that can be exported; the volume is left out")
         return None
     if not keys["density"]:
+        notes.add(obj.name, "its shader uses no density grid; it is exported with the grid density")
         keys["density"] = "density"
     if data.render.space == "OBJECT":  # Cycles then keeps the opacity when the object is scaled
         stretch = math.sqrt(sum(sum(row[:3]) ** 2 for row in rows(matrix)[:3]) / 3)
