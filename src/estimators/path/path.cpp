@@ -209,6 +209,7 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
 
 void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
   const Stopwatch watch;
+  input_.begin_step(RenderStep::pass);
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(spec.pass);
   input_.resize(image);
