@@ -26,6 +26,7 @@ target_link_options(vdbeam_python PRIVATE -Wl,--exclude-libs,ALL)
 target_compile_options(vdbeam_python PRIVATE ${VDBEAM_LIGHT_OPTIMISATION})
 
 # The package's own files are linked to, so that an edit needs no build.
+file(MAKE_DIRECTORY ${vdbeam_python_package})
 file(GLOB VDBEAM_PYTHON_FILES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/python/vdbeam/*)
 foreach(file ${VDBEAM_PYTHON_FILES})
   get_filename_component(name ${file} NAME)

@@ -29,6 +29,10 @@ fi
 if [[ ${VDBEAM_SETUP_BROWSER:-} == 1 ]]; then
   packages+=(chromium chromium-driver)
 fi
+# Blender, 264 MB, for the tests of its add-on (tests/blender), which are skipped without it. Only where it is asked for.
+if [[ ${VDBEAM_SETUP_BLENDER:-} == 1 ]]; then
+  packages+=(blender)
+fi
 # What tools/lint.sh --format runs, 60 MB. Only where it is asked for.
 if [[ ${VDBEAM_SETUP_LINT:-} == 1 ]]; then
   packages+=(clang-format)

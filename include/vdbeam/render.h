@@ -63,11 +63,27 @@ struct FrameSettings {
   const Image* second_reference = nullptr;
 };
 
+/// What a render is doing: preparing the frame, running the pilots, tracing a pass's photons,
+/// rendering its pixels, developing the image.
+enum class RenderStep { prepare, pilot, photons, pass, develop };
+
+/// Interval at which the caller gets the image so far: of time or of passes; both 0: never. With
+/// an interval of time, the first pass is shown in any case, and the last one never, since the
+/// image itself follows.
+struct SnapshotInterval {
+  double seconds = 0;
+  int passes = 0;
+
+  bool wanted() const { return seconds > 0 || passes > 0; }
+};
+
 /// Callbacks and flags to observe and stop a render; all optional. They are called on the rendering
 /// thread.
 struct RenderHooks {
   /// After each pass.
   std::function<void(const PassRecord&, const RenderStatistics&)> on_pass;
+  /// Before each step; `pass` is the number of the pass, from 1, or 0 outside of passes.
+  std::function<void(RenderStep step, int pass)> on_step;
   /// A line for the user, as soon as it is known.
   std::function<void(const std::string&)> on_note;
   /// Ends the render soon when it becomes true; the pass in progress is lost, the first for a quick
@@ -75,7 +91,10 @@ struct RenderHooks {
   const std::atomic<bool>* stop = nullptr;
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
-  std::function<void(RenderResult&)> on_snapshot;
+  /// When on_snapshot gets the image so far without being asked.
+  SnapshotInterval snapshot_interval;
+  /// `asked`: by `snapshot`, not by the interval.
+  std::function<void(RenderResult&, bool asked)> on_snapshot;
   /// Gets a quick look before the first pass, which takes a part of the time of a pass.
   std::function<void(RenderResult&)> on_quick_look;
 };

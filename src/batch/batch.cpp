@@ -1,6 +1,8 @@
 #include "batch/batch.h"
 
 #include "batch/failure.h"
+#include "batch/frame_events.h"
+#include "console/events.h"
 #include "console/heartbeat.h"
 #include "console/signals.h"
 #include "console/streams.h"
@@ -17,6 +19,7 @@
 #include "vdbeam/scene_file.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -32,6 +35,7 @@ namespace {
 /// Ends the program although a frame is still being read, which may take longer than a farm waits.
 /// Reading leaves nothing behind.
 [[noreturn]] void leave_now(int code) {
+  send_end(code);
   std::fflush(nullptr);
   std::_Exit(code);
 }
@@ -149,8 +153,12 @@ Batch::Loaded Batch::wait_for(Reading& reading) const {
 
 int Batch::run() {
   SharedLoaded loaded;
+  send_event(
+      "batch",
+      {{"scene", summary_.scene}, {"frames", frames_}, {"output", options_.frame.files.output}});
   Reading next = load_aside(frames_[0], nullptr, true);
   for (std::size_t i = 0; i < frames_.size(); ++i) {
+    send_reading(frames_[i]);
     Loaded read_ahead = wait_for(next);
     if (read_ahead.deferred) {
       if (!read_ahead.fits_after)
@@ -177,8 +185,12 @@ int Batch::run() {
 }
 
 void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& outcome) {
+  const Failure failure = describe(error);
   outcome.status = "failed";
-  outcome.reason = describe(error).line;
+  outcome.reason = failure.line;
+  if (frames_.size() > 1) // else the program reports it itself
+    send_frame_error(outcome.frame, failure);
+  send_frame_end(outcome);
   farm_.failure(outcome.reason);
   farm_.frame_at(index, 1);
   summary_.outcomes.push_back(outcome);
@@ -236,6 +248,7 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
     return !options_.stop_on_error;
   }
   outcome.seconds = watch.seconds();
+  send_frame_end(outcome);
   summary_.outcomes.push_back(outcome);
   if (outcome.status != "interrupted")
     farm_.frame_at(index, 1);

@@ -1,5 +1,7 @@
 #include "batch/frame_renderer.h"
 
+#include "batch/frame_events.h"
+#include "batch/frame_texts.h"
 #include "batch/output_paths.h"
 #include "batch/reference_image.h"
 #include "console/progress.h"
@@ -28,68 +30,6 @@
 
 namespace vdbeam::cli {
 namespace {
-
-std::string start_text(const Scene& scene) {
-  return fmt::format("{}, {}, {}x{}", scene.path, scene.render.estimator.name, scene.image.width,
-                     scene.image.height);
-}
-
-std::string passes_text(int passes) {
-  return count_text(static_cast<std::uint64_t>(passes), "pass");
-}
-
-/// " of gather", " of beam and, from pass 8 on, gather": which estimators rendered the passes.
-std::string estimators_text(const RenderResult& result) {
-  std::string text;
-  std::string_view last;
-  for (const PassSpec& spec : result.plan.schedule) {
-    if (spec.pass >= result.passes.back().pass || spec.estimator == last)
-      continue;
-    text += last.empty() ? fmt::format(" of {}", spec.estimator)
-                         : fmt::format(" and, from pass {} on, {}", spec.pass + 1, spec.estimator);
-    last = spec.estimator;
-  }
-  return text;
-}
-
-/// Description of an image for the log, so that a wrong one is noticed.
-std::string picture_text(const PictureFacts& facts) {
-  if (facts.optical_depth == 0 && facts.opacity == 0 && facts.black == 0 && facts.over_one == 0)
-    return {}; // of a part of the passes
-  const std::string opacity =
-      std::isnan(facts.opacity) ? "" : fmt::format(" opacity {:.2g},", facts.opacity);
-  return fmt::format("; optical depth up to {:.2g},{} {:.0f} % black, {:.0f} % above 1",
-                     facts.optical_depth, opacity, 100 * facts.black, 100 * facts.over_one);
-}
-
-std::string end_text(const RenderResult& result, const std::string& output) {
-  if (result.draft > 0)
-    return fmt::format("{}: a draft in 1/{} of the pixels each way", output, result.draft);
-  const PassRecord& last = result.passes.back();
-  std::string text = fmt::format("{}: {}{} in {}", output, passes_text(last.pass),
-                                 estimators_text(result), format_duration(last.seconds));
-  if (std::isfinite(last.error_estimate))
-    text += fmt::format(", estimated error (MRSE) {:.2g}", last.error_estimate);
-  if (std::isfinite(last.error_low))
-    text += fmt::format(" ({:.2g} to {:.2g})", last.error_low, last.error_high);
-  if (std::isfinite(last.bias_margin) && !result.plan.unbiased)
-    text += fmt::format(", estimated bias {:+.1f} +- {:.1f} %", 100 * last.bias_estimate,
-                        100 * last.bias_margin);
-  if (last.has_reference)
-    text += fmt::format(", MRSE {:.3g}, bias {:+.2f} %", last.mrse, 100 * last.bias);
-  text += ", peak memory " + format_bytes(static_cast<double>(result.statistics.peak_memory));
-  return text + picture_text(result.picture);
-}
-
-std::string stop_text(const RenderResult& result, const std::string& checkpoint,
-                      const std::string& snapshot) {
-  if (result.quick_look)
-    return "interrupted before the first pass was finished" +
-           (snapshot.empty() ? snapshot : fmt::format("; {} is a quick look", snapshot));
-  return fmt::format(
-      "interrupted after {}; the same command resumes from {}, which opens as the image so far",
-      passes_text(result.passes.back().pass), checkpoint);
-}
 
 /// Bars and time left are about the passes that are asked for.
 RenderSettings progress_settings(const Scene& scene, const std::optional<PassRange>& range) {
@@ -232,16 +172,33 @@ void FrameRenderer::join_parts(const LoadedFrame& loaded) const {
   remove_side_files(loaded.frame());
 }
 
-void FrameRenderer::write_preview(const Image& image, int frame) const {
-  if (!options_.files.preview.empty())
-    write_image(image, path(Output::preview, frame), {options_.exposure, options_.view});
+void FrameRenderer::write_preview(const RenderResult& result, int frame) const {
+  const std::string file = path(Output::preview, frame);
+  if (file.empty())
+    return;
+  write_image(result.image, file, {options_.exposure, options_.view});
+  send_file(Output::preview, file, frame, result);
 }
 
-void FrameRenderer::write_snapshot(const Image& image, int frame) const {
+void FrameRenderer::write_snapshot(const RenderResult& result, int frame) const {
   const std::string file = path(Output::snapshot, frame);
   if (const std::string why = why_not_replaceable(file, Output::snapshot); !why.empty())
     throw FrameError(why + ", and is left unchanged");
-  write_image(image, file, {.links = Links::replace});
+  write_image(result.image, file, {.links = Links::replace});
+  send_file(Output::snapshot, file, frame, result);
+}
+
+/// Writes what there is so far for those who wait for it at intervals, or asked for it now.
+void FrameRenderer::write_so_far(const LoadedFrame& loaded, RenderResult& so_far,
+                                 bool asked) const {
+  const bool at_intervals = options_.snapshot.wanted();
+  if (at_intervals || (so_far.quick_look && options_.early_preview))
+    write_preview(so_far, loaded.frame());
+  if (!at_intervals && !asked)
+    return;
+  add_metadata(so_far.image, loaded, so_far);
+  so_far.image.numbers.erase("vdbeam:complete");
+  write_snapshot(so_far, loaded.frame());
 }
 
 void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result) const {
@@ -253,6 +210,7 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   context.reference = substitute_frame(files.reference, loaded.frame());
   context.second_reference = substitute_frame(files.second_reference, loaded.frame());
   const bool complete = result.stopped_by != "stop";
+  display(loaded, result.image);
   std::optional<FrameError> lost;
   const auto attempt = [&](const auto& write) { // of what is not worth an image
     try {
@@ -269,25 +227,30 @@ void FrameRenderer::write_files(const LoadedFrame& loaded, RenderResult& result)
   if (complete) {
     add_metadata(result.image, loaded, result);
     // The image comes last, for it says that the frame is done.
-    attempt([&] { write_preview(result.image, loaded.frame()); });
-    if (result.deep && !options_.pass_range)
-      context.deep_bytes =
-          write_deep_exr(*result.deep, result.image, path(Output::deep, loaded.frame()));
+    attempt([&] { write_preview(result, loaded.frame()); });
+    if (result.deep && !options_.pass_range) {
+      const std::string deep = path(Output::deep, loaded.frame());
+      context.deep_bytes = write_deep_exr(*result.deep, result.image, deep);
+      send_file(Output::deep, deep, loaded.frame(), result);
+    }
     if (!files.report.empty() && !is_stdout(files.report))
       attempt(write_report);
     if (!options_.pass_range) // whose film is written already
       write_image(result.image, context.output, {options_.exposure, options_.view});
+    send_file(Output::image, context.output, loaded.frame(), result);
     if (!result.quick_look && result.draft == 0)
       remove_side_files(loaded.frame());
   } else if (result.quick_look) {
     add_metadata(result.image, loaded, result);
     if (why_not_replaceable(path(Output::snapshot, loaded.frame()), Output::snapshot).empty())
-      write_snapshot(result.image, loaded.frame());
+      write_snapshot(result, loaded.frame());
   } else if (options_.early_preview) {
-    write_preview(result.image, loaded.frame()); // the quick look has served its time
+    write_preview(result, loaded.frame()); // the quick look has served its time
   }
-  if (!files.report.empty())
+  if (!files.report.empty()) {
     write_report(); // once more, with the time that writing the image took
+    send_file(Output::report, path(Output::report, loaded.frame()), loaded.frame(), result);
+  }
   if (lost)
     throw *lost;
 }
@@ -313,7 +276,42 @@ void FrameRenderer::write_black(const LoadedFrame& loaded) const {
     write_deep_exr(deep, result.image, path(Output::deep, loaded.frame()));
   }
   write_image(result.image, output(loaded.frame()), {options_.exposure, options_.view});
-  write_preview(result.image, loaded.frame());
+  send_file(Output::image, output(loaded.frame()), loaded.frame(), result);
+  write_preview(result, loaded.frame());
+}
+
+/// What shows images before the frame is finished.
+RenderHooks FrameRenderer::picture_hooks(const LoadedFrame& loaded, Progress& progress) const {
+  RenderHooks hooks;
+  hooks.on_step = [frame = loaded.frame()](RenderStep step, int pass) {
+    send_step(frame, step, pass);
+  };
+  hooks.snapshot = &snapshot_requested();
+  // A viewer is shown a few images a second, unless files are written more often.
+  constexpr double display_interval = 0.25; // seconds
+  hooks.snapshot_interval = options_.snapshot;
+  if (options_.display && !options_.snapshot.wanted())
+    hooks.snapshot_interval.seconds = display_interval;
+  hooks.on_snapshot = [&](RenderResult& so_far, bool asked) {
+    display(loaded, so_far.image);
+    write_so_far(loaded, so_far, asked);
+    if (asked)
+      progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
+                                passes_text(so_far.passes.back().pass)));
+  };
+  const bool preview = options_.early_preview && !options_.files.preview.empty();
+  if (preview || hooks.snapshot_interval.wanted())
+    hooks.on_quick_look = [&](RenderResult& look) {
+      display(loaded, look.image);
+      write_so_far(loaded, look, false);
+    };
+  return hooks;
+}
+
+void FrameRenderer::display(const LoadedFrame& loaded, const Image& image) const {
+  if (options_.display)
+    options_.display->show(std::filesystem::path(output(loaded.frame())).filename().string(),
+                           image);
 }
 
 bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,
@@ -328,9 +326,12 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
     return false;
   }
   progress.start(start_text(scene));
+  send_frame(scene, settings, output(loaded.frame()), index);
   const auto report_note = [&](const std::string& note) {
-    if (notes_->add(note, loaded.frame()))
-      progress.note(note);
+    if (!notes_->add(note, loaded.frame()))
+      return;
+    progress.note(note);
+    send_note(loaded.frame(), note);
   };
   for (const std::string& note : scene.notes)
     report_note(note);
@@ -344,28 +345,21 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
   frame.checkpoint.path = path(Output::checkpoint, loaded.frame());
   frame.reference = references->first ? &*references->first : nullptr;
   frame.second_reference = references->second ? &*references->second : nullptr;
-  RenderHooks hooks;
-  hooks.on_pass = [&](const PassRecord& record, const RenderStatistics&) {
+  RenderHooks hooks = picture_hooks(loaded, progress);
+  hooks.on_pass = [&](const PassRecord& record, const RenderStatistics& statistics) {
     progress.pass(record);
     farm.frame_at(index, Progress::fraction(record, settings));
+    send_pass(loaded.frame(), record, statistics, settings);
   };
   hooks.on_note = report_note;
   hooks.stop = &stop_requested();
-  hooks.snapshot = &snapshot_requested();
-  hooks.on_snapshot = [&](RenderResult& so_far) {
-    add_image_metadata(so_far.image, scene, so_far, loaded.hash);
-    so_far.image.numbers.erase("vdbeam:complete");
-    write_snapshot(so_far.image, loaded.frame());
-    progress.note(fmt::format("{}: the image after {}", path(Output::snapshot, loaded.frame()),
-                              passes_text(so_far.passes.back().pass)));
-  };
-  if (options_.early_preview && !options_.files.preview.empty())
-    hooks.on_quick_look = [&](RenderResult& look) { write_preview(look.image, loaded.frame()); };
   RenderResult result = render(scene, loaded.prepared, frame, hooks);
   write_files(loaded, result);
   if (result.stopped_by == "stop") {
     const std::string snapshot = path(Output::snapshot, loaded.frame());
     const bool taken = !why_not_replaceable(snapshot, Output::snapshot).empty();
+    if (!result.quick_look)
+      send_file(Output::checkpoint, frame.checkpoint.path, loaded.frame(), result);
     progress.finish(stop_text(result, frame.checkpoint.path, taken ? "" : snapshot));
     return false;
   }

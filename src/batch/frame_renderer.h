@@ -1,11 +1,13 @@
 #pragma once
 
 #include "batch/note_book.h"
+#include "console/display.h"
 #include "console/progress.h"
 #include "report/frame_files.h"
 #include "scene/scene_document.h"
 #include "vdbeam/render.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,9 +23,11 @@ struct FrameOptions {
   bool early_preview = false;          ///< the preview shows a quick look before the first pass
   std::optional<PassRange> pass_range; ///< the output is a partial image of these passes
   std::optional<PixelRegion> region;
-  CheckpointSettings checkpoint;  ///< without its path
-  std::vector<std::string> parts; ///< partial images to join instead of rendering; usually none
-  std::string merged;             ///< what the passes of `pass_range` are merged into, or empty
+  CheckpointSettings checkpoint;    ///< without its path
+  SnapshotInterval snapshot;        ///< when snapshot and preview show the image so far
+  std::shared_ptr<Display> display; ///< a viewer for the image so far, or null
+  std::vector<std::string> parts;   ///< partial images to join instead of rendering; usually none
+  std::string merged;               ///< what the passes of `pass_range` are merged into, or empty
 };
 
 /// A frame that is ready to be rendered.
@@ -81,8 +85,11 @@ private:
   std::string why_no_image(const std::string& path, const LoadedFrame& loaded) const;
   std::string why_no_part(const std::string& path, const LoadedFrame& loaded) const;
   /// Nothing where no preview is asked for.
-  void write_preview(const Image& image, int frame) const;
-  void write_snapshot(const Image& image, int frame) const;
+  void write_preview(const RenderResult& result, int frame) const;
+  void write_snapshot(const RenderResult& result, int frame) const;
+  void write_so_far(const LoadedFrame& loaded, RenderResult& so_far, bool asked) const;
+  void display(const LoadedFrame& loaded, const Image& image) const;
+  RenderHooks picture_hooks(const LoadedFrame& loaded, Progress& progress) const;
   void write_files(const LoadedFrame& loaded, RenderResult& result) const;
   void add_metadata(Image& image, const LoadedFrame& loaded, const RenderResult& result) const;
 

@@ -198,17 +198,22 @@ const Feature hidden_lights_feature{
     .unused = "the kernel pilot fixed the number of light paths"};
 
 namespace {
-constexpr FeatureCondition edges_conditions[] = {
-    {gathers_along_rays, "render.estimator names another method"}};
+bool has_surfaces(const Facts& facts) {
+  return facts.input.world.surfaces != nullptr;
 }
+constexpr FeatureCondition edges_conditions[] = {
+    {[](const Facts& facts) { return gathers_along_rays(facts) && !has_surfaces(facts); },
+     "render.estimator names another method, and there are no surfaces"}};
+} // namespace
 const Feature edges_feature{
     .name = "refined edges",
     .key = "",
-    .help = "pixels on edges of opacity or depth get several camera rays",
+    .help = "pixels on edges of opacity, depth or light get several camera rays",
     .stage = Stage::photons,
     .conditions = edges_conditions,
-    .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
-    .unused = "only final gathering refines edges"};
+    .used = [](const Facts& facts,
+               const Choices& choices) { return choices.gather || has_surfaces(facts); },
+    .unused = "without surfaces, only final gathering refines edges"};
 
 namespace {
 constexpr FeatureCondition branches_conditions[] = {

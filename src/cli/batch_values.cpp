@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <optional>
 #include <sstream>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace vdbeam::cli {
@@ -36,6 +38,20 @@ std::optional<std::vector<int>> parse_numbers(const std::string& text, char sepa
   return numbers;
 }
 
+/// Seconds and passes; one is above 0, the other is 0.
+std::pair<double, int> parse_interval(const std::string& option, const std::string& text,
+                                      const std::string& examples) {
+  const auto passes = parse_numbers(text, ' ');
+  if (passes && passes->size() == 1 && passes->front() > 0)
+    return {0, passes->front()};
+  const double seconds = passes ? 0 : parse_duration(text).value_or(0);
+  if (!(seconds > 0))
+    fail(
+        option, text,
+        fmt::format("be a time like {}, or a number of passes{}", examples, duration_remedy(text)));
+  return {seconds, 0};
+}
+
 } // namespace
 
 PassRange parse_pass_range(const std::string& text) {
@@ -57,14 +73,14 @@ PixelRegion parse_region(const std::string& text) {
 
 CheckpointSettings parse_checkpoint(const std::string& text) {
   CheckpointSettings settings;
-  if (const auto passes = parse_numbers(text, ' '); passes && passes->size() == 1)
-    settings.passes = passes->front();
-  else
-    settings.seconds = parse_duration(text).value_or(0);
-  if (settings.passes == 0 && !(settings.seconds > 0))
-    fail("--checkpoint", text,
-         "be a time like 300s or 5m, or a number of passes" + duration_remedy(text));
+  std::tie(settings.seconds, settings.passes) = parse_interval("--checkpoint", text, "300s or 5m");
   return settings;
+}
+
+SnapshotInterval parse_snapshot(const std::string& text) {
+  SnapshotInterval interval;
+  std::tie(interval.seconds, interval.passes) = parse_interval("--snapshot", text, "2s or 1m");
+  return interval;
 }
 
 } // namespace vdbeam::cli

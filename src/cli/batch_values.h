@@ -17,4 +17,7 @@ PixelRegion parse_region(const std::string& text);
 /// "300s", "5m": by time; "16": by passes. Path and resuming are left as they are by default.
 CheckpointSettings parse_checkpoint(const std::string& text);
 
+/// "2s": by time; "1": by passes.
+SnapshotInterval parse_snapshot(const std::string& text);
+
 } // namespace vdbeam::cli

@@ -2,12 +2,14 @@
 #include "cli/commands.h"
 #include "cli/help_format.h"
 #include "cli/usage_error.h"
+#include "console/events.h"
 #include "console/streams.h"
 #include "console/terminal.h"
 #include "keys/scene_keys.h"
 #include "report/versions.h"
 #include "vdbeam/error.h"
 
+#include <algorithm>
 #include <exception>
 #include <fmt/format.h>
 #include <sstream>
@@ -41,8 +43,20 @@ std::string version_text() {
   return text;
 }
 
+/// Whether the words ask for events. They are read before the command line is, so that its errors
+/// are events too.
+bool events_wanted(const std::vector<std::string>& words) {
+  if (words.empty() || words.front() != "render")
+    return false;
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (words[i] == "--progress=json" || (words[i - 1] == "--progress" && words[i] == "json"))
+      return true;
+  return false;
+}
+
 int fail(const std::string& line, ExitCode code) {
   cli::log_error(line);
+  cli::send_error(line, static_cast<int>(code));
   return static_cast<int>(code);
 }
 
@@ -87,10 +101,15 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   cli::guard_standard_streams();
+  if (events_wanted({argv + std::min(argc, 1), argv + argc}))
+    cli::enable_events();
+  int code = 0;
   try {
-    return run(argc, argv);
+    code = run(argc, argv);
   } catch (const std::exception& error) {
     const cli::Failure failure = cli::describe(error);
-    return fail(failure.line, failure.code);
+    code = fail(failure.line, failure.code);
   }
+  cli::send_end(code);
+  return code;
 }

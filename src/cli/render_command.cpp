@@ -9,6 +9,7 @@
 #include "cli/scene_options.h"
 #include "cli/usage_error.h"
 #include "cli/view_option.h"
+#include "console/display.h"
 #include "console/signals.h"
 #include "console/streams.h"
 #include "farm/farm_job.h"
@@ -39,7 +40,7 @@ const char* const examples = R"(Examples:
 struct RenderOptions {
   SceneOptions scene;
   BatchOptions batch;
-  std::string frames, pass_range, region, checkpoint;
+  std::string frames, pass_range, region, checkpoint, snapshot, display;
   bool no_resume = false, overwrite = false;
 };
 
@@ -159,6 +160,8 @@ std::vector<int> check_command(RenderOptions& options, const SceneDocument& docu
     frame.region = parse_region(options.region);
   if (!options.checkpoint.empty())
     frame.checkpoint = parse_checkpoint(options.checkpoint);
+  if (!options.snapshot.empty())
+    frame.snapshot = parse_snapshot(options.snapshot);
   frame.checkpoint.resume = !options.no_resume;
   frame.early_preview = frames.size() == 1; // of a shot nobody watches every frame
   if (options.overwrite)
@@ -179,6 +182,8 @@ int run_render(RenderOptions& options) {
   if (frame.exposure != 0 && files.preview.empty() &&
       output_format(files.output).extension == ".exr" && !frame.quiet)
     log("note: --exposure affects only a --preview or a .png; there is none");
+  if (!options.display.empty())
+    options.batch.frame.display = std::make_shared<Display>(options.display);
   handle_signals();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }
@@ -208,6 +213,13 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
   app.add_option("--checkpoint", options.checkpoint,
                  "Save a checkpoint at this interval: 300s, 5m, or a number of passes")
       ->option_text("T|N");
+  app.add_option("--snapshot", options.snapshot,
+                 "Write the image so far to NAME.snapshot.exr and --preview at this interval: 2s, "
+                 "or a number of passes")
+      ->option_text("T|N");
+  app.add_option("--display", options.display,
+                 "Show the image in the viewer tev while it is rendered, e.g. localhost:14158")
+      ->option_text("HOST:PORT");
   app.add_flag("--no-resume", options.no_resume, "Do not resume from a checkpoint");
   app.add_flag("--skip-existing", batch.skip_existing,
                "Skip frames whose finished image of this scene exists");
@@ -234,8 +246,12 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
       ->option_text("FILE.json");
   add_choice<FarmFormat>(
       app, "--progress", batch.farm,
-      {{"plain", FarmFormat::plain}, {"openjd", FarmFormat::openjd}, {"alf", FarmFormat::alf}},
-      "Format of progress lines on stdout, for farm engines; default: plain (none)");
+      {{"plain", FarmFormat::plain},
+       {"openjd", FarmFormat::openjd},
+       {"alf", FarmFormat::alf},
+       {"json", FarmFormat::json}},
+      "Format of progress lines on stdout, for farm engines (alf, openjd) and other programs "
+      "(json); default: plain (none)");
 }
 
 void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
@@ -263,8 +279,8 @@ void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Print errors only");
   add_batch_options(app, *options);
   group_options(app, "Output",
-                {"-o", "--preview", "--exposure", "--region", "--reference", "--second-reference",
-                 "--report"});
+                {"-o", "--preview", "--snapshot", "--display", "--exposure", "--region",
+                 "--reference", "--second-reference", "--report"});
   group_options(app, "Sequences and farms",
                 {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
                  "--no-resume", "--pass-range", "--summary", "--progress"});

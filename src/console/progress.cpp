@@ -23,7 +23,7 @@ void FarmProgress::frame_at(std::size_t index, double done) {
   const double percent = 100 * (static_cast<double>(index) + std::clamp(done, 0.0, 1.0)) /
                          static_cast<double>(frames_);
   constexpr double step = 0.1; // finer than anybody reads
-  if (format_ == FarmFormat::plain || percent < last_ + step)
+  if (format_ == FarmFormat::plain || format_ == FarmFormat::json || percent < last_ + step)
     return;
   last_ = percent;
   if (format_ == FarmFormat::openjd)

@@ -9,12 +9,12 @@
 
 namespace vdbeam::cli {
 
-/// Progress lines on stdout for farm engines.
-enum class FarmFormat { plain, openjd, alf };
+/// Progress lines on stdout for farm engines, or events for other programs (console/events).
+enum class FarmFormat { plain, openjd, alf, json };
 
 /// Prints how far a whole batch is, in one engine's words, each line flushed:
 /// `openjd_progress: 42.5` (Open Job Description 2023-09) or `ALF_PROGRESS 42%` (Tractor,
-/// Deadline); nothing for plain.
+/// Deadline); nothing for plain and json.
 class FarmProgress {
 public:
   FarmProgress(FarmFormat format, std::size_t frames) : format_(format), frames_(frames) {}

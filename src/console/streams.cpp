@@ -73,6 +73,8 @@ private:
         cut_ = false;
       }
     }
+    if (cut_ && !reports_loss_ && ready() && write_piece("\n") == 1)
+      cut_ = false; // the rest of the line that was cut is lost, the next one begins a line
     while (!text.empty()) {
       const std::size_t written =
           ready() ? write_piece(text.substr(0, static_cast<std::size_t>(PIPE_BUF))) : 0;
@@ -84,8 +86,10 @@ private:
       text.remove_prefix(written);
       cut_ = !text.empty();
     }
-    if (!reports_loss_)
+    if (!reports_loss_) {
       lost_ = 0;
+      cut_ = false;
+    }
   }
 
   static std::string lines_text(std::size_t lines) {

@@ -42,6 +42,20 @@ void SurfaceFit::set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr) 
     groups_[g][pixel] = seen.smooth.parts()[g];
 }
 
+void SurfaceFit::add(std::size_t index, const SeenSurface& seen, const Rgb& tr, int rays) {
+  Pixel& pixel = pixels_[index];
+  if (seen.surface != pixel.surface) {
+    pixel.surface = -1;
+    return;
+  }
+  const float share = 1 / static_cast<float>(rays + 1);
+  const auto join = [share](Rgb& mean, const Rgb& value) { mean += (value - mean) * share; };
+  join(pixel.light, seen.smooth.sum());
+  join(pixel.factor, seen.albedo * tr);
+  for (std::size_t g = 0; g < seen.smooth.parts().size(); ++g)
+    join(groups_[g][index], seen.smooth.parts()[g]);
+}
+
 /// How far a neighbour may lie off the plane of the surface at a pixel, for a fit of this radius.
 float SurfaceFit::farthest_off(int x, int y, float radius) const {
   const Pixel& pixel = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +

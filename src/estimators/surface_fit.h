@@ -30,8 +30,9 @@ public:
   /// The pixel shows a surface through the transmittance `tr`. Any thread may call it, one per
   /// pixel.
   void set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr);
-  /// The pixel shows several.
-  void clear(std::size_t pixel) { pixels_[pixel].surface = -1; }
+  /// One more ray of a pixel that `rays` have shown so far: the pixel has their mean, and is not
+  /// fitted where they show several surfaces.
+  void add(std::size_t pixel, const SeenSurface& seen, const Rgb& tr, int rays);
 
   /// After all pixels: replaces their light by what is fitted, in the window. `blur`, unless it is
   /// null, takes how much that blurs.

@@ -85,10 +85,13 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
   return radiance;
 }
 
-/// Opacity and depth of a tile's medium, whatever surfaces stand in it.
-class TileMedium {
+/// Opacity and depth of a tile's medium, whatever surfaces stand in it, and the light behind it.
+class TileEdges {
 public:
-  TileMedium(const EstimatorInput& input, const World& world, const TileRays& rays)
+  TileEdges(const EstimatorInput& input, const World& world, const TileScratch& scratch)
+      : TileEdges(input, world, scratch.rays, scratch.ends) {}
+  TileEdges(const EstimatorInput& input, const World& world, const TileRays& rays,
+            const std::array<float, TileRays::count>& ends)
       : x0_(rays.x0()), y0_(rays.y0()), width_(std::min(tile_width, input.camera.width() - x0_)),
         height_(std::min(tile_width, input.camera.height() - y0_)) {
     const auto width = static_cast<std::size_t>(input.camera.width());
@@ -98,50 +101,60 @@ public:
         continue;
       const auto x = static_cast<int>(ray.pixel % width), y = static_cast<int>(ray.pixel / width);
       const OpacityAndDepth seen = medium_seen(input, world, ray);
-      opacity_[seen_by().index(x, y)] = seen.opacity;
-      depth_[seen_by().index(x, y)] = seen.depth;
+      const std::size_t index = seen_by().index(x, y);
+      opacity_[index] = seen.opacity;
+      depth_[index] = seen.depth;
+      light_[index] = ends[static_cast<std::size_t>(i)];
     }
   }
 
   SeenMedium seen_by() const { return {x0_, y0_, width_, height_, opacity_.data(), depth_.data()}; }
+  const float* light() const { return light_.data(); }
 
 private:
   int x0_, y0_, width_, height_;
-  std::array<float, TileRays::count> opacity_{}, depth_{};
+  std::array<float, TileRays::count> opacity_{}, depth_{}, light_{};
 };
+
+/// Which pixels of the tile lie on edges.
+std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, const World& world,
+                                                const TileScratch& scratch, bool refine_medium,
+                                                const PassImage& image) {
+  const auto width = static_cast<std::size_t>(image.width);
+  std::optional<TileEdges> edges;
+  if (world.surfaces)
+    edges.emplace(input, world, scratch);
+  const SeenMedium seen =
+      edges ? edges->seen_by()
+            : SeenMedium{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
+  std::array<bool, TileRays::count> uneven{};
+  for (int i = 0; i < TileRays::count; ++i) {
+    const TileRays::PixelRay& ray = scratch.rays[i];
+    const auto x = static_cast<int>(ray.pixel % width), y = static_cast<int>(ray.pixel / width);
+    uneven[static_cast<std::size_t>(i)] =
+        ray.inside && ((refine_medium && is_uneven(seen, input.camera, world.space.scale, x, y)) ||
+                       (edges && is_unevenly_lit(seen, edges->light(), x, y)));
+  }
+  return uneven;
+}
 
 /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
 void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
                   const SurfaceShading* surfaces, SurfaceFit* fit, const RngKey& key,
                   TileScratch& scratch, PassImage& image) {
   const World& world = photons.world();
-  const auto width = static_cast<std::size_t>(image.width);
-  std::optional<TileMedium> medium;
-  if (surfaces)
-    medium.emplace(input, world, scratch.rays);
-  const SeenMedium seen =
-      medium
-          ? medium->seen_by()
-          : SeenMedium{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
-  std::array<bool, TileRays::count> uneven;
-  for (int i = 0; i < TileRays::count; ++i) {
-    const TileRays::PixelRay& ray = scratch.rays[i];
-    uneven[static_cast<std::size_t>(i)] =
-        ray.inside &&
-        is_uneven(seen, input.camera, world.space.scale, static_cast<int>(ray.pixel % width),
-                  static_cast<int>(ray.pixel / width));
-  }
   for (int i = 0; i < TileRays::count && !input.stopped(); ++i) {
-    if (!uneven[static_cast<std::size_t>(i)])
+    if (!scratch.uneven[static_cast<std::size_t>(i)])
       continue;
     const std::size_t pixel = scratch.rays[i].pixel;
-    if (fit)
-      fit->clear(pixel);
+    int rays = 1;
     scratch.rays.refine(input.in(world), key, i);
     for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
       const SeenSurface surface =
           surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
                    : SeenSurface();
+      if (fit)
+        fit->add(pixel, surface, transmittance(world.medium, ray.profile), rays++);
       shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
                 TileRays::rays_if_refined);
     }
@@ -178,7 +191,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   const int of_pixel =
       plan.direct_samples_of(ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
-  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
+  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays), 1,
                                &photons.shadows(), input.stop};
   image.add(&PassImage::direct, target.pixel,
             light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
@@ -215,15 +228,22 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
         SeenSurface surface;
+        Rgb smooth;
         if (surfaces) {
+          const Rgb tr = transmittance(world.medium, ray.profile);
           surface = surfaces->seen(ray.camera, key, ray.stream, scratch.statistics);
-          fit->set(ray.pixel, surface, transmittance(world.medium, ray.profile));
+          fit->set(ray.pixel, surface, tr);
+          smooth = surface.smooth.sum() * surface.albedo * tr;
         }
         shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
+        scratch.ends[static_cast<std::size_t>(i)] =
+            mean_component(image.background[ray.pixel] - smooth);
       }
-    if (tiles.refine)
+    if (tiles.refine_medium || surfaces) {
+      scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, image);
       refine_edges(input, photons, surfaces ? &*surfaces : nullptr, fit ? &*fit : nullptr, key,
                    scratch, image);
+    }
     scratch.statistics.direct += watch.restart();
     if (photons.map().size() > 0 && !input.stopped())
       tiles.gather(scratch, key);

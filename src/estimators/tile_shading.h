@@ -13,6 +13,10 @@ struct TileScratch {
   TileRays rays;
   BeamTile tile;
   RenderStatistics statistics;
+  /// Light that each ray meets at its end, but for what the surface there reflects of other
+  /// surfaces and the medium; mean over channels, through the medium.
+  std::array<float, TileRays::count> ends{};
+  std::array<bool, TileRays::count> uneven{}; ///< pixels that several rays see
 };
 
 /// The pixel to which a ray adds its light, and the counters of its work.
@@ -36,7 +40,8 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
 
 /// Work of an estimator on the rays of a tile.
 struct TileGather {
-  bool refine; ///< edges are seen by several rays (is_uneven)
+  /// Edges of the medium are seen by several rays (is_uneven), as those of the light behind it are.
+  bool refine_medium;
   /// Adds what the photon map gives to image.indirect, and its counts to scratch.statistics.
   std::function<void(TileScratch& scratch, const RngKey& key)> gather;
   GatherAlong gather_along;  ///< the same for a ray that goes on behind a mirror or glass

@@ -35,8 +35,10 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
       radius_settings(input_.in(world), spec.neighbours, spec.kernel_scale);
   if (!input_.plan.needs(Stage::photons) && !input_.plan.needs(Stage::surface_photons)) {
     maps_.medium = PhotonMap::build({}, 1, radii, input_.settings.kernel_shape);
+    input_.begin_step(RenderStep::pass);
     return;
   }
+  input_.begin_step(RenderStep::photons);
   // Only the boundary's correction depends on the camera.
   make_maps(spec, radii, statistics);
   const Stopwatch watch;
@@ -57,6 +59,7 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
   statistics.directions += maps_.medium.has_directions() ? maps_.medium.size() : 0;
   if (maps_.medium.size() > 0)
     statistics.bytes_per_photon = maps_.medium.bytes() / maps_.medium.size();
+  input_.begin_step(RenderStep::pass);
 }
 
 /// The maps of a pass: an earlier frame's, or new ones.

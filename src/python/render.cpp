@@ -47,7 +47,7 @@ public:
     if (!callbacks_.on_image.is_none()) {
       snapshot_ = true;
       hooks_.snapshot = &snapshot_;
-      hooks_.on_snapshot = [this](RenderResult& result) {
+      hooks_.on_snapshot = [this](RenderResult& result, bool) {
         snapshot_ = true; // after the next pass as well
         call([&] { return callbacks_.on_image(std::make_shared<Image>(result.image)); });
       };

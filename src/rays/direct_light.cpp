@@ -96,7 +96,7 @@ public:
               const RaySink& sink)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
         rng_(rng), shadow_rays_(shadow_rays), sink_(sink),
-        share_(1 / static_cast<float>(sampling.samples)) {
+        share_(sampling.weight / static_cast<float>(sampling.samples)) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampling.sampled[l])
         continue;
@@ -270,7 +270,7 @@ private:
   Rng& rng_;
   std::uint64_t& shadow_rays_;
   const RaySink& sink_;
-  float share_; ///< of one sample
+  float share_; ///< what one sample counts
   std::vector<SampledLight> lights_;
 };
 
@@ -295,7 +295,7 @@ GroupedLight direct_light(const World& world, const Ray& ray, const DepthProfile
       sum += lighting.by_shadow((static_cast<float>(i) + rng.uniform()) * share);
     sum += lighting.by_nearness((static_cast<float>(i) + rng.uniform()) * share);
   }
-  return sum * share;
+  return sum * (share * sampling.weight);
 }
 
 ShadowLattices make_shadow_lattices(const World& world, const std::vector<bool>& sampled,

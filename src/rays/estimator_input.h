@@ -32,6 +32,13 @@ struct EstimatorTask {
   const SceneChoices* of_scene = nullptr;
   /// Light paths reach the limit of bounces often enough to be seen, where there is one.
   bool reaches_bounce_limit = true;
+  /// Hears before each step of a pass; null: nobody does.
+  const std::function<void(RenderStep)>* on_step = nullptr;
+
+  void begin_step(RenderStep step) const {
+    if (on_step)
+      (*on_step)(step);
+  }
 };
 
 /// Input of every estimator; the references must outlive it.

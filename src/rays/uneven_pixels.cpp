@@ -1,16 +1,21 @@
 #include "rays/uneven_pixels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vdbeam {
 
 namespace {
 
-/// Differences among the pixels around: of opacity, and of the depth of those that are at least so
+/// Differences among the pixels around: of opacity; of the depth of those that are at least so
 /// opaque, in widths of a pixel there.
 constexpr float uneven_opacity = 0.3f;
 constexpr float uneven_widths = 8;
+/// An edge of light: its step, in parts of the brightest pixel, and what differs from a plane, in
+/// parts of the step. Shadows and outlines are noticed, the noise of area lamps is not
+/// (research-log/decisions.md).
+constexpr float least_step = 0.4f, most_noise = 0.3f;
 
 struct Range {
   float least = std::numeric_limits<float>::max(), most = std::numeric_limits<float>::lowest();
@@ -22,24 +27,29 @@ struct Range {
   float width() const { return std::max(0.0f, most - least); }
 };
 
-} // namespace
-
-bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y) {
+/// Calls visit(index, dx, dy) for the pixels of the tile that surround pixel (x, y).
+template <class Visit>
+void for_each_around(const SeenMedium& seen, int x, int y, const Visit& visit) {
   constexpr int tile = PassImage::tile_width;
   const int x0 = x / tile * tile, y0 = y / tile * tile;
   const int right = std::min(x0 + tile, seen.x0 + seen.width) - 1;
   const int bottom = std::min(y0 + tile, seen.y0 + seen.height) - 1;
-  Range opacities, depths;
   for (int py = std::max(y0, y - 1); py <= std::min(bottom, y + 1); ++py)
-    for (int px = std::max(x0, x - 1); px <= std::min(right, x + 1); ++px) {
-      if (px == x && py == y)
-        continue;
-      const std::size_t pixel = seen.index(px, py);
-      const float opacity = seen.opacity[pixel];
-      opacities.add(opacity);
-      if (opacity > uneven_opacity)
-        depths.add(seen.depth[pixel] / opacity);
-    }
+    for (int px = std::max(x0, x - 1); px <= std::min(right, x + 1); ++px)
+      if (px != x || py != y)
+        visit(seen.index(px, py), px - x, py - y);
+}
+
+} // namespace
+
+bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y) {
+  Range opacities, depths;
+  for_each_around(seen, x, y, [&](std::size_t pixel, int, int) {
+    const float opacity = seen.opacity[pixel];
+    opacities.add(opacity);
+    if (opacity > uneven_opacity)
+      depths.add(seen.depth[pixel] / opacity);
+  });
   if (opacities.width() > uneven_opacity)
     return true;
   if (!(depths.width() > 0))
@@ -48,6 +58,34 @@ bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale,
       camera.pixel_width(x + 0.5, y + 0.5, static_cast<double>(depths.least) * world_scale) /
       world_scale;
   return depths.width() > uneven_widths * static_cast<float>(pixel);
+}
+
+bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
+  // A plane through the values around: an edge is much of a slope and little besides, noise is not.
+  float count = 0, sum = 0, across = 0, down = 0, squares_across = 0, squares_down = 0, most = 0;
+  for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
+    const float value = light[pixel];
+    ++count;
+    sum += value;
+    across += value * static_cast<float>(dx);
+    down += value * static_cast<float>(dy);
+    squares_across += static_cast<float>(dx * dx);
+    squares_down += static_cast<float>(dy * dy);
+    most = std::max(most, value);
+  });
+  if (!(squares_across > 0 && squares_down > 0))
+    return false;
+  const float mean = sum / count, slope_x = across / squares_across, slope_y = down / squares_down;
+  const float step = 2 * std::hypot(slope_x, slope_y);
+  if (!(step > least_step * most))
+    return false;
+  float residual = 0;
+  for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
+    const float rest =
+        light[pixel] - mean - slope_x * static_cast<float>(dx) - slope_y * static_cast<float>(dy);
+    residual += rest * rest / count;
+  });
+  return std::sqrt(residual) < most_noise * step;
 }
 
 } // namespace vdbeam

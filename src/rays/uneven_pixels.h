@@ -24,4 +24,8 @@ struct SeenMedium {
 /// pixels.
 bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y);
 
+/// The same for an edge of the light that comes from the ends of rays, such as a surface's outline
+/// or the edge of a shadow; `light`: that of the tile's pixels.
+bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y);
+
 } // namespace vdbeam

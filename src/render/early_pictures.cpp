@@ -1,3 +1,4 @@
+#include "film/layers.h"
 #include "render/develop_bands.h"
 #include "render/pass_loop.h"
 #include "render/pass_window.h"
@@ -8,9 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
-// Pictures that there are before the first pass: quick looks and drafts.
+// Images before the last pass: quick looks and drafts before the first one, snapshots after it.
 
 namespace vdbeam {
 
@@ -156,6 +158,29 @@ void PassLoop::take_draft(const EstimatorInput& full) {
                    "resolution, enlarged; allow more time or render fewer pixels",
                    count_text(static_cast<std::uint64_t>(draft_->passes()), "pass"),
                    draft_->reduction()));
+}
+
+bool PassLoop::snapshot_is_due() const {
+  const SnapshotInterval& interval = hooks_.snapshot_interval;
+  if (!interval.wanted() ||
+      film_.passes() >= scene_.render.passes.value_or(std::numeric_limits<int>::max()))
+    return false;
+  const bool by_time = interval.seconds > 0 && (last_snapshot_passes_ == 0 ||
+                                                since_snapshot_.seconds() >= interval.seconds);
+  return by_time ||
+         (interval.passes > 0 && film_.passes() - last_snapshot_passes_ >= interval.passes);
+}
+
+/// Shows the caller the image so far where it was asked for or is due.
+void PassLoop::take_snapshot() {
+  const bool asked = hooks_.snapshot && hooks_.snapshot->exchange(false);
+  if (!hooks_.on_snapshot || (!asked && !snapshot_is_due()))
+    return;
+  result_.image = develop_layers(film_, scene_.layers); // deep images are no part of snapshots
+  finish_image();
+  attempt([&] { hooks_.on_snapshot(result_, asked); });
+  since_snapshot_.restart();
+  last_snapshot_passes_ = film_.passes();
 }
 
 } // namespace vdbeam

@@ -31,6 +31,8 @@
 namespace vdbeam {
 namespace {
 
+constexpr int no_limit = std::numeric_limits<int>::max(); // of passes
+
 std::uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -122,10 +124,17 @@ void PassLoop::note(const std::string& line) {
     hooks_.on_note(line);
 }
 
+void PassLoop::begin_step(RenderStep step) const {
+  const bool of_pass = step == RenderStep::photons || step == RenderStep::pass;
+  if (hooks_.on_step)
+    hooks_.on_step(step, of_pass ? next_pass() + 1 : 0);
+}
+
 void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
   since_attempt_.restart();
   while (!finished())
     render_pass(shutter);
+  begin_step(RenderStep::develop);
   if (result_.stopped_by == "stop")
     write_checkpoint();
   else if (!frame_.partial.empty())
@@ -234,7 +243,6 @@ bool PassLoop::stop(const char* reason) {
 }
 
 PassRange PassLoop::passes_asked_for() const {
-  constexpr int no_limit = std::numeric_limits<int>::max();
   return frame_.pass_range.value_or(PassRange{0, scene_.render.passes.value_or(no_limit) - 1});
 }
 
@@ -307,10 +315,7 @@ void PassLoop::compare(PassRecord& record) {
 }
 
 void PassLoop::serve_requests() {
-  if (hooks_.snapshot && hooks_.snapshot->exchange(false) && hooks_.on_snapshot) {
-    develop();
-    attempt([&] { hooks_.on_snapshot(result_); });
-  }
+  take_snapshot();
   const CheckpointSettings& settings = frame_.checkpoint;
   if ((settings.seconds > 0 && since_attempt_.seconds() >= settings.seconds) ||
       (settings.passes > 0 && film_.passes() - last_attempt_passes_ >= settings.passes)) {

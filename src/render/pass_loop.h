@@ -34,6 +34,8 @@ public:
   const std::vector<std::size_t>& probe_pixels() const { return film_.probe_pixels(); }
   /// The number of the next pass, from 0.
   int next_pass() const { return first_pass_ + film_.passes(); }
+  /// Reports a step of the next pass to the caller, or one outside of passes.
+  void begin_step(RenderStep step) const;
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -47,6 +49,8 @@ private:
   void compare(PassRecord& record);
   void clamp(PassImage& pass);
   void serve_requests();
+  bool snapshot_is_due() const;
+  void take_snapshot();
   void attempt(const std::function<void()>& write);
   void write_checkpoint();
   Film make_film() const;
@@ -95,7 +99,8 @@ private:
   std::unique_ptr<Draft> draft_; ///< with a pass at least; null: there is none
   std::uint64_t photons_before_ = 0;
   Stopwatch since_attempt_; ///< to write a checkpoint
-  int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0;
+  Stopwatch since_snapshot_;
+  int last_attempt_passes_ = 0, last_checkpoint_passes_ = 0, last_snapshot_passes_ = 0;
   /// Hashes of the scene as given, before an estimator was chosen; empty if no film is written to
   /// disk.
   std::string pass_hash_, scene_hash_;

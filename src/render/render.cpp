@@ -163,11 +163,15 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   for (const std::string& line : prepared->facts.notes)
     note(line);
   add_work(result.statistics, *prepared);
+  if (hooks.on_step)
+    hooks.on_step(RenderStep::prepare, 0);
   FrameSetup setup(scene, prepared, window);
   result.plan = setup.plan;
   check_memory(scene, setup.plan, granted_memory());
   PassLoop loop(scene, frame, hooks, window, result);
   setup.input.stop = &loop.stop_token();
+  const std::function<void(RenderStep)> on_step = [&](RenderStep step) { loop.begin_step(step); };
+  setup.input.on_step = &on_step;
   setup.probe_blur(loop.probe_pixels());
   DeepLayout deep;
   cut_deep_rays(scene, setup, loop, deep);
@@ -175,6 +179,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   if (loop.draft(prepared, setup.input))
     return result;
   loop.show_quick_look(path_input);
+  loop.begin_step(RenderStep::pilot);
   EstimatorChoice choice = choose_for_frame(scene, setup, result.plan, result.statistics);
   const bool path = choice.type == EstimatorType::path;
   if (path && !choice.reason.empty())

@@ -69,6 +69,52 @@ TEST(UnevenPixels, AreJudgedByTheOthersOfTheirTile) {
   EXPECT_TRUE(picture.uneven(17, 8));
 }
 
+/// Light of a tile's pixels, as a function of x and y.
+struct Lit {
+  std::vector<float> light, nothing;
+
+  template <class Value>
+  explicit Lit(const Value& value) : light(256), nothing(256) {
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x)
+        light[static_cast<std::size_t>(y * 16 + x)] = static_cast<float>(value(x, y));
+  }
+  bool uneven(int x, int y) const {
+    return is_unevenly_lit({0, 0, 16, 16, nothing.data(), nothing.data()}, light.data(), x, y);
+  }
+};
+
+TEST(UnevenPixels, LieBesideEdgesOfLight) {
+  const Lit shadow([](int x, int) { return x < 8 ? 1 : 0.1; });
+  const Lit slanted([](int x, int y) { return x + y / 2 < 10 ? 1 : 0.1; });
+  const Lit faint([](int x, int) { return x < 8 ? 1 : 0.8; });
+  const Lit gradient([](int x, int) { return 1 + 0.05 * x; });
+  EXPECT_TRUE(shadow.uneven(7, 5));
+  EXPECT_TRUE(shadow.uneven(8, 5));
+  EXPECT_TRUE(slanted.uneven(9, 0)); // at the border of the tile
+  EXPECT_FALSE(shadow.uneven(5, 5));
+  EXPECT_TRUE(slanted.uneven(7, 5));
+  EXPECT_FALSE(faint.uneven(8, 5));
+  EXPECT_FALSE(gradient.uneven(8, 5));
+  EXPECT_FALSE(Lit([](int, int) { return 0; }).uneven(8, 5));
+  Lit own = faint;
+  own.light[5 * 16 + 8] = 100;
+  EXPECT_FALSE(own.uneven(8, 5));
+}
+
+/// As that of an area lamp by one shadow ray for each pixel: more rays everywhere would not pay.
+TEST(UnevenPixels, AreNotMadeByNoise) {
+  Rng rng({}, RngStage::test, 1);
+  int uneven = 0, pixels = 0;
+  for (int tile = 0; tile < 100; ++tile) {
+    const Lit half_lit([&](int, int) { return rng.uniform() < 0.5f ? 1 : 0.2; });
+    for (int y = 1; y < 15; ++y)
+      for (int x = 1; x < 15; ++x, ++pixels)
+        uneven += half_lit.uneven(x, y);
+  }
+  EXPECT_LT(uneven, 0.1 * pixels);
+}
+
 /// A dense ball with a sharp rim before a bright sky.
 MemoryScene dense_ball() {
   MemoryScene scene;

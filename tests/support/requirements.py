@@ -8,8 +8,8 @@ SKIPPED = 77  # what CTest shows as skipped
 
 
 def skip(part, reason):
-    """Ends a test that cannot run for want of `part` ("slurm", "browser", "disk", "numpy" or
-    "binutils"): as skipped, or as failed where VDBEAM_REQUIRE, a list of parts with commas between
+    """Ends a test that cannot run for want of `part` ("slurm", "browser", "blender", "disk", "numpy"
+    or "binutils"): as skipped, or as failed where VDBEAM_REQUIRE, a list of parts with commas between
     them, names it."""
     required = part in os.environ.get("VDBEAM_REQUIRE", "").split(",")
     print(f"{'failed, since VDBEAM_REQUIRE names ' + part if required else 'skipped'}: {reason}")

@@ -10,6 +10,7 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 # Each ends at once where no program is found.
 PARTS = {"slurm": "farm/slurm_test.py", "browser": "tools/error_page_test.py",
+         "blender": "blender/engine_test.py",
          "disk": "cli/full_disk_test.py", "binutils": "package/linked_libraries_test.py"}
 
 

@@ -11,7 +11,7 @@ FILES = {"SCENE|VDB": ("scene", "volume"), "VDB": ("volume",), "FILE...": ("volu
          "IMAGE": ("film", "picture"), "REFERENCE": ("film", "picture"), "PARTIAL...": ("film",), "PARTIAL": ("film",),
          "FILE.exr": ("film", "picture"), "FILE": ("film",), "FILE.png": (), "FILE.json": (), "FILE.toml": (), "FOLDER": ()}
 VALUES = {"N", "T", "E", "L", "NAME", "WxH", "KEY=VALUE", "RANGE", "STOPS", "A-B", "X0,Y0,X1,Y1", "T|N", "MIB", "OPTION",
-          "PATH"}
+          "PATH", "HOST:PORT"}
 
 
 def printed(*words):

@@ -49,9 +49,10 @@ def with_image(keys, width):
 class Suite:
     """Renders scenes at one size; references are kept in a folder, by the scenes' hashes."""
 
-    def __init__(self, vdbeam, width, reference_passes, folder=None):
+    def __init__(self, vdbeam, width, reference_passes, folder=None, images=None):
         self._vdbeam, self._width, self._passes = vdbeam, width, reference_passes
         self._folder = pathlib.Path(folder) if folder else None
+        self._images = pathlib.Path(images) if images else None
 
     def _render(self, keys, settings, references=()):
         vdbeam = self._vdbeam
@@ -77,6 +78,10 @@ class Suite:
         frame = self._render(keys, {"render.passes": passes, "render.seed": seed}, references)
         path = self._render(keys, {"render.passes": path_passes, "render.estimator": "path", "render.seed": seed},
                             references)
+        if self._images:
+            self._images.mkdir(parents=True, exist_ok=True)
+            frame.save_preview(self._images / f"{name}.png")
+            path.save_preview(self._images / f"{name}.path.png")
         errors = self._vdbeam.compare(frame, *references)
         last = frame.passes[-1]
         return Outcome(name, frame.report["plan"]["estimator"], passes, errors["mrse"], errors["mrse_error"],

@@ -86,7 +86,7 @@ def shots(density):
     room = [{"type": "quad", "scale": 4, "translate": [0, -1.2, 0], "rotate": [-90, 0, 0]},
             {"type": "quad", "scale": 4, "translate": [0, 1.6, 0], "rotate": [90, 0, 0]},
             {"type": "quad", "scale": 4, "translate": [0, 0, -2]},
-            {"type": "quad", "scale": [4, 1.6], "translate": [-2.5, -0.6, 0], "rotate": [0, 90, 0]},
+            {"type": "quad", "scale": [4, 1.6, 1], "translate": [-2.5, -0.6, 0], "rotate": [0, 90, 0]},
             {"type": "quad", "scale": 4, "translate": [2.5, 0, 0], "rotate": [0, -90, 0]}]
     for wall in room:
         wall["material"] = {"type": "diffuse", "albedo": [0.6, 0.55, 0.5]}

@@ -72,11 +72,13 @@ void PathEstimator::scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch,
   const PartDraws draws = ray.draws_of(PathPart::scattered_once, rng.uniform());
   if (draws.count == 0)
     return;
-  GroupedLight light = direct_light(
-      world, ray.camera.ray(), ray.profile, {shadow_rays_, draws.count, nullptr, input_.stop}, rng,
-      scratch.counts.shadow_rays, RaySink(world, ray.camera, input_.layers, ray.target, image));
+  LightSampling sampling{shadow_rays_, draws.count};
+  sampling.weight = draws.weight * static_cast<float>(draws.count);
+  sampling.stop = input_.stop;
   image.add(&PassImage::direct, ray.target,
-            light *= draws.weight * static_cast<float>(draws.count));
+            direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
+                         scratch.counts.shadow_rays,
+                         RaySink(world, ray.camera, input_.layers, ray.target, image)));
 }
 
 /// All other light of the medium, by walks from points that are drawn from the depth profile; they
@@ -207,6 +209,7 @@ std::vector<Rgb> PathEstimator::radiance(int pass, const std::vector<std::size_t
 
 void PathEstimator::render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) {
   const Stopwatch watch;
+  input_.begin_step(RenderStep::pass);
   const Camera& camera = input_.camera;
   const RngKey pass_key = key(spec.pass);
   input_.resize(image);

@@ -75,12 +75,12 @@ class Scene:
 
     @property
     def width(self) -> int:
-        """Of the image [pixels]."""
+        """Width of the image [pixels]."""
         return self._core.width
 
     @property
     def height(self) -> int:
-        """Of the image [pixels]."""
+        """Height of the image [pixels]."""
         return self._core.height
 
     @property

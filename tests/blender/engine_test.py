@@ -1,0 +1,272 @@
+#!/usr/bin/env python3
+"""The render engine inside Blender: the installed zip, passes, images as they come, errors, cancelling, animations,
+render borders, farm jobs. Skipped without Blender."""
+import os
+import pathlib
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+FILE = os.path.abspath(__file__)
+sys.path.insert(0, os.path.dirname(FILE))
+
+import blender_runner  # noqa: E402
+
+if blender_runner.inside_blender():
+    import bpy
+    import numpy
+    import scenes
+    from vdbeam_blender import engine, exr
+
+DATA = pathlib.Path(FILE).resolve().parents[2] / "data"
+SMOKE = DATA / "smoke" / "smoke.0024.vdb"
+
+
+class Engine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def smoke(self, file=SMOKE):
+        """Smoke in front of a constant world."""
+        scene = scenes.empty_scene()
+        scenes.add_camera(scene, (0.5, -6, 2), (1.2, 1, 1.1), lens=85)
+        self.volume, _ = scenes.add_volume(scene, file, Density=20.0)
+        scenes.set_world(scene, (0.5, 0.5, 0.5))
+        scene.render.resolution_x, scene.render.resolution_y = 64, 36
+        return scene
+
+    def render(self, scene, name="image.exr"):
+        return scenes.render(scene, self.folder / name)
+
+    def fails(self, scene, text):
+        with self.assertRaisesRegex(RuntimeError, text):
+            self.render(scene)
+
+    def program(self, text):
+        """Replaces the program by a shell script, until the test ends."""
+        path = self.folder / "vdbeam"
+        path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+        self.on_path(f"{self.folder}{os.pathsep}{os.environ['PATH']}")
+
+    def on_path(self, path):
+        """Sets the PATH until the test ends."""
+        self.addCleanup(os.environ.__setitem__, "PATH", os.environ["PATH"])
+        os.environ["PATH"] = path
+
+    def replace(self, owner, name, value):
+        """Sets an attribute until the test ends."""
+        self.addCleanup(setattr, owner, name, getattr(owner, name))
+        setattr(owner, name, value)
+
+    def test_passes_add_up_and_repeat(self):
+        scene = self.smoke()
+        layer = bpy.context.view_layer
+        layer.use_pass_z = layer.use_pass_position = layer.use_pass_environment = True
+        layer.use_pass_cryptomatte_object = True
+        scene.vdbeam.volume_layers = True
+        first, second = self.render(scene, "a.exr"), self.render(scene, "b.exr")
+        for name, plane in first.items():
+            self.assertTrue(numpy.array_equal(plane, second[name]), name)
+        crypto = {f"CryptoObject{index:02d}" for index in range(3)}
+        self.assertEqual({name.split(".")[0] for name in first},
+                         {*crypto, "Combined", "Depth", "Position", "Env", "VolumeDir", "VolumeInd"})
+        for letter in "RGB":
+            parts = first[f"VolumeDir.{letter}"] + first[f"VolumeInd.{letter}"] + first[f"Env.{letter}"]
+            self.assertLess(numpy.abs(parts - first[f"Combined.{letter}"]).max(), 2e-3)  # halves
+        self.assertGreater(first["CryptoObject00.G"].max(), 0.5)  # the smoke's coverage
+        self.assertTrue(5 < first["Depth.Z"][18, 32] < 9)
+        self.assertEqual(first["Combined.A"][0, 0], 1)  # the world is visible
+        layer.use_pass_z = layer.use_pass_position = layer.use_pass_environment = False
+        layer.use_pass_cryptomatte_object = False
+        scene.vdbeam.volume_layers = False
+        scene.render.film_transparent = True
+        self.assertEqual(self.render(scene)["Combined.A"][0, 0], 0)
+
+    def test_light_groups_add_up(self):
+        scene = self.smoke()
+        layer = bpy.context.view_layer
+        lamp = scenes.add_lamp(scene, "SUN", 3)
+        lamp.lightgroup, scene.world.lightgroup = "key", "sky"
+        for name in ("key", "sky"):
+            layer.lightgroups.add().name = name
+        planes = self.render(scene)
+        self.assertGreater(planes["Combined_key.R"].max(), 0.01)
+        total = planes["Combined_key.R"] + planes["Combined_sky.R"]
+        self.assertLess(numpy.abs(total - planes["Combined.R"]).max(), 2e-3)
+        while layer.lightgroups:
+            layer.lightgroups.remove(layer.lightgroups[0]) if hasattr(layer.lightgroups, "remove") else \
+                bpy.ops.scene.view_layer_remove_lightgroup()
+
+    def test_images_come_during_the_render(self):
+        scene = self.smoke()
+        scene.vdbeam.passes, scene.vdbeam.update_interval = 40, 0.1
+        shown, done = [], []
+        show, follow = engine.Target.show, engine.process.progress_text
+        self.replace(engine.Target, "show", lambda target, path: (shown.append(path), show(target, path)))
+        self.replace(engine.process, "progress_text", lambda event: (done.append(event["done"]), follow(event))[1])
+        self.render(scene)
+        self.assertGreaterEqual(len(shown), 3)
+        self.assertTrue(shown[-1].endswith("image.exr"))
+        self.assertEqual(len(done), 40)
+        self.assertEqual(done, sorted(done))
+
+    def test_cancel(self):
+        scene = self.smoke()
+        scene.vdbeam.passes = 100000
+        begin = time.monotonic()
+        children = []
+        cancel = engine.process.Render.cancel
+        self.replace(engine.process.Render, "cancel", lambda own: (children.append(own.child), cancel(own)))
+        self.replace(engine.VdbeamRenderEngine, "cancelled", lambda own: time.monotonic() > begin + 3)
+        self.render(scene)  # what there is is kept, and no error is raised
+        self.assertLess(time.monotonic() - begin, 30)
+        self.assertEqual(children[0].returncode, 128 + 15)
+
+    def test_program_that_is_missing_or_fails(self):
+        scene = self.smoke()
+        self.program('echo "the disk is on fire" >&2; exit 3')
+        self.fails(scene, "vdbeam: the disk is on fire")
+        self.program("kill -SEGV $$")
+        self.fails(scene, "vdbeam was ended by signal 11")
+        self.on_path("/nowhere")
+        self.fails(scene, "vdbeam is not on the PATH; enter its path in the preferences")
+
+    def test_missing_file(self):
+        scene = self.smoke(self.folder / "none.vdb")
+        self.fails(scene, "none.vdb")
+        scene.camera = None
+        with self.assertRaisesRegex(RuntimeError, "[Cc]amera"):
+            self.render(scene)
+
+    def test_sequence_and_moving_camera(self):
+        """Frames 2 to 4 show the files 24, 25 (missing: the one before) and none, through a camera that moves."""
+        shutil.copy(SMOKE, self.folder / "smoke.0024.vdb")
+        shutil.copy(DATA / "smoke" / "smoke.0012.vdb", self.folder / "smoke.0026.vdb")
+        scene = self.smoke(self.folder / "smoke.0024.vdb")
+        data = self.volume.data
+        data.is_sequence, data.frame_start, data.frame_duration, data.frame_offset = True, 2, 2, 23
+        data.sequence_mode = "CLIP"
+        scene.frame_start, scene.frame_end = 2, 4
+        scene.render.filepath = str(self.folder / "frame.####")
+        bpy.ops.render.render(animation=True)
+        frames = [exr.read(self.folder / f"frame.{number:04d}.exr")[0] for number in (2, 3, 4)]
+        first, second, third = (scenes.combined({name.split(".", 1)[1]: plane for name, plane in planes.items()})
+                                for planes in frames)
+        self.assertLess(numpy.abs(first - second).mean(), 0.02)  # other random numbers, the same smoke
+        self.assertGreater(numpy.abs(first - 0.5).max(), 0.1)
+        self.assertLess(numpy.abs(third - 0.5).max(), 1e-3)  # the world alone
+        scene.vdbeam.missing = "error"
+        scene.frame_set(3)
+        self.addCleanup(setattr, scene.vdbeam, "missing", "hold")
+        self.fails(scene, "smoke.0025.vdb")
+
+    def test_motion_blur_of_a_camera(self):
+        scene = self.smoke()
+        camera = scene.camera
+        for frame, x in ((0, 0.2), (2, 0.8)):
+            camera.location.x = x
+            camera.keyframe_insert("location", frame=frame)
+        scene.frame_set(1)
+        scene.vdbeam.passes = 16
+        sharp = scenes.combined(self.render(scene))
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+        blurred = scenes.combined(self.render(scene))
+        self.assertEqual(scene.frame_current, 1)
+        steep = [numpy.abs(numpy.diff(image[..., 0], axis=1)).max() for image in (sharp, blurred)]
+        self.assertLess(steep[1], 0.8 * steep[0])
+
+    def test_render_border(self):
+        scene = self.smoke()
+        whole = scenes.combined(self.render(scene))
+        render = scene.render
+        render.use_border, render.use_crop_to_border = True, True
+        render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.5, 1.0
+        part = scenes.combined(self.render(scene))
+        self.assertEqual(part.shape, (18, 32, 3))
+        self.assertLess(numpy.abs(part - whole[:18, 16:48]).max(), 1e-6)
+
+    def test_holdout_and_shadow_catcher(self):
+        scene = scenes.empty_scene()
+        scenes.add_camera(scene, (0, -5, 5), (0, 0, 0), lens=28)
+        scenes.add_lamp(scene, "SUN", 3, rotation=(0.5, 0, 0))
+        ground = scenes.add_plane(scene)
+        block = scenes.add_plane(scene, 0.7, location=(0, 0, 1))
+        scene.render.film_transparent = True
+        ground.is_shadow_catcher, block.is_holdout = True, True
+        alpha = self.render(scene)["Combined.A"]
+        self.assertGreater(alpha.max(), 0.9)  # the shadow
+        self.assertLess(alpha.min(), 0.01)  # beside it, and the holdout
+        self.assertLess((alpha > 0.5).mean(), 0.2)
+
+    def test_farm_job(self):
+        """The job's scene gives the image of F12, frame by frame."""
+        scene = self.smoke()
+        scene.frame_start, scene.frame_end = 1, 3
+        for frame, x in ((1, 0.2), (3, 0.8)):
+            scene.camera.location.x = x
+            scene.camera.keyframe_insert("location", frame=frame)
+        scenes.add_plane(scene, 2, location=(1, 1, -0.2)).keyframe_insert("location", frame=1)
+        self.assertEqual(bpy.ops.vdbeam.write_farm_job(directory=str(self.folder), preview=True), {"FINISHED"})
+        self.assertIn("sbatch", (self.folder / "job.sbatch").read_text(encoding="utf-8"))
+        scene.frame_set(2)
+        expected = self.render(scene)
+        subprocess.run([os.environ["VDBEAM_BINARY"], "render", "scene.toml", "-f", "2", "-o", "f.exr", "-q"],
+                       cwd=self.folder, check=True)
+        planes, _ = exr.read(self.folder / "f.exr")
+        for letter in "RGB":
+            apart = numpy.abs(planes[letter] - expected[f"Combined.{letter}"]).max()
+            self.assertLess(apart, 2e-3, letter)
+
+    def test_blend_file_on_the_command_line(self):
+        """A saved file is rendered by a Blender that only has the add-on on its path of scripts."""
+        scene = self.smoke()
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        shot = self.folder / "shot.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+        package = DATA.parent / "tools" / "blender" / "vdbeam_blender"
+        shutil.copytree(package, self.folder / "addons" / package.name)
+        result = subprocess.run([bpy.app.binary_path, "-b", "--addons", package.name, shot, "-o", "//frame.####", "-f",
+                                 "7"], env={**os.environ, "BLENDER_USER_SCRIPTS": str(self.folder)},
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        image = exr.read(self.folder / "frame.0007.exr")[0]
+        self.assertGreater(numpy.abs(image["R"] - 0.5).max(), 0.1)
+
+    def test_zip_is_installed_and_removed(self):
+        """In a Blender of its own: the zip registers the engine, its settings and its panel, and takes them back."""
+        archive = self.folder / "vdbeam_blender.zip"
+        maker = DATA.parent / "tools" / "blender" / "make_zip.py"
+        subprocess.run([shutil.which("python3"), maker, archive], check=True)
+        script = f"""
+import bpy
+bpy.ops.preferences.addon_install(filepath={str(archive)!r})
+bpy.ops.preferences.addon_enable(module="vdbeam_blender")
+scene = bpy.context.scene
+scene.render.engine = "VDBEAM"
+own = scene.vdbeam
+assert len(own.bl_rna.properties) == 12, list(own.bl_rna.properties.keys())  # ten, its name and its type
+assert "VDBEAM" in bpy.types.WORLD_PT_context_world.COMPAT_ENGINES
+bpy.context.preferences.addons["vdbeam_blender"].preferences.program = {os.environ["VDBEAM_BINARY"]!r}
+scene.render.resolution_x, scene.render.resolution_y, own.passes = 32, 18, 1
+bpy.ops.render.render()
+bpy.ops.preferences.addon_disable(module="vdbeam_blender")
+assert not hasattr(bpy.types.Scene, "vdbeam")
+assert "VDBEAM" not in bpy.types.WORLD_PT_context_world.COMPAT_ENGINES
+print("all is well")
+"""
+        (self.folder / "script.py").write_text(script, encoding="utf-8")
+        result = subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "-P", self.folder / "script.py"],
+                                env={**os.environ, "BLENDER_USER_SCRIPTS": str(self.folder), "PATH": os.defpath},
+                                capture_output=True, text=True, check=False)
+        self.assertIn("all is well", result.stdout, result.stdout + result.stderr)
+
+
+if __name__ == "__main__":
+    blender_runner.main(FILE)

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""`--display`: a recorder of packets gets the image as tev would, after a lost connection too; a viewer that is not
+there, or does not read, costs a render nothing."""
+import os
+import pathlib
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import DATA, InTempFolder  # noqa: E402
+
+VDBEAM = os.environ["VDBEAM_BINARY"]
+FOG = str(DATA / "fog.vdb")
+WIDTH, HEIGHT = 32, 18
+SMALL = ["--threads", "1", "--set", "render.photons=2000", "-q"]
+CREATE, UPDATE = 4, 6
+PATIENCE = 120  # seconds, of a render that must not wait for its viewer
+
+
+class Fields:
+    """The fields of a packet."""
+
+    def __init__(self, data):
+        self.data, self.place = data, 0
+
+    def take(self, form):
+        found = struct.unpack_from("<" + form, self.data, self.place)
+        self.place += struct.calcsize("<" + form)
+        return found[0] if len(found) == 1 else found
+
+    def text(self):
+        end = self.data.index(b"\0", self.place)
+        found = self.data[self.place:end].decode()
+        self.place = end + 1
+        return found
+
+
+class Recorder:
+    """A server that takes the packets of one connection after the other; `most`: packets of the first one."""
+
+    def __init__(self, most=None):
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.address = f"127.0.0.1:{self.server.getsockname()[1]}"
+        self.most = most
+        self.connections = []
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def run(self):
+        while True:
+            try:
+                connection, _ = self.server.accept()
+            except OSError:
+                return
+            packets = []
+            self.connections.append(packets)
+            with connection:
+                while self.most is None or len(self.connections) > 1 or len(packets) < self.most:
+                    packet = self.packet(connection)
+                    if packet is None:
+                        break
+                    packets.append(packet)
+
+    @staticmethod
+    def exactly(connection, size):
+        data = b""
+        while len(data) < size:
+            piece = connection.recv(min(65536, size - len(data)))
+            if not piece:
+                return None
+            data += piece
+        return data
+
+    def packet(self, connection):
+        """(kind, rest) of the next packet, or None at the end."""
+        head = self.exactly(connection, 4)
+        rest = head and self.exactly(connection, struct.unpack("<I", head)[0] - 4)
+        return rest and (rest[0], rest[1:])
+
+    def close(self):
+        """Waits until what was sent has been read."""
+        time.sleep(0.3)
+        self.server.close()
+
+
+class ShownImages(InTempFolder):
+    def render(self, address, *words, size=f"{WIDTH}x{HEIGHT}"):
+        result = subprocess.run([VDBEAM, "render", FOG, "-o", "fog.exr", "--passes", "6", "--display", address,
+                                 "--resolution", size, *SMALL, *words], cwd=self.folder.name, capture_output=True, text=True, check=False, timeout=PATIENCE)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def create(self, packet):
+        """Channels of a CreateImage packet."""
+        kind, data = packet
+        self.assertEqual(kind, CREATE)
+        fields = Fields(data)
+        self.assertEqual((fields.take("B"), fields.text()), (0, "fog.exr"))
+        self.assertEqual((fields.take("i"), fields.take("i")), (WIDTH, HEIGHT))
+        channels = [fields.text() for _ in range(fields.take("i"))]
+        self.assertEqual(fields.place, len(data))
+        return channels
+
+    def update(self, packet):
+        """(channel, values) of an UpdateImage packet."""
+        kind, data = packet
+        self.assertEqual(kind, UPDATE)
+        fields = Fields(data)
+        self.assertEqual((fields.take("B"), fields.text(), fields.take("i")), (0, "fog.exr", 1))
+        channel = fields.text()
+        self.assertEqual(fields.take("4i"), (0, 0, WIDTH, HEIGHT))
+        self.assertEqual(fields.take("2q"), (0, 1))
+        values = fields.take(f"{WIDTH * HEIGHT}f")
+        self.assertEqual(fields.place, len(data))
+        return channel, values
+
+    def test_every_image_is_sent_whole(self):
+        recorder = Recorder()
+        self.render(recorder.address, "--snapshot", "1")
+        recorder.close()
+        self.assertEqual(len(recorder.connections), 1)
+        packets = recorder.connections[0]
+        latest, created, images = {}, [], 0
+        for packet in packets:
+            if packet[0] == CREATE:
+                created = self.create(packet)
+                continue
+            channel, values = self.update(packet)
+            latest[channel] = values
+            images += channel == created[-1]
+        self.assertLessEqual({"R", "G", "B", "A", "volume.R", "depth.Z"}, set(created))
+        self.assertEqual(set(created), set(latest))
+        self.assertGreaterEqual(images, 2)
+        # The last image is the finished one: its mean is that of the file.
+        compare = subprocess.run(["oiiotool", "--stats", "fog.exr"], cwd=self.folder.name, capture_output=True,
+                                 text=True, check=True).stdout
+        means = [float(word) for word in compare.split("Stats Avg:")[1].split("(float)")[0].split()]
+        for place, channel in enumerate("RGB"):
+            self.assertAlmostEqual(sum(latest[channel]) / len(latest[channel]), means[place], places=3)
+
+    def test_lost_connection_is_made_again(self):
+        recorder = Recorder(most=3)
+        child = subprocess.Popen([VDBEAM, "render", FOG, "-o", "fog.exr", "--passes", "100000", "--display",
+                                  recorder.address, "--resolution", f"{WIDTH}x{HEIGHT}", *SMALL], cwd=self.folder.name, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + 60
+        while time.monotonic() < end and (len(recorder.connections) < 2 or len(recorder.connections[1]) < 2):
+            time.sleep(0.1)
+        child.terminate()
+        self.assertEqual(child.wait(timeout=60), 143)
+        recorder.close()
+        self.assertGreaterEqual(len(recorder.connections), 2)
+        self.create(recorder.connections[1][0])  # a new viewer knows nothing of the image
+        self.update(recorder.connections[1][1])
+
+    def test_viewer_that_is_not_there_or_does_not_read(self):
+        free = socket.create_server(("127.0.0.1", 0))
+        address = f"127.0.0.1:{free.getsockname()[1]}"
+        self.render(address, size="400x300")  # connections wait, nobody reads
+        free.close()
+        self.render(address, "--no-resume", size="400x300")
+        self.assertTrue(pathlib.Path(self.file("fog.exr")).exists())
+
+    def test_image_does_not_depend_on_it(self):
+        self.render("127.0.0.1:9", "--no-resume")
+        first = pathlib.Path(self.file("fog.exr")).rename(self.file("with.exr"))
+        subprocess.run([VDBEAM, "render", FOG, "-o", "fog.exr", "--passes", "6", "--resolution",
+                        f"{WIDTH}x{HEIGHT}", *SMALL], cwd=self.folder.name,
+                       check=True)
+        compare = subprocess.run([VDBEAM, "compare", first, "fog.exr"], cwd=self.folder.name, capture_output=True,
+                                 text=True, check=True).stdout
+        self.assertRegex(compare, r"RMSE\s+0\b")
+
+    def test_bad_addresses(self):
+        for address, text in (("localhost:x", "must look like HOST:PORT"), (":14158", "must look like HOST:PORT"), ("localhost", "must look like HOST:PORT"),
+                              ("localhost:99999", "must look like HOST:PORT"),
+                              ("no.such.host.invalid:1", "the host no.such.host.invalid is unknown")):
+            result = subprocess.run([VDBEAM, "render", FOG, "--display", address, *SMALL], cwd=self.folder.name,
+                                    capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(text, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,46 @@
+"""The suite of tools/check_errors.py, small: scenes that nothing was fitted to keep their lead over path, and the
+stated interval holds the true error. Errors and counted work are the same on every machine."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import built_module
+
+built_module.require()
+TOOLS = built_module.ROOT / "tools"
+
+# Scenes with the lead over path that they must keep at this size.
+LEADS = {"cumulus": 3, "lamp_in_smoke": 1.5, "cloud_over_ground": 1.5}
+SIZE = ["--width", "64", "--passes", "6", "--path-passes", "6", "--reference-passes", "96"]
+
+
+def run(*words):
+    return subprocess.run([sys.executable, TOOLS / "check_errors.py", *words], capture_output=True, text=True,
+                          env={"PYTHONPATH": str(built_module.PACKAGE), "PATH": "/usr/bin:/bin"})
+
+
+class Suite(unittest.TestCase):
+    def test_leads_and_intervals(self):
+        with tempfile.TemporaryDirectory() as folder:
+            figures = pathlib.Path(folder) / "figures.json"
+            done = run("--scenes", ",".join(LEADS), "--json", figures, "--no-limits", *SIZE)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            outcomes = json.loads(figures.read_text())
+        self.assertEqual([outcome["scene"] for outcome in outcomes], list(LEADS))
+        for outcome in outcomes:
+            with self.subTest(outcome["scene"]):
+                self.assertTrue(outcome["holds"], outcome)
+                self.assertGreater(outcome["lead"], LEADS[outcome["scene"]], outcome)
+                self.assertLess(outcome["mrse_error"], 0.5 * outcome["path_mrse"])  # or it would prove little
+
+    def test_an_unknown_scene(self):
+        done = run("--scenes", "cirrus")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("there is no scene cirrus; there are cumulus", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

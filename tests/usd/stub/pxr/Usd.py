@@ -1,0 +1,144 @@
+"""Stages, prims and attributes."""
+from . import usda
+
+
+class Attribute:
+    """An attribute: a value, or samples that hold until the next (numbers are interpolated)."""
+
+    def __init__(self, name, value=None, samples=None):
+        self.name, self.value, self.samples = name, value, samples
+
+    def __bool__(self):
+        return self.IsValid()
+
+    def IsValid(self):
+        return self.value is not None or self.samples is not None
+
+    def GetName(self):
+        return self.name
+
+    def GetNumTimeSamples(self):
+        return len(self.samples or {})
+
+    def Get(self, time=None):
+        if not self.samples or time is None:
+            return self.value
+        times = sorted(self.samples)
+        before = max((t for t in times if t <= time), default=times[0])
+        after = min((t for t in times if t >= time), default=times[-1])
+        first, second = self.samples[before], self.samples[after]
+        if before == after or not isinstance(first, (float, tuple)):
+            return first
+        part = (time - before) / (after - before)
+        mix = lambda a, b: a + (b - a) * part
+        return mix(first, second) if isinstance(first, float) else tuple(map(mix, first, second))
+
+
+class Relationship:
+    """A relationship."""
+
+    def __init__(self, name, targets):
+        self.name, self.targets = name, targets
+
+    def GetName(self):
+        return self.name
+
+    def GetForwardedTargets(self):
+        return self.targets
+
+
+class Prim:
+    """A prim."""
+
+    def __init__(self, stage, spec, parent, path):
+        self.stage, self.spec, self.parent, self.path = stage, spec, parent, path
+        self.children = [Prim(stage, child, self, f"{path.rstrip('/')}/{child.name}") for child in spec.children]
+
+    def __bool__(self):
+        return True
+
+    def IsValid(self):
+        return True
+
+    def GetName(self):
+        return self.spec.name
+
+    def GetPath(self):
+        return self.path
+
+    def GetTypeName(self):
+        return self.spec.kind
+
+    def GetAttribute(self, name):
+        return Attribute(name, self.spec.attributes.get(name), self.spec.samples.get(name))
+
+    def GetAttributes(self):
+        return [self.GetAttribute(name) for name in {**self.spec.attributes, **self.spec.samples}]
+
+    def GetRelationships(self):
+        return [Relationship(name, targets) for name, targets in self.spec.relations.items()]
+
+
+class PrimRange:
+    """A prim and all below it, with pruning."""
+
+    def __init__(self, prim, predicate=None):
+        self.prim = prim
+
+    def __iter__(self):
+        return _Walk(self.prim)
+
+
+class _Walk:
+    def __init__(self, prim):
+        self.waiting, self.last = [prim], None
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        if self.last is not None:
+            self.waiting[:0] = self.last.children
+        if not self.waiting:
+            raise StopIteration
+        self.last = self.waiting.pop(0)
+        return self.last
+
+    def PruneChildren(self):
+        self.last = None
+
+
+def TraverseInstanceProxies():
+    return None
+
+
+class Stage:
+    """A stage of one layer."""
+
+    def __init__(self, path):
+        self.metadata, prims = usda.read(path)
+        root = usda.Spec("", "")
+        root.children = prims
+        self.root = Prim(self, root, None, "/")
+
+    @staticmethod
+    def Open(path):
+        return Stage(path)
+
+    def GetPseudoRoot(self):
+        return self.root
+
+    def GetPrimAtPath(self, path):
+        return next((prim for prim in PrimRange(self.root) if prim.path == path), None)
+
+    def HasAuthoredTimeCodeRange(self):
+        return "startTimeCode" in self.metadata
+
+    def GetStartTimeCode(self):
+        return float(self.metadata.get("startTimeCode", 0))
+
+    def GetEndTimeCode(self):
+        return float(self.metadata.get("endTimeCode", 0))
+
+    def GetFramesPerSecond(self):
+        return float(self.metadata.get("framesPerSecond", 24))

@@ -1,0 +1,69 @@
+"""Which of vdbeam's layers become which of Blender's passes."""
+import numpy
+
+
+class Pass:
+    """A pass of Blender with the channels of vdbeam that fill it."""
+
+    def __init__(self, name, letters, kind, layer, channels):
+        self.name = name
+        self.letters = letters  # Blender's channels, e.g. "RGBA"
+        self.kind = kind  # COLOR, VALUE or VECTOR
+        self.layer = layer  # name in [[layer]]; "" for none
+        self.channels = channels  # (channel of the EXR, factor) for each letter
+
+
+def plain(layer, letters):
+    """Channels of a layer, as they are."""
+    return [(f"{layer}.{letter}", 1.0) for letter in letters]
+
+
+def colour(name, layer):
+    """A pass with the colours of a layer."""
+    return Pass(name, "RGB", "COLOR", layer, plain(layer, "RGB"))
+
+
+COMBINED = Pass("Combined", "RGBA", "COLOR", "alpha", [(letter, 1.0) for letter in "RGBA"])
+# By the option that asks for it; keys are those of `wanted`.
+OPTIONAL = {
+    "depth": [Pass("Depth", "Z", "VALUE", "depth", [("depth.Z", 1.0)])],
+    "position": [Pass("Position", "XYZ", "VECTOR", "position", plain("position", "XYZ"))],
+    # Blender's vectors point back in time, from this frame and to it; both are those of a steady motion.
+    "vector": [Pass("Vector", "XYZW", "VECTOR", "motion",
+                    [("motion.X", -1.0), ("motion.Y", -1.0), ("motion.X", -1.0), ("motion.Y", -1.0)])],
+    "emit": [colour("Emit", "volume_emission")],
+    "environment": [colour("Env", "background")],
+    "volume": [colour("VolumeDir", "volume_direct"), colour("VolumeInd", "volume_indirect")],
+    "cryptomatte": [Pass(f"CryptoObject{index:02d}", "RGBA", "COLOR", "cryptomatte" if index == 0 else "",
+                         plain(f"CryptoObject{index:02d}", "RGBA")) for index in range(3)],
+}
+
+
+def passes(wanted, groups=()):
+    """The passes of a view layer: Combined, those of the options in `wanted`, one for each light group."""
+    chosen = [COMBINED]
+    for option, several in OPTIONAL.items():
+        if option in wanted:
+            chosen += several
+    return chosen + [Pass(f"Combined_{group}", "RGB", "COLOR", f"light_{group}", plain(f"light_{group}", "RGB"))
+                     for group in groups]
+
+
+def layer_tables(chosen):
+    """The [[layer]] tables of the scene file."""
+    return [{"name": one.layer} for one in chosen if one.layer]
+
+
+def planes_for_blender(planes, chosen, view_layer, opaque=False):
+    """Channels by the names under which Blender's result loads them; a layer that is empty is 0. `opaque`: the world
+    is part of the image, and alpha is 1; vdbeam's is the opacity of what is in front of it."""
+    height, width = next(iter(planes.values())).shape
+    empty = numpy.zeros((height, width), numpy.float32)
+    result = {}
+    for one in chosen:
+        for letter, (channel, factor) in zip(one.letters, one.channels):
+            plane = planes.get(channel, empty)
+            result[f"{view_layer}.{one.name}.{letter}"] = plane if factor == 1 else plane * factor
+    if opaque:
+        result[f"{view_layer}.Combined.A"] = numpy.ones((height, width), numpy.float32)
+    return result

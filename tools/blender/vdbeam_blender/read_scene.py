@@ -1,0 +1,173 @@
+"""Reads an evaluated scene into the dictionary of a scene file."""
+import os
+
+from . import camera, layers, meshes, objects, world
+
+
+class Options:
+    """What a scene is read for. `abspath` makes Blender's paths absolute, `folder` gets the files of meshes."""
+
+    def __init__(self, folder, abspath, width, height, **more):
+        self.folder = folder
+        self.abspath = abspath
+        self.width = width
+        self.height = height
+        self.blur = None  # (open, close) in frames, or None
+        self.sequence = False  # frames of a job: meshes that change become sequences
+        self.interpolation = "linear"
+        self.passes = [layers.COMBINED]
+        self.render = {}  # keys of [render]
+        for name, value in more.items():
+            if not hasattr(self, name):
+                raise AttributeError(name)
+            setattr(self, name, value)
+
+
+class SceneReader:
+    """Reads a scene at one time after the other, for animated keys."""
+
+    def __init__(self, options, notes):
+        self.options = options
+        self.notes = notes
+        self.written = {}  # files of an object's materials, from the first time on
+        self.frame = 1.0
+        self.matrices = {}  # of the camera, by time
+
+    def read(self, depsgraph, frame):
+        """The scene at a time, as {table: keys or list of keys}. Throws ValueError without a camera."""
+        scene = depsgraph.scene
+        self.frame = frame
+        if scene.camera is None:
+            raise ValueError("the scene has no camera")
+        tables = {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame), "volume": [], "mesh": [],
+                  "light": []}
+        for instance in depsgraph.object_instances:
+            if instance.show_self:
+                self.add(instance, scene, tables)
+        lights = world.world_lights(scene.world, self.notes, self.image_path)
+        group = getattr(scene.world, "lightgroup", "")
+        for light in lights:
+            if group:
+                light["group"] = group
+            if scene.render.film_transparent:
+                light["visible"] = False
+        tables["light"] += lights
+        tables["layer"] = layers.layer_tables(self.options.passes)
+        tables["render"] = dict(self.options.render)
+        return {name: table for name, table in tables.items() if table}
+
+    def image_path(self, image):
+        """The file of an image, or None."""
+        return objects.image_file(image, self.options.abspath)
+
+    def image(self, scene):
+        """Keys of [image]."""
+        render = scene.render
+        keys = {"width": self.options.width, "height": self.options.height, "fps": render.fps / render.fps_base}
+        aspect = render.pixel_aspect_x / render.pixel_aspect_y
+        if abs(aspect - 1) > 1e-6:
+            keys["pixel_aspect"] = aspect
+        if any(one.name.startswith("Crypto") for one in self.options.passes):
+            keys["cryptomatte"] = True
+        return keys
+
+    def camera(self, scene, depsgraph, frame):
+        """Keys of [camera]; its place goes to `matrices`."""
+        evaluated = scene.camera.evaluated_get(depsgraph)
+        render = scene.render
+        size = {"width": self.options.width, "height": self.options.height,
+                "pixel_aspect": render.pixel_aspect_x / render.pixel_aspect_y}
+        self.matrices[frame] = objects.rows(evaluated.matrix_world)
+        keys = camera.camera_keys(objects.camera_facts(evaluated, size, self.notes))
+        if self.options.blur:
+            keys["shutter_open"], keys["shutter_close"] = self.options.blur
+        return {"file": "camera.txt", **keys}
+
+    def add(self, instance, scene, tables):
+        """Adds the tables of an object."""
+        obj = instance.object
+        name = obj.name
+        if instance.is_instance and instance.parent is not None:
+            place = "-".join(str(number) for number in instance.persistent_id if number != 0x7fffffff)
+            name = f"{instance.parent.name}.{name}.{place}"
+        matrix = instance.matrix_world.copy()
+        if obj.type == "VOLUME":
+            self.add_volume(obj, name, matrix, scene, tables)
+        elif obj.type in objects.SURFACES:
+            self.add_mesh(obj, name, matrix, tables)
+        elif obj.type == "LIGHT":
+            table, keys = objects.lamp_table(obj, matrix, obj.data, self.notes)
+            tables[table].append(keys)
+        elif obj.type in ("POINTCLOUD", "CURVES", "GPENCIL", "GREASEPENCIL"):
+            self.notes.add(name, "objects of this kind have no counterpart and are left out")
+
+    def add_volume(self, obj, name, matrix, scene, tables):
+        """A volume object."""
+        data = obj.data
+        if not data.filepath:
+            return self.notes.add(name, "a volume without a file has no counterpart and is left out")
+        keys = objects.volume_keys(obj, data, matrix, self.notes)
+        if keys is None:
+            return None
+        motion = objects.volume_motion(data, scene.render.fps / scene.render.fps_base) if self.options.blur else {}
+        if self.options.interpolation != "linear":
+            keys["interpolation"] = self.options.interpolation
+        tables["volume"].append({"name": name, **objects.volume_file(data, self.frame, self.options.abspath), **keys,
+                                 **motion})
+        return None
+
+    def add_mesh(self, obj, name, matrix, tables):
+        """A mesh: a table for each of its materials, or a box of fog."""
+        shaders = {}
+        for index, material in enumerate(objects.materials_of(obj) or [None]):
+            keys = objects.material_keys(obj, material, self.notes, self.image_path)
+            if keys is not None:
+                shaders[index] = keys
+        medium, _ = objects.volume_shader_of(obj)
+        self.note_simulation(obj, name)
+        if not shaders and medium is None:
+            return
+        mesh = obj.to_mesh()
+        try:
+            if medium is not None and (box := objects.mesh_volume(obj, mesh, matrix, medium, self.notes)):
+                tables["volume"].append({"name": name, **box})
+            files = self.mesh_files(mesh, name, shaders)
+        finally:
+            obj.to_mesh_clear()
+        for index, file in files.items():
+            keys = {"name": name if len(files) == 1 else f"{name}.{index}", "file": file,
+                    "transform": objects.transform(matrix), "material": shaders[index]}
+            if not obj.visible_camera:
+                keys["visible"] = False
+            if shaders[index]["type"] == "emissive" and getattr(obj, "lightgroup", ""):
+                keys["group"] = obj.lightgroup
+            tables["mesh"].append(keys)
+
+    def note_simulation(self, obj, name):
+        """Domains of Mantaflow hold their smoke in a cache."""
+        for modifier in obj.modifiers:
+            if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
+                self.notes.add(name, "a simulation has no counterpart; bake it as OpenVDB and import the files of "
+                                     f"{modifier.domain_settings.cache_directory} as a volume object")
+
+    def mesh_files(self, mesh, name, shaders):
+        """Files of the triangles by the index of their material, written where needed."""
+        if not self.options.sequence and name in self.written:  # a moment of the shutter
+            return self.written[name]
+        if len(mesh.polygons) == 0:
+            return {}
+        triangles = objects.Triangles(mesh)
+        files = {}
+        for index in shaders:
+            if (triangles.materials == index).any():
+                part = mesh.name if len(shaders) == 1 else f"{mesh.name}_{index}"
+                files[index] = meshes.write(self.options.folder, part, triangles.of_material(index))
+        self.written[name] = files
+        return files
+
+
+def write_camera(folder, matrices):
+    """Writes the file of the camera's places."""
+    with open(os.path.join(folder, "camera.txt"), "w", encoding="ascii") as file:
+        file.write("# frame, then the matrix from the camera to the world, by rows\n")
+        file.write(camera.matrix_lines(matrices))

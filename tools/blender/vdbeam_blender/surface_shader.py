@@ -1,0 +1,83 @@
+"""From surface shaders to the material of a [[mesh]]."""
+from . import nodes
+
+TEXTURES = "Base Color", "Color"
+
+
+def with_texture(node, keys, notes, subject, image_path):
+    """Adds albedo or texture of a diffuse surface."""
+    behind = nodes.source(nodes.socket(node, *TEXTURES))
+    if behind is not None and behind.type == "TEX_IMAGE" and behind.image is not None:
+        path = image_path(behind.image)
+        if path is not None:
+            return {**keys, "texture": path, "albedo": [1.0] * 3}
+        notes.add(subject, "its texture has no file of the kinds .png, .exr and .hdr; its mean colour is not known, and "
+                           "0.5 is used")
+        return {**keys, "albedo": [0.5] * 3}
+    return {**keys, "albedo": clipped(nodes.constant_colour(node, notes, subject, *TEXTURES))}
+
+
+def clipped(colour):
+    """A reflectance within [0, 1]."""
+    return [max(0.0, min(1.0, value)) for value in colour]
+
+
+def emission(colour, strength):
+    """An emissive surface."""
+    return {"type": "emissive", "radiance": [max(value, 0.0) * strength for value in colour], "two_sided": True}
+
+
+def glass(node, notes, subject):
+    """A smooth or frosted dielectric."""
+    tint = nodes.constant_colour(node, notes, subject, *TEXTURES)
+    if min(tint) < 0.95:
+        notes.add(subject, "the colour of glass has no counterpart; give the mesh a volume absorption")
+    return {"type": "dielectric", "ior": nodes.constant_number(node, notes, subject, "IOR", default=1.5),
+            "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
+
+
+def metal(node, notes, subject):
+    """A conductor."""
+    return {"type": "conductor", "reflectance": clipped(nodes.constant_colour(node, notes, subject, *TEXTURES)),
+            "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
+
+
+def principled(node, notes, subject, image_path):
+    """The strongest part of a Principled BSDF: emission, glass, metal, or a matt surface."""
+    colour = nodes.constant_colour(node, notes, subject, "Emission Color", "Emission")
+    strength = nodes.constant_number(node, notes, subject, "Emission Strength", default=1.0)
+    if strength * max(colour) > 0:
+        return emission(colour, strength)
+    transmission = nodes.constant_number(node, notes, subject, "Transmission Weight", "Transmission")
+    metallic = nodes.constant_number(node, notes, subject, "Metallic")
+    for name, value in (("transmission", transmission), ("metallic", metallic)):
+        if 0.01 < value < 0.99:
+            notes.add(subject, f"a {name} of {value:.2g} has no counterpart; it is rounded to 0 or 1")
+    if metallic > 0.5:
+        return metal(node, notes, subject)
+    if transmission > 0.5:
+        return glass(node, notes, subject)
+    if nodes.number(node, "Specular IOR Level", "Specular") > 0:
+        notes.add(subject, "the gloss of a Principled BSDF that is not metal has no counterpart; the surface is matt")
+    return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
+
+
+def surface_keys(node, notes, subject, image_path):
+    """Keys of the material; None for a surface that is not there (transparent, or without a shader)."""
+    if node is None or node.type == "BSDF_TRANSPARENT":
+        return None
+    if node.type == "BSDF_PRINCIPLED":
+        return principled(node, notes, subject, image_path)
+    if node.type == "BSDF_DIFFUSE":
+        return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
+    if node.type in ("BSDF_GLOSSY", "BSDF_ANISOTROPIC"):
+        return metal(node, notes, subject)
+    if node.type == "BSDF_GLASS":
+        return glass(node, notes, subject)
+    if node.type == "EMISSION":
+        return emission(nodes.constant_colour(node, notes, subject, "Color"),
+                        nodes.constant_number(node, notes, subject, "Strength", default=1.0))
+    if node.type == "HOLDOUT":
+        return {"type": "holdout"}
+    notes.add(subject, f"the shader {node.bl_label} has no counterpart; the surface is matt grey")
+    return {"type": "diffuse", "albedo": [0.5] * 3}

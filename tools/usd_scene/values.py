@@ -1,0 +1,70 @@
+"""Attributes of prims."""
+
+
+def value(prim, name, time, default=None):
+    """An attribute's value at a time: of `inputs:NAME` or `NAME`, whichever has one (lights changed theirs)."""
+    for full in (f"inputs:{name}", name):
+        attribute = prim.GetAttribute(full)
+        if attribute and attribute.IsValid():
+            found = attribute.Get(time)
+            if found is not None:
+                return found
+    return default
+
+
+def number(prim, name, time, default):
+    """A number."""
+    return float(value(prim, name, time, default))
+
+
+def colour(prim, name, time, default=(1.0, 1.0, 1.0)):
+    """Three numbers."""
+    return [float(part) for part in value(prim, name, time, default)]
+
+
+def asset(prim, name, time):
+    """The path of an asset, resolved where it can be; empty without one."""
+    found = value(prim, name, time)
+    if found is None:
+        return ""
+    return getattr(found, "resolvedPath", "") or getattr(found, "path", "") or str(found)
+
+
+def own_keys(prim, time):
+    """Keys that the prim itself names: attributes vdbeam:KEY, and vdbeam:KEY:SUBKEY for tables such as phase."""
+    keys = {}
+    for attribute in prim.GetAttributes():
+        words = attribute.GetName().split(":")
+        if words[0] != "vdbeam" or len(words) not in (2, 3):
+            continue
+        found = plain(attribute.Get(time))
+        if found is None:
+            continue
+        table = keys if len(words) == 2 else keys.setdefault(words[1], {})
+        table[words[-1]] = found
+    return keys
+
+
+def plain(found):
+    """A value as a bool, number, text or list of numbers."""
+    if found is None or isinstance(found, (bool, int, float, str)):
+        return found
+    try:
+        return [float(part) for part in found]
+    except TypeError:
+        return str(found)
+
+
+def rows(matrix):
+    """A matrix of USD, which acts on row vectors, as lists of rows that act on columns."""
+    return [[float(matrix[column][row]) for column in range(4)] for row in range(4)]
+
+
+def product(a, b):
+    """a b, of lists of rows."""
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+
+def transform(matrix):
+    """Twelve numbers of a [[volume]] or [[mesh]]."""
+    return [entry for row in matrix[:3] for entry in row]
