@@ -191,7 +191,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   const int of_pixel =
       plan.direct_samples_of(ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
-  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays), 1,
+  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
                                &photons.shadows(), input.stop};
   image.add(&PassImage::direct, target.pixel,
             light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +

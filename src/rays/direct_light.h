@@ -18,9 +18,9 @@ using ShadowLattices = std::vector<std::unique_ptr<const ShadowLattice>>;
 struct LightSampling {
   const std::vector<bool>& sampled; ///< per light: it is looked for
   int samples = 1;
-  float weight = 1; ///< factor of all that they find
   const ShadowLattices* shadows = nullptr; ///< null: there are none
   const StopToken* stop = nullptr;         ///< asks to end meanwhile: the result is of no use then
+  float weight = 1;                        ///< factor of all that they find
 };
 
 /// Single scattering along a camera ray by shadow rays: distances are drawn from the depth profile

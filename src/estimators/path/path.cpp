@@ -72,9 +72,8 @@ void PathEstimator::scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch,
   const PartDraws draws = ray.draws_of(PathPart::scattered_once, rng.uniform());
   if (draws.count == 0)
     return;
-  LightSampling sampling{shadow_rays_, draws.count};
-  sampling.weight = draws.weight * static_cast<float>(draws.count);
-  sampling.stop = input_.stop;
+  const LightSampling sampling{shadow_rays_, draws.count, nullptr, input_.stop,
+                               draws.weight * static_cast<float>(draws.count)};
   image.add(&PassImage::direct, ray.target,
             direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
                          scratch.counts.shadow_rays,
