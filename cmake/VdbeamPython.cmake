@@ -35,13 +35,16 @@ foreach(file ${VDBEAM_PYTHON_FILES})
   endif()
 endforeach()
 
-# /usr/lib/python3/dist-packages in Debian's packages, lib/python3.N/site-packages elsewhere.
-if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
-  set(vdbeam_python_folder lib/python3/dist-packages)
-else()
-  set(vdbeam_python_folder lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
-endif()
-set(VDBEAM_PYTHON_INSTALL_DIR ${vdbeam_python_folder} CACHE PATH
-    "Folder of Python packages, relative to the prefix")
-install(TARGETS vdbeam_python LIBRARY DESTINATION ${VDBEAM_PYTHON_INSTALL_DIR}/vdbeam COMPONENT python)
-install(FILES ${VDBEAM_PYTHON_FILES} DESTINATION ${VDBEAM_PYTHON_INSTALL_DIR}/vdbeam COMPONENT python)
+# Where Python looks is only known when the prefix is: Debian's Python reads dist-packages, which have no
+# version in /usr.
+set(vdbeam_python_version ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})
+install(CODE "
+  set(folder lib/python${vdbeam_python_version}/site-packages)
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+    set(folder lib/python3/dist-packages)
+  elseif(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND EXISTS /etc/debian_version)
+    set(folder lib/python${vdbeam_python_version}/dist-packages)
+  endif()
+  file(INSTALL ${VDBEAM_PYTHON_FILES} \"$<TARGET_FILE:vdbeam_python>\"
+       DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${folder}/vdbeam\")"
+  COMPONENT python)

@@ -9,6 +9,8 @@ FramePasses::FramePasses(const EstimatorType& type, const EstimatorInput& input)
   if (estimator_kind(type).shoots_photons())
     photons_.emplace(input_, worlds_, worlds_.of(peak_order(choices_.peak, 0, false)),
                      choices_.photons);
+  // An estimator may measure when it is made, which must not depend on the pass that comes first.
+  estimator(schedule(choices_, input_.settings, 0).estimator);
 }
 
 Estimator& FramePasses::estimator(std::string_view name) {

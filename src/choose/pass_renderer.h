@@ -44,7 +44,7 @@ private:
   PassWorlds worlds_;
   Choices choices_;
   std::optional<PhotonPass> photons_;
-  std::map<std::string_view, std::unique_ptr<Estimator>> estimators_; ///< made when first needed
+  std::map<std::string_view, std::unique_ptr<Estimator>> estimators_; ///< that of pass 0 first
   bool pilot_counted_ = false;
 };
 

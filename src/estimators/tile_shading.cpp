@@ -116,6 +116,18 @@ private:
   std::array<float, TileRays::count> opacity_{}, depth_{}, light_{};
 };
 
+/// Light that a ray meets at its end, by which edges are found: without what the surface there
+/// reflects of other surfaces and the medium, which is noise, and with lights that the camera does
+/// not see, so that hiding a sky changes nothing else. A shadow catcher shows what is not in
+/// shadow.
+Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSurface& surface,
+                 const Rgb& tr) {
+  Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo;
+  if (ray.camera.hit && world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
+    light = Rgb(1 - surface.shadow);
+  return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
+}
+
 /// Which pixels of the tile lie on edges.
 std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, const World& world,
                                                 const TileScratch& scratch, bool refine_medium,
@@ -228,16 +240,14 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
         SeenSurface surface;
-        Rgb smooth;
         if (surfaces) {
           const Rgb tr = transmittance(world.medium, ray.profile);
           surface = surfaces->seen(ray.camera, key, ray.stream, scratch.statistics);
           fit->set(ray.pixel, surface, tr);
-          smooth = surface.smooth.sum() * surface.albedo * tr;
+          scratch.ends[static_cast<std::size_t>(i)] =
+              mean_component(light_of_end(world, ray, surface, tr));
         }
         shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
-        scratch.ends[static_cast<std::size_t>(i)] =
-            mean_component(image.background[ray.pixel] - smooth);
       }
     if (tiles.refine_medium || surfaces) {
       scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, image);

@@ -13,8 +13,7 @@ struct TileScratch {
   TileRays rays;
   BeamTile tile;
   RenderStatistics statistics;
-  /// Light that each ray meets at its end, but for what the surface there reflects of other
-  /// surfaces and the medium; mean over channels, through the medium.
+  /// Light that each ray meets at its end, mean over channels; 0 without surfaces.
   std::array<float, TileRays::count> ends{};
   std::array<bool, TileRays::count> uneven{}; ///< pixels that several rays see
 };

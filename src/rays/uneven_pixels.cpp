@@ -62,27 +62,34 @@ bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale,
 
 bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
   // A plane through the values around: an edge is much of a slope and little besides, noise is not.
-  float count = 0, sum = 0, across = 0, down = 0, squares_across = 0, squares_down = 0, most = 0;
+  float count = 0, value = 0, across = 0, down = 0, most = 0;
   for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
-    const float value = light[pixel];
     ++count;
-    sum += value;
-    across += value * static_cast<float>(dx);
-    down += value * static_cast<float>(dy);
-    squares_across += static_cast<float>(dx * dx);
-    squares_down += static_cast<float>(dy * dy);
-    most = std::max(most, value);
+    value += light[pixel];
+    across += static_cast<float>(dx);
+    down += static_cast<float>(dy);
+    most = std::max(most, light[pixel]);
   });
-  if (!(squares_across > 0 && squares_down > 0))
+  const Vec3f mean = Vec3f(across, down, value) / count;
+  const auto from_mean = [&](std::size_t pixel, int dx, int dy) {
+    return Vec3f(static_cast<float>(dx), static_cast<float>(dy), light[pixel]) - mean;
+  };
+  Vec3f squares, products;
+  for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
+    const Vec3f d = from_mean(pixel, dx, dy);
+    squares += d * d;
+    products += d * d.z;
+  });
+  if (!(squares.x > 0 && squares.y > 0))
     return false;
-  const float mean = sum / count, slope_x = across / squares_across, slope_y = down / squares_down;
+  const float slope_x = products.x / squares.x, slope_y = products.y / squares.y;
   const float step = 2 * std::hypot(slope_x, slope_y);
   if (!(step > least_step * most))
     return false;
   float residual = 0;
   for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
-    const float rest =
-        light[pixel] - mean - slope_x * static_cast<float>(dx) - slope_y * static_cast<float>(dy);
+    const Vec3f d = from_mean(pixel, dx, dy);
+    const float rest = d.z - slope_x * d.x - slope_y * d.y;
     residual += rest * rest / count;
   });
   return std::sqrt(residual) < most_noise * step;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Builds the Debian packages with CPack and looks into them: files, dependencies, a program that
 starts, a manual page and completions that name every command and option."""
+import glob
 import os
 import re
 import shutil
@@ -11,6 +12,7 @@ import unittest
 
 BUILD = os.environ["VDBEAM_BUILD"]
 PROGRAM = os.environ["VDBEAM_BINARY"]
+MODULE = glob.glob(os.path.join(BUILD, "python/vdbeam/_core*.so"))
 
 
 def output(*words, **options):
@@ -43,7 +45,8 @@ class Packages(unittest.TestCase):
         return output("dpkg-deb", "-f", self.packages[package], name).strip()
 
     def test_program_and_library_are_apart(self):
-        self.assertEqual(set(self.packages), {"vdbeam", "libvdbeam-dev"})
+        module = {"python3-vdbeam"} if MODULE else set()
+        self.assertEqual(set(self.packages), {"vdbeam", "libvdbeam-dev"} | module)
         program = output("dpkg-deb", "-c", self.packages["vdbeam"])
         library = output("dpkg-deb", "-c", self.packages["libvdbeam-dev"])
         self.assertNotIn("/include/", program)
@@ -51,6 +54,18 @@ class Packages(unittest.TestCase):
         for name in ("libvdbeam.a", "/include/vdbeam/render.h", "vdbeamConfig.cmake"):
             self.assertIn(name, library)
         self.assertNotIn("/bin/", library)
+
+    @unittest.skipUnless(MODULE, "the Python module was not built")
+    def test_the_python_module_is_found(self):
+        root = os.path.join(self.folder, "python_root")
+        output("dpkg-deb", "-x", self.packages["python3-vdbeam"], root)
+        package = os.path.join(root, "usr/lib/python3/dist-packages")
+        self.assertEqual(sorted(name.split(".")[0] for name in os.listdir(os.path.join(package, "vdbeam"))),
+                         ["__init__", "_core", "_core", "_density", "_render", "_scene", "_toml", "py"])
+        version = output("/usr/bin/python3", "-B", "-c", "import vdbeam; print(vdbeam.__version__)",
+                         env={"PYTHONPATH": package})
+        self.assertEqual(version.strip(), self.field("python3-vdbeam", "Version"))
+        self.assertIn("python3-numpy", self.field("python3-vdbeam", "Depends"))
 
     def test_dependencies_are_those_of_the_program(self):
         depends = self.field("vdbeam", "Depends")

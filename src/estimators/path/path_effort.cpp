@@ -6,12 +6,15 @@
 namespace vdbeam {
 
 PartDraws PathEffort::draws_of(PathPart part, float share, float u) const {
-  const float expected = draws[static_cast<std::size_t>(part)] * share;
-  if (expected >= 1) {
-    const int count = static_cast<int>(std::lround(expected));
-    return {count, 1 / static_cast<float>(count)};
+  // What lies behind a dense cloud is not worth a draw in every pass.
+  constexpr float least_share = 1e-6f;
+  if (share < least_share) {
+    const float chance = share / least_share;
+    return u < chance ? PartDraws{1, 1 / chance} : PartDraws{};
   }
-  return u < expected ? PartDraws{1, 1 / expected} : PartDraws{};
+  const float expected = draws[static_cast<std::size_t>(part)] * share;
+  const int count = std::max(1, static_cast<int>(std::lround(expected)));
+  return {count, 1 / static_cast<float>(count)};
 }
 
 PathTrial& PathTrial::operator+=(const PathTrial& other) {

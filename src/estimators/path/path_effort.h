@@ -24,8 +24,8 @@ struct PathEffort {
   std::array<float, path_part_count> draws{4, 4, 4};
 
   float& of(PathPart part) { return draws[static_cast<std::size_t>(part)]; }
-  /// For a ray to which a part can contribute the fraction `share`; `u` uniform in [0, 1). Where
-  /// less than one draw is worth its time, Russian roulette decides.
+  /// For a ray to which a part can contribute the fraction `share`: one draw at least, but where
+  /// the share is not seen; `u`, uniform in [0, 1), decides there.
   PartDraws draws_of(PathPart part, float share, float u) const;
 };
 

@@ -68,7 +68,7 @@ void PathEstimator::try_draw(RayTask task, std::size_t draw, Scratch& scratch,
     result.share[i] = task.share(which);
     if (!(result.share[i] > 0))
       return;
-    task.effort.of(which) = 1 / result.share[i]; // one draw
+    task.effort.of(which) = 1;
     PassImage image;
     image.resize(1, 1);
     const double before = time();
@@ -103,6 +103,10 @@ PathEstimator::TrialRay PathEstimator::try_ray(std::size_t pixel, std::uint64_t 
   shade_profile(input_, camera, scratch.profile, 0, image, {});
   shade_emission(input_, input_.world, camera, scratch.profile, 0, image,
                  scratch.counts.emission_rays);
+  // Also of lights that the camera does not see: hiding a sky must change no other pixel.
+  const Rgb left = transmittance(input_.world.medium, scratch.profile);
+  image.background[0] =
+      lights_through(input_.world, camera.whole(), scratch.profile, left, false).sum();
   result.certain = image.total(0);
   for (std::size_t draw = 0; draw < draws_per_ray; ++draw) {
     --key.pass;
