@@ -25,10 +25,10 @@ SLACK = 4 / 3
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", help="names, separated by commas; default: all")
-    parser.add_argument("--width", type=int, default=160, help="of the images [pixels] (160)")
+    parser.add_argument("--width", type=int, default=128, help="of the images [pixels] (128)")
     parser.add_argument("--passes", type=int, default=8, help="of the default estimator (8)")
     parser.add_argument("--path-passes", type=int, default=8, help="of path, which is compared with it (8)")
-    parser.add_argument("--reference-passes", type=int, default=256, help="of each reference (256)")
+    parser.add_argument("--reference-passes", type=int, default=64, help="of each reference (64)")
     parser.add_argument("--references", help="folder in which references are kept; default: nowhere")
     parser.add_argument("--images", help="folder for previews")
     parser.add_argument("--no-limits", action="store_true", help="compare with no limits, as at another size")

@@ -14,14 +14,24 @@
 namespace vdbeam {
 namespace {
 
-/// The sRGB encoding of IEC 61966-2-1, to 8 bits. NaN and negative values are black.
-unsigned char encode_srgb(double linear) {
+/// Noise in [0, 1) that decides which of two levels a value between them takes, so that a sky has
+/// no bands: gradient noise, which eyes see least (Jimenez 2014, "Next generation post processing
+/// in Call of Duty: Advanced Warfare"). 1/2 at the first pixel.
+double dither(std::size_t x, std::size_t y) {
+  const auto fraction = [](double value) { return value - std::floor(value); };
+  const double ramp = 0.06711056 * static_cast<double>(x) + 0.00583715 * static_cast<double>(y);
+  return fraction(52.9829189 * fraction(ramp) + 0.5);
+}
+
+/// The sRGB encoding of IEC 61966-2-1, to 8 bits: rounded down after `noise` is added. NaN and
+/// negative values are black.
+unsigned char encode_srgb(double linear, double noise) {
   if (!(linear > 0))
     return 0;
   const double value = std::min(linear, 1.0);
   const double encoded =
       value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-  return static_cast<unsigned char>(std::lround(encoded * 255));
+  return static_cast<unsigned char>(std::floor(encoded * 255 + noise));
 }
 
 std::vector<unsigned char> encode_pixels(const Image& image, const std::string& path,
@@ -45,8 +55,10 @@ std::vector<unsigned char> encode_pixels(const Image& image, const std::string& 
       radiance[c] = value > 0 ? std::min(value, brightest) : 0;
     }
     const Vec3d shown = view.apply(radiance);
+    const auto width = static_cast<std::size_t>(image.width);
+    const double noise = dither(i % width, i / width);
     for (int c = 0; c < 3; ++c)
-      bytes[3 * i + static_cast<std::size_t>(c)] = encode_srgb(shown[c]);
+      bytes[3 * i + static_cast<std::size_t>(c)] = encode_srgb(shown[c], noise);
   }
   return bytes;
 }

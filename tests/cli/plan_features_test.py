@@ -25,10 +25,10 @@ SCENES = [
      ("hidden lights", "shadow rays reach every light")),
     ("cloud_over_ground", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cornell_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, ("shadow lattice", "no light has a single direction")),
-    ("glass_in_fog", [], "beam", VIEW | {"boundary correction"}, ("shadow lattice", "no light has a single direction")),
-    ("headlights", [], "beam", VIEW | {"forward peak", "boundary correction"},
+    ("glass_in_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, ("shadow lattice", "no light has a single direction")),
+    ("headlights", [], "beam", VIEW | {"forward peak", "boundary correction", "refined edges"},
      ("shadow lattice", "no light has a single direction")),
-    ("lighthouse", ["-f", "8"], "beam", VIEW | {"boundary correction"},
+    ("lighthouse", ["-f", "8"], "beam", VIEW | {"boundary correction", "refined edges"},
      ("shadow lattice", "no light has a single direction")),
 ]
 

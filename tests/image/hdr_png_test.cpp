@@ -220,6 +220,31 @@ TEST(ViewTransform, FilmicFadesBrightColoursInTheirOwnOrder) {
   EXPECT_LE(blue.z, 1 + 1e-12);
 }
 
+/// Neither a sky has bands, nor does a value that 8 bits hold change.
+TEST(Png, IsDithered) {
+  const TempFolder folder;
+  std::vector<float> sky(64 * 64);
+  for (std::size_t i = 0; i < sky.size(); ++i)
+    sky[i] = 0.2f + 0.0002f * static_cast<float>(i / 64); // between two levels
+  Image image = make_grey(sky);
+  image.width = image.height = 64;
+  write_png(image, folder.file("sky.png"), 0, "srgb");
+  const std::vector<unsigned char> pixels = read_png(folder.file("sky.png"));
+  for (std::size_t row = 0; row < 64; ++row) {
+    double sum = 0;
+    for (std::size_t x = 0; x < 64; ++x)
+      sum += pixels[3 * (row * 64 + x)];
+    const double linear = 0.2 + 0.0002 * static_cast<double>(row);
+    EXPECT_NEAR(sum / 64, 255 * (1.055 * std::pow(linear, 1 / 2.4) - 0.055), 0.1) << row;
+  }
+  for (const float value : {0.0f, 1.0f}) {
+    image.channels = make_grey(std::vector<float>(64 * 64, value)).channels;
+    write_png(image, folder.file("even.png"), 0, "srgb");
+    for (const unsigned char pixel : read_png(folder.file("even.png")))
+      ASSERT_EQ(pixel, value * 255);
+  }
+}
+
 TEST(ViewTransform, UnknownNamesAreInputErrors) {
   EXPECT_THROW(view_transform("flimic"), InputError);
   TempFolder folder;
