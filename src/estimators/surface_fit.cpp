@@ -52,8 +52,9 @@ void SurfaceFit::add(std::size_t index, const SeenSurface& seen, const Rgb& tr, 
   const auto join = [share](Rgb& mean, const Rgb& value) { mean += (value - mean) * share; };
   join(pixel.light, seen.smooth.sum());
   join(pixel.factor, seen.albedo * tr);
-  for (std::size_t g = 0; g < seen.smooth.parts().size(); ++g)
-    join(groups_[g][index], seen.smooth.parts()[g]);
+  const auto& parts = seen.smooth.parts(); // none where there is no light
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    join(groups_[g][index], g < parts.size() ? parts[g] : Rgb());
 }
 
 /// How far a neighbour may lie off the plane of the surface at a pixel, for a fit of this radius.

@@ -11,7 +11,7 @@ namespace {
 /// Names random numbers that no pass draws.
 constexpr std::uint64_t first_effort_pass = ~std::uint64_t(0) - 300;
 constexpr std::size_t rays_per_pixel = 2, draws_per_ray = 2;
-constexpr std::size_t most_pixels = 1024, pixels_per_trial = 32;
+constexpr std::size_t fewest_pixels = 64, most_pixels = 1024, pixels_per_trial = 32;
 constexpr std::uint32_t most_rounds = 1024;
 /// The part of the mean brightness that is added to a pixel's in the weight of its squared error:
 /// the brightness of a few draws is too small where they found little, and such pixels would
@@ -22,7 +22,8 @@ constexpr double dark_offset = 0.05;
 std::vector<std::size_t> trial_pixels(const EstimatorInput& input) {
   const std::size_t all = static_cast<std::size_t>(input.camera.width()) *
                           static_cast<std::size_t>(input.camera.height());
-  const std::size_t count = std::clamp(all / pixels_per_trial, std::size_t{1}, most_pixels);
+  const std::size_t count =
+      std::min(all, std::clamp(all / pixels_per_trial, fewest_pixels, most_pixels));
   Rng rng({input.settings.seed, input.frame, first_effort_pass}, RngStage::path, 0);
   std::vector<std::size_t> pixels;
   for (std::size_t i = 0; i < count; ++i) {
