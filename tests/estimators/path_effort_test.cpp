@@ -13,9 +13,9 @@ namespace {
 
 PathTrial trial() {
   PathTrial trial;
-  trial.parts = {{{0.5, 300}, {6, 2000}, {2, 1000}}};
-  trial.ray_variance = 1;
-  trial.ray_time = 10000;
+  trial.parts = {{{8, 300}, {24, 2000}, {8, 1000}}};
+  trial.ray_variance = 2;
+  trial.ray_time = 1000;
   return trial;
 }
 
@@ -38,6 +38,18 @@ TEST(PathEffort, NoOtherDrawsDoBetter) {
       other.draws[i] *= factor;
       EXPECT_GT(product(measured, other), product(measured, best)) << i << " " << factor;
     }
+}
+
+/// Rare, bright paths may have escaped the pilot.
+TEST(PathEffort, EachPartTakesTheTimeOfTheRay) {
+  PathTrial measured = trial();
+  measured.ray_time = 8000;
+  for (PathTrial::Part& part : measured.parts)
+    part.variance = 0;
+  const PathEffort effort = measured.best_effort();
+  EXPECT_FLOAT_EQ(effort.draws[0], 8000.0f / 300);
+  EXPECT_FLOAT_EQ(effort.draws[1], 4);
+  EXPECT_FLOAT_EQ(effort.draws[2], 8);
 }
 
 TEST(PathEffort, StaysWithinItsLimits) {

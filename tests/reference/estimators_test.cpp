@@ -135,7 +135,7 @@ double kernel_width(const RenderSettings& settings, int first, int count) {
   return sum / count;
 }
 
-constexpr int passes = 20, path_passes = 64, late = 1000;
+constexpr int passes = 20, path_passes = 128, late = 1000;
 
 class SlowSampleScenes : public testing::TestWithParam<fs::path> {};
 

@@ -119,7 +119,7 @@ class CutByAPlane : public testing::TestWithParam<const char*> {};
 TEST_P(CutByAPlane, SlowIsAPictureWithAFarPlane) {
   const std::vector<std::string> common{std::string("render.estimator=") + GetParam(),
                                         std::string("render.passes=") +
-                                            (GetParam() == std::string("path") ? "48" : "32"),
+                                            (GetParam() == std::string("path") ? "128" : "32"),
                                         "render.forward_peak=kept",
                                         "render.photons=40000",
                                         "image.deep_alpha=0.02",

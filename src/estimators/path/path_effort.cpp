@@ -36,10 +36,15 @@ PathEffort PathTrial::best_effort() const {
   const double of_rays = std::max(ray_variance, least_share_of_rays * of_draws);
   PathEffort effort;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double square = parts[i].variance * ray_time / (parts[i].time * of_rays);
-    effort.draws[i] = std::isfinite(square) ? std::clamp(static_cast<float>(std::sqrt(square)),
-                                                         1.0f, static_cast<float>(PathEffort::most))
-                                            : 1;
+    if (!(parts[i].time > 0)) {
+      effort.draws[i] = 1; // it adds nothing to any ray
+      continue;
+    }
+    // A pilot does not see rare, bright paths, so each part takes as much time as the ray itself.
+    const double in_time = ray_time / parts[i].time;
+    const double square = of_rays > 0 ? in_time * parts[i].variance / of_rays : 0;
+    const double best = std::max(std::sqrt(square), in_time);
+    effort.draws[i] = static_cast<float>(std::clamp(best, 1.0, double{PathEffort::most}));
   }
   return effort;
 }
