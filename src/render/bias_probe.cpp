@@ -9,6 +9,9 @@ namespace vdbeam {
 
 namespace {
 
+/// A probe has few rays, so each draws more: its noise widens the interval of the error.
+constexpr float more_draws = 3;
+
 /// The square of the bias is found from products of a pixel's own probes in different passes: few
 /// pixels that are probed often are worth more than many that are probed once.
 constexpr double most_passes_between_probes = 4;
@@ -20,7 +23,7 @@ constexpr double pixels_per_blur = 8, fewest_blurs = 512;
 
 BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
                      const std::vector<std::size_t>& pixels)
-    : path_(input), window_(window), image_width_(input.camera.width()) {
+    : path_(input, more_draws), window_(window), image_width_(input.camera.width()) {
   const double wanted = input.settings.bias_rays * window.width() * window.height();
   const double most = std::max(1.0, std::round(wanted)) * most_passes_between_probes;
   const double spacing = std::max(1.0, static_cast<double>(pixels.size()) / most);

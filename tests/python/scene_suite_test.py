@@ -13,8 +13,8 @@ built_module.require()
 TOOLS = built_module.ROOT / "tools"
 
 # Scenes with the lead over path that they must keep at this size.
-LEADS = {"cumulus": 3, "lamp_in_smoke": 1.5, "cloud_over_ground": 1.5}
-SIZE = ["--width", "64", "--passes", "6", "--path-passes", "6", "--reference-passes", "96"]
+LEADS = {"cumulus": 3, "tower": 3, "shell": 2}
+SIZE = ["--width", "96", "--passes", "6", "--path-passes", "6", "--reference-passes", "96"]
 
 
 def run(*words):

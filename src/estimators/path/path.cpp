@@ -20,11 +20,13 @@ constexpr std::uint32_t rounds_per_check = 128;
 
 } // namespace
 
-PathEstimator::PathEstimator(const EstimatorInput& input)
+PathEstimator::PathEstimator(const EstimatorInput& input, float more)
     : input_(input), shadow_rays_(input.shadow_ray_lights()),
       tracer_(input.world, shadow_rays_, input.settings.max_bounces),
       scatters_(input.plan.needs(Stage::paths)) {
   effort_ = measure_effort();
+  for (float& draws : effort_.draws)
+    draws = std::min(draws * more, static_cast<float>(PathEffort::most));
   if (input_.settings.direct_samples > 0)
     effort_.of(PathPart::scattered_once) = static_cast<float>(input_.settings.direct_samples);
 }

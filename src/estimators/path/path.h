@@ -13,7 +13,8 @@ namespace vdbeam {
 /// stratified, several times), then WalkTracer goes on. The truth that the others are held against.
 class PathEstimator : public Estimator {
 public:
-  explicit PathEstimator(const EstimatorInput& input);
+  /// `more`: factor of what a camera ray draws, for rays that are few.
+  explicit PathEstimator(const EstimatorInput& input, float more = 1);
 
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
