@@ -53,7 +53,7 @@ protected:
   }
 
   void expect_one_answer(MemoryScene scene, double noise = 0.01) const {
-    const PassMeans path = render_passes(scene, EstimatorType::path, 100);
+    const PassMeans path = render_passes(scene, EstimatorType::path, 400);
     expect_power(path.total[0], noise * path.total[0].mean());
     for (const DirectLight direct : {DirectLight::sampled, DirectLight::photons})
       for (const EstimatorType& estimator : {EstimatorType::beam, EstimatorType::march}) {

@@ -62,7 +62,7 @@ TEST_P(AmongSurfaces, a_ball_of_glass_before_a_lamp) {
     add_surface(scene, SurfaceShape::sphere, moved(scaled(0.4), {-0.2, 0, 0}), glass(solid));
     SurfaceSettings& lamp = add_surface(scene, SurfaceShape::disk, scaled(1), shining(20));
     lamp.transform = {0, 0, 1, -1.6, 0, 0.25, 0, 0, -0.25, 0, 0, 0};
-    expect_as_path(scene, 48, 96, 0.03);
+    expect_as_path(scene, 48, 288, 0.03);
   }
 }
 
