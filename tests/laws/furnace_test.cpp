@@ -69,7 +69,7 @@ TEST_P(PathFurnace, OpticalDepthOfAThousand) {
   for (MemoryScene scene : {homogeneous(1000), heterogeneous(1000)}) {
     scene.scene.volumes[0].phase = test::henyey_greenstein(GetParam());
     scene.scene.image = {4, 4};
-    expect_white(scene, 16, 1e-2);
+    expect_white(scene, 40, 1e-2);
   }
 }
 
