@@ -93,7 +93,8 @@ TEST(Cameras, FarAway) {
     const double fov = 2 * std::atan(0.5 / distance) * 180 / std::numbers::pi;
     scene.look({0, 0, distance}, {0, 0, 0}, fov, 16, 16);
     scene.scene.render.photons = 60000;
-    return render_sound(scene, type, 12, "distance " + std::to_string(distance));
+    return render_sound(scene, type, type == EstimatorType::path ? 24 : 12,
+                        "distance " + std::to_string(distance));
   };
   for (const EstimatorType type : {EstimatorType::beam, EstimatorType::path}) {
     const PassMeans near = from(1e3, type);
