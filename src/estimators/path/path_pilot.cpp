@@ -34,8 +34,9 @@ std::vector<std::size_t> trial_pixels(const EstimatorInput& input) {
   return pixels;
 }
 
+/// In double precision: light may be as bright as a float holds, and its square is brighter.
 double mean_product(const Rgb& a, const Rgb& b) {
-  return static_cast<double>(dot(a, b)) / 3;
+  return dot(Vec3d(a), Vec3d(b)) / 3;
 }
 
 } // namespace
