@@ -74,7 +74,7 @@ def compose(options):
         run(["oiiotool", f"{OUT}/{name}.png", crop, "--mosaic", "1x2", "-o", column])
         columns.append(column)
         print(caption(name, words))
-    run(["oiiotool", *columns, "--mosaic:pad=2", f"{len(columns)}x1", "--compression", "jpeg:92", "-o", options.image])
+    run(["oiiotool", *columns, "--mosaic:pad=2", f"{len(columns)}x1", "--compression", "jpeg:92", "--nosoftwareattrib", "-o", options.image])
     print(f"{options.image}: written")
 
 

@@ -48,7 +48,7 @@ def render(name, target):
             images.append(f"{folder}/{i}.png")
             run([BINARY, "render", scene, *FRAMES.get(scene, []), "-o", f"{folder}/{i}.exr", "--preview", images[-1], "--passes",
                  "4", "--resolution", SIZES[scene], "-q", *[word for value in values for word in ("--set", value)]])
-        run(["oiiotool", *images, "--mosaic:pad=2", f"{len(images)}x1", "--compression", "jpeg:90", "-o", str(target)])
+        run(["oiiotool", *images, "--mosaic:pad=2", f"{len(images)}x1", "--compression", "jpeg:90", "--nosoftwareattrib", "-o", str(target)])
     print(f"{target}: written", flush=True)
 
 

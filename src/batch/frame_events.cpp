@@ -2,6 +2,7 @@
 
 #include "console/events.h"
 #include "console/progress.h"
+#include "report/report.h"
 
 #include <nlohmann/json.hpp>
 
@@ -67,12 +68,6 @@ Json layers_of(const Image& image) {
   return layers;
 }
 
-Json seconds_by_stage(const RenderStatistics& s) {
-  return {{"read", s.read},     {"prepare", s.prepare}, {"pilot", s.pilot}, {"trace", s.trace},
-          {"order", s.order},   {"radii", s.radii},     {"build", s.build}, {"profile", s.profile},
-          {"direct", s.direct}, {"query", s.query},     {"path", s.path},   {"bias", s.bias}};
-}
-
 } // namespace
 
 void send_frame(const Scene& scene, const RenderSettings& limits, const std::string& output,
@@ -118,7 +113,7 @@ void send_pass(int frame, const PassRecord& record, const RenderStatistics& stat
               {"error_high", record.error_high},
               {"photons", record.photons},
               {"peak_memory", statistics.peak_memory},
-              {"seconds_by_stage", seconds_by_stage(statistics)}});
+              {"seconds_by_stage", stage_seconds_json(statistics)}});
 }
 
 void send_frame_error(int frame, const Failure& failure) {

@@ -12,9 +12,9 @@ namespace {
 /// opaque, in widths of a pixel there.
 constexpr float uneven_opacity = 0.3f;
 constexpr float uneven_widths = 8;
-/// An edge of light: its step, in parts of the brightest pixel, and what differs from a plane, in
-/// parts of the step. Shadows and outlines are noticed, the noise of area lamps is not
-/// (research-log/decisions.md).
+/// An edge of light has at least this step, in parts of the brightest pixel, and differs from a
+/// plane by less than this part of the step. Shadows and outlines are noticed, the noise of area
+/// lamps is not (research-log/decisions.md).
 constexpr float least_step = 0.4f, most_noise = 0.3f;
 
 struct Range {

@@ -9,8 +9,9 @@ namespace vdbeam {
 
 namespace {
 
-/// A probe has few rays, so each draws more: its noise widens the interval of the error.
-constexpr float more_draws = 3;
+/// Probes are few rays, whose noise widens the interval of the error: each part of a ray's light
+/// takes at least this many times the time of the ray (PathTrial::best_effort).
+constexpr double least_time = 3;
 
 /// The square of the bias is found from products of a pixel's own probes in different passes: few
 /// pixels that are probed often are worth more than many that are probed once.
@@ -23,7 +24,7 @@ constexpr double pixels_per_blur = 8, fewest_blurs = 512;
 
 BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
                      const std::vector<std::size_t>& pixels)
-    : path_(input, more_draws), window_(window), image_width_(input.camera.width()) {
+    : path_(input, least_time), window_(window), image_width_(input.camera.width()) {
   const double wanted = input.settings.bias_rays * window.width() * window.height();
   const double most = std::max(1.0, std::round(wanted)) * most_passes_between_probes;
   const double spacing = std::max(1.0, static_cast<double>(pixels.size()) / most);

@@ -62,24 +62,18 @@ Json passes_json(const RenderResult& result) {
   return list;
 }
 
-Json seconds_json(const RenderResult& result) {
-  const RenderStatistics& s = result.statistics;
-  return {
-      {"read", s.read},       {"prepare", s.prepare},
-      {"build", s.build},     {"pilot", s.pilot},
-      {"trace", s.trace},     {"order", s.order},
-      {"radii", s.radii},     {"query", s.query},
-      {"profile", s.profile}, {"direct", s.direct},
-      {"path", s.path},       {"bias", s.bias},
-      {"write", s.write},     {"render", result.passes.empty() ? 0 : result.passes.back().seconds}};
-}
-
 Json machine_json(const Scene& scene) {
   const int cores = tbb::info::default_concurrency();
   return {{"cpu", cpu_model()}, {"cores", cores}, {"threads", thread_count(scene.render)}};
 }
 
 } // namespace
+
+Json stage_seconds_json(const RenderStatistics& s) {
+  return {{"read", s.read},       {"prepare", s.prepare}, {"build", s.build}, {"pilot", s.pilot},
+          {"trace", s.trace},     {"order", s.order},     {"radii", s.radii}, {"query", s.query},
+          {"profile", s.profile}, {"direct", s.direct},   {"path", s.path},   {"bias", s.bias}};
+}
 
 Json settings_json(const Scene& scene) {
   Json settings = Json::object();
@@ -167,7 +161,9 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   for (const std::string& note : result.notes)
     report["notes"].push_back(note);
   report["plan"] = plan_json(result.plan);
-  report["seconds"] = seconds_json(result);
+  report["seconds"] = stage_seconds_json(statistics);
+  report["seconds"]["write"] = statistics.write;
+  report["seconds"]["render"] = result.passes.empty() ? 0 : result.passes.back().seconds;
   report["peak_memory"] = statistics.peak_memory;
   report["bytes_per_photon"] = statistics.bytes_per_photon;
   report["neighbours"] = statistics.neighbours;

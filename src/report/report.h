@@ -19,6 +19,9 @@ struct ReportContext {
 /// Every key of the scene, as nested objects named like in a scene file.
 nlohmann::ordered_json settings_json(const Scene& scene);
 
+/// Seconds of a render by stage, up to the last pass.
+nlohmann::ordered_json stage_seconds_json(const RenderStatistics& statistics);
+
 /// The plan, as in reports and `vdbeam plan --json`.
 nlohmann::ordered_json plan_json(const RenderPlan& plan);
 

@@ -20,13 +20,11 @@ constexpr std::uint32_t rounds_per_check = 128;
 
 } // namespace
 
-PathEstimator::PathEstimator(const EstimatorInput& input, float more)
+PathEstimator::PathEstimator(const EstimatorInput& input, double least_time)
     : input_(input), shadow_rays_(input.shadow_ray_lights()),
       tracer_(input.world, shadow_rays_, input.settings.max_bounces),
       scatters_(input.plan.needs(Stage::paths)) {
-  effort_ = measure_effort();
-  for (float& draws : effort_.draws)
-    draws = std::min(draws * more, static_cast<float>(PathEffort::most));
+  effort_ = try_pixels().best_effort(least_time);
   if (input_.settings.direct_samples > 0)
     effort_.of(PathPart::scattered_once) = static_cast<float>(input_.settings.direct_samples);
 }

@@ -13,8 +13,8 @@ namespace vdbeam {
 /// stratified, several times), then WalkTracer goes on. The truth that the others are held against.
 class PathEstimator : public Estimator {
 public:
-  /// `more`: factor of what a camera ray draws, for rays that are few.
-  explicit PathEstimator(const EstimatorInput& input, float more = 1);
+  /// `least_time`: of each part, as in PathTrial::best_effort; more where rays are few.
+  explicit PathEstimator(const EstimatorInput& input, double least_time = 1);
 
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
@@ -45,8 +45,8 @@ private:
   static void add_deep_light(const PathWalk& walk, PassImage& image);
   void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
 
-  /// The effort that a pilot finds best.
-  PathEffort measure_effort() const;
+  /// What a pilot measures.
+  PathTrial try_pixels() const;
   struct TrialRay;
   TrialRay try_ray(std::size_t pixel, std::uint64_t first_pass) const;
   void try_draw(RayTask task, std::size_t draw, Scratch& scratch, TrialRay& result) const;

@@ -27,7 +27,7 @@ PathTrial& PathTrial::operator+=(const PathTrial& other) {
   return *this;
 }
 
-PathEffort PathTrial::best_effort() const {
+PathEffort PathTrial::best_effort(double least_time) const {
   // A few rays do not show how little the variance is that draws do not change.
   constexpr double least_share_of_rays = 0.05;
   double of_draws = 0;
@@ -40,10 +40,9 @@ PathEffort PathTrial::best_effort() const {
       effort.draws[i] = 1; // it adds nothing to any ray
       continue;
     }
-    // A pilot does not see rare, bright paths, so each part takes as much time as the ray itself.
     const double in_time = ray_time / parts[i].time;
     const double square = of_rays > 0 ? in_time * parts[i].variance / of_rays : 0;
-    const double best = std::max(std::sqrt(square), in_time);
+    const double best = std::max(std::sqrt(square), least_time * in_time);
     effort.draws[i] = static_cast<float>(std::clamp(best, 1.0, double{PathEffort::most}));
   }
   return effort;

@@ -42,8 +42,9 @@ struct PathTrial {
   PathTrial& operator+=(const PathTrial& other);
   /// The draws with the least variance times time: with V_0 and C_0 per ray and V_i / n_i and C_i
   /// n_i for the parts, n_i^2 = (V_i / C_i) / (V_0 / C_0), as for optimal splitting (Bolin and
-  /// Meyer 1997, "An error metric for Monte Carlo ray tracing").
-  PathEffort best_effort() const;
+  /// Meyer 1997, "An error metric for Monte Carlo ray tracing"). A pilot does not see rare, bright
+  /// paths, so each part takes at least `least_time` times the time of the ray itself.
+  PathEffort best_effort(double least_time = 1) const;
 };
 
 // Processor time [ns] of what `path` does; only ratios count (research-log/decisions.md).

@@ -140,7 +140,7 @@ PathTrial PathEstimator::trial_of(const std::array<TrialRay, rays_per_pixel>& ra
   return trial;
 }
 
-PathEffort PathEstimator::measure_effort() const {
+PathTrial PathEstimator::try_pixels() const {
   const std::vector<std::size_t> pixels = trial_pixels(input_);
   std::vector<std::array<TrialRay, rays_per_pixel>> rays(pixels.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
@@ -163,7 +163,7 @@ PathEffort PathEstimator::measure_effort() const {
     if (known > 0)
       sum += trial_of(rays[i], 1 / (known * known));
   }
-  return sum.best_effort();
+  return sum;
 }
 
 } // namespace vdbeam

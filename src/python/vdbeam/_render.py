@@ -22,7 +22,7 @@ class Session:
         self._core = _core.Session()
 
     def render(self, scene: Scene, **options: Any) -> "Frame":
-        """Like `vdbeam.render`, with what earlier renders of this session have read."""
+        """Like `vdbeam.render`, but does not read again what earlier calls have read."""
         return render(scene, session=self, **options)
 
 

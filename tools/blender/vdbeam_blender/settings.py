@@ -1,4 +1,4 @@
-"""The ten settings of the panel, and what they are on vdbeam's command line."""
+"""Defines the ten settings of the panel and writes them as options of the command line."""
 import bpy
 
 MISSING = [("hold", "Hold", "Show the previous file"), ("error", "Error", "The frame fails"),
