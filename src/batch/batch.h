@@ -2,6 +2,7 @@
 
 #include "batch/batch_summary.h"
 #include "batch/frame_renderer.h"
+#include "batch/page_writer.h"
 
 #include <atomic>
 #include <exception>
@@ -61,6 +62,7 @@ private:
   void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);
   void fail(std::size_t index, const std::exception& error, FrameOutcome& outcome);
+  void record(const FrameOutcome& outcome);
   std::string title(std::size_t index) const;
   void say(const std::string& line) const;
   int finish();
@@ -71,6 +73,7 @@ private:
   FrameRenderer renderer_;
   FarmProgress farm_;
   BatchSummary summary_;
+  PageWriter page_;
 };
 
 } // namespace vdbeam::cli
