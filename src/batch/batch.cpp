@@ -134,8 +134,19 @@ Batch::Reading Batch::load_aside(int frame, const SharedLoaded& before, bool alo
   return reading;
 }
 
+/// Ends the program, while a frame is being read, with summary and page of the frames before it.
+void Batch::leave_interrupted() {
+  int code = signal_exit_code();
+  try {
+    code = finish();
+  } catch (const Error& error) {
+    log_error(error.what());
+  }
+  leave_now(code);
+}
+
 /// Waits for a frame whose turn has come: from now on its time runs.
-Batch::Loaded Batch::wait_for(Reading& reading) const {
+Batch::Loaded Batch::wait_for(Reading& reading) {
   const Stopwatch stopwatch;
   std::optional<Heartbeat> heartbeat;
   if (!options_.frame.quiet && !is_smart_terminal(STDERR_FILENO))
@@ -143,7 +154,7 @@ Batch::Loaded Batch::wait_for(Reading& reading) const {
   while (reading.frame.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
     if (stop_requested()) {
       say("interrupted while files were read");
-      leave_now(signal_exit_code());
+      leave_interrupted();
     }
     if (stopwatch.seconds() > reading.watch->limit)
       reading.watch->give_up = true;

@@ -58,7 +58,8 @@ private:
   Loaded load(int frame, const SharedLoaded& before, bool alone, Watch& watch) const;
   void read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& watch) const;
   Reading load_aside(int frame, const SharedLoaded& before, bool alone) const;
-  Loaded wait_for(Reading& reading) const;
+  Loaded wait_for(Reading& reading);
+  [[noreturn]] void leave_interrupted();
   void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);
   void fail(std::size_t index, const std::exception& error, FrameOutcome& outcome);

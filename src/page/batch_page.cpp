@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace vdbeam {
@@ -132,13 +133,24 @@ std::string tiles(const BatchPage& page) {
   return html + "</div>\n";
 }
 
+/// Width over height of the first image; 16 over 9 where there is none.
+double aspect(const BatchPage& page) {
+  for (const PageFrame& frame : page.frames)
+    if (frame.picture.height > 0)
+      return static_cast<double>(frame.picture.width) / frame.picture.height;
+  return 16.0 / 9;
+}
+
 std::string player(const BatchPage& page) {
   const auto count = std::count_if(page.frames.begin(), page.frames.end(),
                                    [](const PageFrame& frame) { return !frame.thumbnail.empty(); });
   if (count == 0)
     return "";
-  std::string html = "<h2>Film</h2>\n<div class=\"player\"><img id=\"film\" alt=\"\">\n"
-                     "<div class=\"controls\"><button id=\"play\" type=\"button\">Play</button>";
+  constexpr double greatest_height = 24; // rem: two thirds of a low window
+  std::string html = fmt::format("<h2>Film</h2>\n<div class=\"player\"><img id=\"film\" alt=\"\" "
+                                 "style=\"max-width: {:.2f}rem; aspect-ratio: {:.4f}\">\n",
+                                 greatest_height * aspect(page), aspect(page));
+  html += "<div class=\"controls\"><button id=\"play\" type=\"button\">Play</button>";
   html += fmt::format("<input id=\"slider\" type=\"range\" min=\"0\" max=\"{}\" value=\"0\" "
                       "aria-label=\"frame\"><span id=\"place\"></span>",
                       count - 1);
@@ -168,7 +180,8 @@ std::string failures(const BatchPage& page) {
 }
 
 std::string strip(const BatchPage& page) {
-  std::string html = "<h2>Frames</h2>\n<div class=\"strip\">\n";
+  std::string html = fmt::format(
+      "<h2>Frames</h2>\n<div class=\"strip\" style=\"--shape: {:.4f}\">\n", aspect(page));
   for (const PageFrame& frame : page.frames) {
     const std::string status = frame.status.empty() ? "not begun" : frame.status;
     html += "<figure>";
@@ -208,12 +221,18 @@ std::string facts(const BatchPage& page) {
          fact("Command", page.commands, true) + "</dl>\n";
 }
 
+/// The scene without its folder; the facts have the whole path.
+std::string name_of(const BatchPage& page) {
+  return std::filesystem::path(page.scene).filename().string();
+}
+
 std::string headline(const BatchPage& page) {
   std::vector<int> numbers;
   for (const PageFrame& frame : page.frames)
     numbers.push_back(frame.number);
-  std::string html = fmt::format("<h1>{}</h1>\n<p class=\"quiet\">{} ({})", html_text(page.scene),
-                                 count_text(numbers.size(), "frame"), format_frame_range(numbers));
+  std::string html =
+      fmt::format("<h1>{}</h1>\n<p class=\"quiet\">{} ({})", html_text(name_of(page)),
+                  count_text(numbers.size(), "frame"), format_frame_range(numbers));
   if (!page.finished)
     html += ". The batch is not finished; this page is replaced after each frame: reload it";
   return html + ".</p>\n";
@@ -236,9 +255,10 @@ std::string page_html(const BatchPage& page) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
          "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-         html_text(page.scene) + "</title>\n<style>" + page_style + "</style>\n</head>\n<body>\n" +
-         headline(page) + tiles(page) + player(page) + failures(page) + charts(page) + strip(page) +
-         facts(page) + "<script>" + page_script + "</script>\n</body>\n</html>\n";
+         html_text(name_of(page)) + "</title>\n<style>" + page_style +
+         "</style>\n</head>\n<body>\n" + headline(page) + tiles(page) + player(page) +
+         failures(page) + charts(page) + strip(page) + facts(page) + "<script>" + page_script +
+         "</script>\n</body>\n</html>\n";
 }
 
 } // namespace vdbeam

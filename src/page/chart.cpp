@@ -35,6 +35,25 @@ std::vector<double> decades(double low, double high) {
   return ticks;
 }
 
+/// 10^this is taken out of the numbers of the axis and stands in its label: 0 where they are short.
+int axis_exponent(const ChartAxis& axis) {
+  constexpr double shortest = 0.01, longest = 1e5;
+  if (axis.logarithmic || (axis.high >= shortest && axis.high < longest))
+    return 0;
+  return static_cast<int>(std::floor(std::log10(axis.high)));
+}
+
+std::string tick_text(const ChartAxis& axis, double tick) {
+  if (axis.logarithmic) // powers of ten
+    return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(tick))));
+  return number_text(tick / std::pow(10.0, axis_exponent(axis)));
+}
+
+std::string unit_text(const Chart& chart, const ChartAxis& axis) {
+  const int exponent = axis_exponent(axis);
+  return exponent == 0 ? chart.unit : fmt::format("{} (1e{})", chart.unit, exponent);
+}
+
 /// Whole numbers from the first frame to the last.
 std::vector<int> frame_ticks(int first, int last) {
   const double range = static_cast<double>(last) - first;
@@ -74,7 +93,7 @@ std::string axes(const Chart& chart, const ChartAxis& axis, const Frames& frames
     svg += fmt::format(R"(<line class="grid" x1="{}" y1="{:.1f}" x2="{}" y2="{:.1f}"/>)", left, y,
                        right, y);
     svg += fmt::format(R"(<text x="{}" y="{:.1f}" text-anchor="end">{}</text>)", left - 6, y + 4,
-                       number_text(tick));
+                       tick_text(axis, tick));
   }
   for (const int tick : frame_ticks(frames.first, frames.last))
     svg += fmt::format(R"(<text x="{:.1f}" y="{}" text-anchor="middle">{}</text>)", frames.x(tick),
@@ -85,7 +104,7 @@ std::string axes(const Chart& chart, const ChartAxis& axis, const Frames& frames
                      height - 8);
   svg += fmt::format(
       R"svg(<text transform="rotate(-90)" x="{}" y="12" text-anchor="middle">{}</text>)svg",
-      -(top + bottom) / 2, html_text(chart.unit));
+      -(top + bottom) / 2, html_text(unit_text(chart, axis)));
   return svg;
 }
 
@@ -168,7 +187,7 @@ std::string chart_svg(const Chart& chart) {
                                 height, html_text(chart.title));
   svg += axes(chart, axis, frames);
   if (chart.points.empty())
-    svg += fmt::format(R"(<text x="{}" y="{}" text-anchor="middle">no values yet</text>)",
+    svg += fmt::format(R"(<text x="{}" y="{}" text-anchor="middle">no values</text>)",
                        (left + right) / 2, (top + bottom) / 2);
   svg += line(chart, axis, frames);
   for (const ChartPoint& point : chart.points)

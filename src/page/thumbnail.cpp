@@ -92,6 +92,8 @@ ThumbnailFacts make_thumbnail(const std::string& path, const std::string& thumbn
   else
     write_png(small, thumbnail, 0, "srgb"); // it has its exposure and view already
   ThumbnailFacts facts;
+  facts.width = small.width;
+  facts.height = small.height;
   facts.brightness = mean_luminance(small);
   const auto number = [&](const char* name, std::optional<double>& value) {
     if (const auto found = image.numbers.find(name);

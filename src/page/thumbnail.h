@@ -7,9 +7,10 @@
 
 namespace vdbeam {
 
-/// What the image of a frame says about it. Numbers are those of the file's attributes; a PNG and
+/// Facts about the image of a frame. Numbers are those of the file's attributes; a PNG and
 /// images by other programs have none.
 struct ThumbnailFacts {
+  int width = 0, height = 0;                                ///< of the thumbnail [pixels]
   double brightness = 0;                                    ///< mean luminance, linear
   std::optional<double> error{}, error_low{}, error_high{}; ///< MRSE and its 95 % interval
   std::optional<double> seconds{};                          ///< of rendering

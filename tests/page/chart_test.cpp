@@ -70,6 +70,14 @@ TEST(Chart, ShowsEveryPointWithItsLabel) {
   EXPECT_EQ(svg.find("nan"), svg.npos);
 }
 
+TEST(Chart, KeepsTheNumbersOfItsAxisShort) {
+  const std::string svg = chart_svg({"Error", "MRSE", values({2e-4, 2.5e-4}), {}});
+  EXPECT_NE(svg.find(">MRSE (1e-4)</text>"), svg.npos);
+  EXPECT_NE(svg.find(">2.5</text>"), svg.npos);
+  EXPECT_EQ(svg.find(">0.0002</text>"), svg.npos);
+  EXPECT_NE(chart_svg({"Error", "MRSE", values({1e-5, 1}), {}}).find(">1e-5</text>"), svg.npos);
+}
+
 TEST(Chart, LeavesAGapAtAFailedFrame) {
   Chart chart{"Error", "MRSE", {{1, 1}, {2, 1}, {4, 1}, {5, 1}}, {3}};
   const std::string svg = chart_svg(chart);
