@@ -16,7 +16,7 @@ struct LiveImage {
   int passes = 0;     ///< 0: a quick look
   bool mixed = false; ///< from the images of single lights, which were rendered before the edit
   double seconds = 0; ///< since the scene was given
-  /// Of the last pass that was rendered; empty where there is none.
+  /// Record of the last pass that was rendered, if there is one.
   std::optional<PassRecord> record;
 };
 

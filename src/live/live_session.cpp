@@ -176,7 +176,7 @@ private:
   Clock::time_point given_;
   bool closing_ = false, failed_ = false;
   std::atomic<bool> stop_ = false;
-  // Of the thread:
+  // What only the thread uses:
   PreparedScenePtr prepared_;
   std::optional<PassRecord> record_;
   std::thread thread_; ///< the last member: it uses the others
