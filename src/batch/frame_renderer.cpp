@@ -151,7 +151,7 @@ std::string FrameRenderer::why_unfinished(const LoadedFrame& loaded) const {
   if (!options_.merged.empty() &&
       why(substitute_frame(options_.merged, loaded.frame()), image).empty())
     return "";
-  const std::string reason = why(output(loaded.frame()), part);
+  std::string reason = why(output(loaded.frame()), part);
   const std::string report = path(Output::report, loaded.frame());
   std::error_code error;
   // A part is written before its report, which a kill may have kept from being written.

@@ -61,6 +61,7 @@ int run_summary(const SummaryOptions& options) {
   check_scene(options, batches);
   const std::map<int, Picture> pictures = pictures_of(batches);
   std::vector<int> frames;
+  frames.reserve(pictures.size());
   for (const auto& [frame, picture] : pictures)
     frames.push_back(frame);
   if (frames.empty())

@@ -150,7 +150,7 @@ std::string player(const BatchPage& page) {
   std::string html = fmt::format("<h2>Film</h2>\n<div class=\"player\"><img id=\"film\" alt=\"\" "
                                  "style=\"max-width: {:.2f}rem; aspect-ratio: {:.4f}\">\n",
                                  greatest_height * aspect(page), aspect(page));
-  html += "<div class=\"controls\"><button id=\"play\" type=\"button\">Play</button>";
+  html += R"(<div class="controls"><button id="play" type="button">Play</button>)";
   html += fmt::format("<input id=\"slider\" type=\"range\" min=\"0\" max=\"{}\" value=\"0\" "
                       "aria-label=\"frame\"><span id=\"place\"></span>",
                       count - 1);
@@ -186,9 +186,9 @@ std::string strip(const BatchPage& page) {
     const std::string status = frame.status.empty() ? "not begun" : frame.status;
     html += "<figure>";
     if (frame.thumbnail.empty())
-      html += "<div class=\"empty\"></div>";
+      html += R"(<div class="empty"></div>)";
     else
-      html += fmt::format("<img src=\"{}\" alt=\"frame {}\" loading=\"lazy\">",
+      html += fmt::format(R"(<img src="{}" alt="frame {}" loading="lazy">)",
                           html_text(frame.thumbnail), frame.number);
     html += fmt::format("<figcaption>{} <span class=\"{}\">{}</span></figcaption></figure>\n",
                         frame.number, html_text(status), html_text(status));

@@ -21,10 +21,10 @@ struct ThumbnailFacts {
 /// the primaries are known. Values that are not finite count as 0.
 Image thumbnail_of(const Image& image, int side);
 
-/// Reads the image of a frame and writes its thumbnail, an 8-bit PNG of at most 320 x 320 pixels.
-/// `exposure` [stops] and `view` are those of a preview; a PNG is shown as it is. Throws InputError
-/// where the image cannot be read and FrameError where the thumbnail cannot be written.
-ThumbnailFacts make_thumbnail(const std::string& image, const std::string& thumbnail,
+/// Reads the image of a frame at `path` and writes its thumbnail, an 8-bit PNG of at most 320 x 320
+/// pixels. `exposure` [stops] and `view` are those of a preview; a PNG is shown as it is. Throws
+/// InputError where the image cannot be read and FrameError where the thumbnail cannot be written.
+ThumbnailFacts make_thumbnail(const std::string& path, const std::string& thumbnail,
                               double exposure, const std::string& view);
 
 } // namespace vdbeam
