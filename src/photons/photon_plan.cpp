@@ -100,6 +100,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
       settings.store == PhotonStore::scatter || common_albedo(input.world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
   plan.most_direct_samples = plan.direct_samples;
+  plan.chooses_direct_samples = settings.direct_samples == 0;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
   return plan;
 }
