@@ -164,7 +164,8 @@ private:
     if (vertex.material().is_black() ||
         !absorption_roulette(vertex.absorbed(), path.throughput, path.rng))
       return false;
-    if (path.for_surfaces && vertex.material().takes_photons())
+    if (path.for_surfaces && vertex.material().takes_photons() &&
+        may_hold_photons(world_, vertex.hit()))
       store_at(vertex, path);
     else if (!path.met_surface && path.bounces == 0)
       path.for_surfaces = vertex.material().throws_light() && lights_surfaces(path.light);
