@@ -40,11 +40,14 @@ private:
                        const Planes& planes) const;
   void record_pieces(const World& world, const CameraRay& camera, const DepthProfile& profile,
                      const Planes& planes) const;
+  void record_features_of_surface(const World& world, const CameraRay& camera, float behind,
+                                  const Planes& planes) const;
   int find(const std::string& name) const;
 
   std::vector<std::string> names_;
-  int near_, far_, position_, motion_, gradient_, holdout_, shadow_; ///< first planes; -1: none
-  std::vector<int> volume_planes_;                                   ///< by volume of the scene
+  /// First planes; -1: none.
+  int near_, far_, position_, motion_, gradient_, albedo_, normal_, holdout_, shadow_;
+  std::vector<int> volume_planes_; ///< by volume of the scene
   bool tells_volumes_ = false;
   std::optional<SceneMotion> scene_motion_;
 };
