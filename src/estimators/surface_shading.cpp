@@ -127,7 +127,10 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
     Rng rng = path_rng(0);
-    return {{}, caught_shadow(world_, camera, rng)};
+    SeenSurface seen{.caught = caught_shadow(world_, camera, rng)};
+    if (input_.layers && input_.layers->tells_added_light())
+      seen.added = surfaces_.added_to_plate(vertex, camera.ray().direction, rng).sum();
+    return seen;
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
@@ -158,7 +161,7 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   beyond *= 1 / static_cast<float>(paths);
   straight *= 1 / static_cast<float>(paths + more_shadow_rays_);
   const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
-  SeenSurface seen{beyond + straight + photons + emitted, 0, lamp_of(vertex)};
+  SeenSurface seen{.radiance = beyond + straight + photons + emitted, .lamp = lamp_of(vertex)};
   if (!fitted)
     return seen;
   seen.albedo = albedo;

@@ -124,7 +124,7 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
                  const Rgb& tr) {
   Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo;
   if (ray.camera.hit && world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
-    light = Rgb(1 - surface.shadow);
+    light = Rgb(1 - surface.caught.mean);
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
 }
 

@@ -83,7 +83,8 @@ RayLayers::RayLayers(const Scene& scene, const Velocities& velocities)
     : names_(plane_names(scene)), near_(find("depth_near.Z")), far_(find("depth_far.Z")),
       position_(find("position.X")), motion_(find("motion.X")),
       gradient_(find("density_gradient.X")), albedo_(find("denoising_albedo.B")),
-      normal_(find("denoising_normal.X")), holdout_(find("holdout.Y")), shadow_(find("shadow.Y")) {
+      normal_(find("denoising_normal.X")), holdout_(find("holdout.Y")), shadow_(find("shadow.B")),
+      added_(find("catcher_light.B")) {
   const SceneObjects objects = scene_objects(scene);
   for (const std::size_t object : objects.of_volume) {
     volume_planes_.push_back(find("volume_" + objects.names[object] + ".A"));
@@ -203,18 +204,22 @@ void RayLayers::record_features_of_surface(const World& world, const CameraRay& 
 /// The planes of the surface at the ray's end; returns what the ray shows of it.
 float RayLayers::record_surface(const World& world, const CameraRay& camera, const Seen& seen,
                                 const Planes& planes) const {
-  if (!camera.hit)
+  if (!camera.hit) {
+    planes.add_color(shadow_, Vec3d(seen.left));
     return 0;
+  }
+  const float left = mean_component(seen.left);
   const Material& material = world.surfaces->material(*camera.hit);
   if (material.is_holdout()) {
-    planes.add(holdout_, static_cast<double>(seen.left));
+    planes.add(holdout_, static_cast<double>(left));
+    planes.add_color(shadow_, Vec3d(seen.left));
     return 0;
   }
   if (!material.is_shadow_catcher())
-    return seen.left;
-  const float behind = seen.left * seen.shadow;
-  planes.add(shadow_, static_cast<double>(behind));
-  return behind;
+    return left;
+  planes.add_color(shadow_, Vec3d(seen.left * seen.plate_left));
+  planes.add_color(added_, Vec3d(seen.left * seen.added));
+  return left * seen.shadow;
 }
 
 /// The planes of the medium that the ray meets, piece by piece of its profile.

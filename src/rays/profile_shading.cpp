@@ -102,7 +102,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   GroupedLight background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
     background += surface.radiance * tr;
-    end_at_surface(world, camera, surface.shadow, seen);
+    end_at_surface(world, camera, surface.caught.mean, seen);
   }
   image.add(&PassImage::background, pixel, background);
   image.opacity[pixel] += seen.opacity;
@@ -110,7 +110,8 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
-    input.layers->record(world, camera, profile, {mean_component(tr), surface.shadow, seen.depth},
+    input.layers->record(world, camera, profile,
+                         {tr, seen.depth, surface.caught.mean, surface.caught.left, surface.added},
                          pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep)
     deep.add_opacity(world.medium, profile);
