@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/affine.h"
 #include "math/ray.h"
 
 #include <array>
@@ -11,6 +12,18 @@ namespace vdbeam {
 struct Parallelepiped {
   Vec3f corner;
   std::array<Vec3f, 3> edges;
+
+  Boxd bounds() const {
+    Boxd result;
+    for (int i = 0; i < 8; ++i) {
+      Vec3f point = corner;
+      for (int edge = 0; edge < 3; ++edge)
+        if (i >> edge & 1)
+          point += edges[static_cast<std::size_t>(edge)];
+      result.extend(Vec3d(point));
+    }
+    return result;
+  }
 };
 
 /// The region of the medium, at which photons are aimed: boxes in render space, which may overlap.

@@ -26,18 +26,6 @@ Parallelepiped thick_box(const Boxd& box) {
           {Vec3f(Vec3d{size.x, 0, 0}), Vec3f(Vec3d{0, size.y, 0}), Vec3f(Vec3d{0, 0, size.z})}};
 }
 
-Boxd bounds_of(const Parallelepiped& box) {
-  Boxd bounds;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3f point = box.corner;
-    for (int i = 0; i < 3; ++i)
-      if (corner >> i & 1)
-        point += box.edges[static_cast<std::size_t>(i)];
-    bounds.extend(Vec3d(point));
-  }
-  return bounds;
-}
-
 bool contains(const Boxd& box, const Boxd& other) {
   for (int i = 0; i < 3; ++i)
     if (!(other.lower[i] >= box.lower[i] && other.upper[i] <= box.upper[i]))
@@ -61,22 +49,17 @@ OccupiedRegion region_within(const Boxd& box, const OccupiedRegion& medium,
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Boxd whole = surfaces.bounds(i);
     const Boxd part{max(whole.lower, box.lower), min(whole.upper, box.upper)};
-    if (part.lower.x <= part.upper.x && part.lower.y <= part.upper.y &&
-        part.lower.z <= part.upper.z)
+    if (!part.empty())
       parts.push_back(part);
   }
-  for (const Boxd& part : parts) {
-    all.extend(part.lower);
-    all.extend(part.upper);
-  }
+  for (const Boxd& part : parts)
+    all.extend(part);
   if (parts.size() > most_boxes)
     parts = {all};
   for (const Boxd& part : parts)
     region.boxes.push_back(thick_box(part));
   for (const Parallelepiped& own : medium.boxes) {
-    const Boxd bounds = bounds_of(own);
-    all.extend(bounds.lower);
-    all.extend(bounds.upper);
+    all.extend(own.bounds());
     region.boxes.push_back(own);
   }
   region.center = Vec3f(all.center());

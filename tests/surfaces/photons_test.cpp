@@ -31,14 +31,19 @@ protected:
   }
 };
 
+/// The photons are many enough for kernels whose blur at the faces of the box stays below the
+/// bound.
 TEST_P(AmongSurfaces, white_furnaces) {
   for (const MaterialSettings& material :
        {of_type(MaterialType::mirror), glass(), glass(true), diffuse(1)}) {
     MemoryScene scene = fog(2);
     scene.scene.volumes[0].albedo = Rgb(1);
+    scene.scene.render.photons = 200000;
     scene.add_light(LightType::environment).radiance = Rgb(1);
     add_surface(scene, SurfaceShape::sphere, scaled(0.5), material);
-    expect_mean(render_passes(scene, GetParam(), 24).total[0], 1, 0.01);
+    const PassMeans mine = render_passes(scene, GetParam(), 10);
+    expect_mean(mine.total[0], 1, 0.01);
+    expect_power(mine.total[0], 0.005);
   }
 }
 
