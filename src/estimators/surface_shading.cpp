@@ -335,9 +335,10 @@ GroupedLight SurfaceShading::along(const CameraRay& ray, const DepthProfile& pro
 Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
   Rgb left(1);
   const PeakTakenOut* peak = world_.medium.peak.get();
-  for (std::size_t v = 0; peak && !profile.empty() && v < world_.medium.volumes.size(); ++v)
+  for (std::size_t v = 0; peak && !profile.empty() && v < profile.volume_count(); ++v)
     for (int c = 0; c < 3; ++c)
-      left[c] *= std::exp(-peak->excess[v][c] * profile.tau(profile.knots() - 1, v));
+      left[c] *=
+          std::exp(-peak->excess[profile.volume(v)][c] * profile.tau(profile.knots() - 1, v));
   return left;
 }
 

@@ -235,7 +235,8 @@ void RayLayers::record_pieces(const World& world, const CameraRay& camera,
   for_each_piece(medium, profile, [&](const Piece& piece) {
     const Vec3f point = camera.ray().at(piece.t);
     Vec3f gradient;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+    for (std::size_t i = 0; i < profile.volume_count(); ++i) {
+      const std::size_t v = profile.volume(i);
       const Volume& volume = medium.volumes[v];
       const auto share = static_cast<double>(piece.added[v]);
       if (volume_planes_[volume.setting] >= 0)

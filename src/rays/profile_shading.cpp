@@ -16,7 +16,7 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   cursor.move_to(t);
   Rgb tau;
   for (std::size_t v = 0; v < profile.volume_count(); ++v)
-    tau += medium.volumes[v].channel_scale * cursor.tau(v);
+    tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 

@@ -97,13 +97,15 @@ bool meets(const Medium& medium, const Ray& ray) {
   const Segment segment = medium.clip({ray});
   if (segment.empty())
     return false;
-  for (const Volume& volume : medium.volumes)
-    for (GridTraversal walk = volume.traverse(segment); !walk.done(); walk.advance()) {
+  bool met = false;
+  medium.for_each_met(segment, [&](std::size_t v) {
+    const Volume& volume = medium.volumes[v];
+    for (GridTraversal walk = volume.traverse(segment); !met && !walk.done(); walk.advance()) {
       const Vec3<int>& cell = walk.cell();
-      if (volume.majorants[volume.field.cell_offset(cell.x, cell.y, cell.z)] > 0)
-        return true;
+      met = volume.majorants[volume.field.cell_offset(cell.x, cell.y, cell.z)] > 0;
     }
-  return false;
+  });
+  return met;
 }
 
 bool meets_target(const World& world, std::size_t target, const Ray& ray) {

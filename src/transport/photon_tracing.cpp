@@ -41,9 +41,11 @@ constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
 /// Rate of tentative collisions: the majorants of overlapping volumes add.
 float total_majorant(const Medium& medium, const Ray& ray, const Collision& hit) {
   float sum = hit.majorant;
-  for (const Volume& volume : medium.volumes)
-    if (&volume != hit.volume)
-      sum += volume.majorant(ray.at(hit.t));
+  const Vec3f point = ray.at(hit.t);
+  medium.for_each_at(point, [&](std::size_t v) {
+    if (&medium.volumes[v] != hit.volume)
+      sum += medium.volumes[v].majorant(point);
+  });
   return sum;
 }
 
