@@ -97,6 +97,8 @@ struct RenderHooks {
   std::function<void(RenderResult&, bool asked)> on_snapshot;
   /// Gets a quick look before the first pass, which takes a part of the time of a pass.
   std::function<void(RenderResult&)> on_quick_look;
+  /// Gives on_quick_look another one of more pixels, before the first pass of a large image.
+  bool refines_quick_look = false;
 };
 
 class PreparedScene; ///< a scene's volumes and lights, read and made ready for rendering

@@ -5,9 +5,10 @@
 namespace vdbeam::cli {
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 9> table{{
+  static constexpr std::array<Command, 10> table{{
       {"render", "Render a scene or a VDB to EXR", add_render},
       {"info", "Describe volumes, meshes and images, and report problems", add_info},
+      {"live", "Show a scene while it is edited", add_live},
       {"init", "Write a commented scene file for a VDB", add_init},
       {"plan", "Show features, passes and memory of a frame without rendering it", add_plan},
       {"compare", "Measure the error of an image against a reference", add_compare},

@@ -12,6 +12,7 @@ using CommandRun = std::function<int()>;
 CommandRun add_render(CLI::App& app);
 CommandRun add_info(CLI::App& app);
 CommandRun add_init(CLI::App& app);
+CommandRun add_live(CLI::App& app);
 CommandRun add_plan(CLI::App& app);
 CommandRun add_compare(CLI::App& app);
 CommandRun add_merge(CLI::App& app);

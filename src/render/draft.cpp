@@ -20,25 +20,6 @@ constexpr int farthest = 3;
 /// has missed a wisp it has missed its light, too.
 constexpr float greatest_gain = 2;
 
-/// The same scene in fewer pixels, of the same shape together, and without what drafts leave out.
-Scene reduced(const Scene& scene, int reduction) {
-  Scene small = scene;
-  ImageSettings& image = small.image;
-  const auto fewer = [&](int pixels) { return (pixels + reduction - 1) / reduction; };
-  const double shape = static_cast<double>(image.width) / image.height;
-  image.width = fewer(image.width);
-  image.height = fewer(image.height);
-  image.overscan = fewer(image.overscan);
-  image.pixel_aspect *= shape * image.height / image.width;
-  image.deep = image.cryptomatte = false;
-  if (small.render.photons) // the same number per pixel
-    *small.render.photons /=
-        static_cast<std::uint64_t>(reduction) * static_cast<std::uint64_t>(reduction);
-  small.layers.clear();
-  small.moments.clear();
-  return small;
-}
-
 /// Where pixels of the raster lie in that of the draft, in units of its pixels, whose middles lie
 /// at whole numbers.
 struct RasterMap {
@@ -100,6 +81,24 @@ std::unique_ptr<PassRenderer> make_renderer(const Scene& scene, const FrameSetup
 }
 
 } // namespace
+
+Scene reduced(const Scene& scene, int reduction) {
+  Scene small = scene;
+  ImageSettings& image = small.image;
+  const auto fewer = [&](int pixels) { return (pixels + reduction - 1) / reduction; };
+  const double shape = static_cast<double>(image.width) / image.height;
+  image.width = fewer(image.width);
+  image.height = fewer(image.height);
+  image.overscan = fewer(image.overscan);
+  image.pixel_aspect *= shape * image.height / image.width;
+  image.deep = image.cryptomatte = false;
+  if (small.render.photons) // the same number per pixel
+    *small.render.photons /=
+        static_cast<std::uint64_t>(reduction) * static_cast<std::uint64_t>(reduction);
+  small.layers.clear();
+  small.moments.clear();
+  return small;
+}
 
 /// Pixel of the draft, per opacity or transmittance.
 struct Draft::Seen {

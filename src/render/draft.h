@@ -8,6 +8,10 @@
 
 namespace vdbeam {
 
+/// The same scene in fewer pixels, of the same shape together, and without what drafts leave out:
+/// layers, deep samples and motion.
+Scene reduced(const Scene& scene, int reduction);
+
 /// Renders a whole picture in little time: passes of the scene in fewer pixels, enlarged. The light
 /// of the medium changes slowly per opacity, and that of a surface changes slowly over it, so both
 /// are interpolated, and so are the shares of groups of lights; opacity, depth, the lights behind,

@@ -24,6 +24,8 @@ constexpr std::chrono::milliseconds quick_look_time{250};
 /// Pixels across the first draft, and the least and greatest factor by which a picture has more.
 constexpr double draft_width = 120;
 constexpr int least_reduction = 2, greatest_reduction = 16;
+/// How many times more pixels across a second quick look has.
+constexpr double finer = 2.7;
 /// Pictures of fewer pixels have their first pass soon enough.
 constexpr double worth_drafting = 2e5;
 /// Time of a pass and its pilots in units of a draft's, per pixel, and of enlarging in units of a
@@ -113,6 +115,8 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   if (affordable == 1) {
     if (shown)
       show([&] { take_enlarged(full); });
+    if (shown && hooks_.refines_quick_look)
+      refine_draft(prepared, full);
     set_deadline();
     return false;
   }
@@ -128,6 +132,18 @@ bool PassLoop::draft(const PreparedScenePtr& prepared, const EstimatorInput& ful
   stop(stop_.requested() ? "stop" : "time");
   take_draft(full);
   return true;
+}
+
+/// Shows the caller a draft of more pixels.
+void PassLoop::refine_draft(const PreparedScenePtr& prepared, const EstimatorInput& full) {
+  const int reduction = std::max(1, static_cast<int>(std::lround(draft_->reduction() / finer)));
+  if (reduction < least_reduction)
+    return;
+  auto draft = std::make_unique<Draft>(scene_, prepared, window_, reduction, stop_);
+  if (!draft->add_pass())
+    return;
+  draft_ = std::move(draft);
+  show([&] { take_enlarged(full); });
 }
 
 /// The image of a frame without any pass: the draft or, without one, a quick look.

@@ -73,6 +73,7 @@ private:
   void take_picture(const std::function<PassImage(const PixelRegion&)>& image_of);
   void take_enlarged(const EstimatorInput& full);
   void take_draft(const EstimatorInput& full);
+  void refine_draft(const PreparedScenePtr& prepared, const EstimatorInput& full);
   void show(const std::function<void()>& take);
   void take_early_picture(const EstimatorInput& quick_look);
   bool may_draft() const;

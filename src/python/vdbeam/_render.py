@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from typing import Any, Callable, Mapping, Optional, Union
 
@@ -53,7 +54,9 @@ class Frame:
 
     @property
     def error(self) -> tuple[float, float, float]:
-        """Estimated error (MRSE) of the image, and its 95 % interval."""
+        """Estimated error (MRSE) of the image, and its 95 % interval; NaN where there was no time for a pass."""
+        if not self.passes:
+            return math.nan, math.nan, math.nan
         last = self.passes[-1]
         return last.error_estimate, last.error_low, last.error_high
 
