@@ -5,6 +5,7 @@
 #include "rays/profile_shading.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,15 +16,18 @@ class BlurProbe;
 /// What matt surfaces reflect of light that has come by way of other surfaces and the medium has
 /// the noise of a few paths per pixel, but it changes slowly over a surface, per albedo. So each
 /// pixel takes it from a plane that is fitted to the pixels around it which show the same surface
-/// (PlaneFit), within fewer pixels from pass to pass: the bias vanishes as the noise does. Light
-/// straight from lights, with its shadows, stays as it is.
+/// (PlaneFit), within fewer pixels from pass to pass: the bias vanishes as the noise does. Then
+/// planes are fitted to the results, three times as wide, and count as far as their difference from
+/// the narrow ones is no more than noise. Light straight from lights has shadows, so the narrow
+/// planes count in the same way there, against the noise of the pixels' shadow rays.
 class SurfaceFit {
 public:
   /// Fit for one pass of a world with surfaces. `input` must outlive this.
   SurfaceFit(const EstimatorInput& input, int pass);
 
-  /// By how many pixels it reaches to each side.
-  static constexpr int reach = 3;
+  /// By how many pixels it reaches to each side: for a narrow plane, for a wide one, and for the
+  /// means by which these are compared.
+  static constexpr int narrow_reach = 3, wide_step = 3, reach = (2 + wide_step) * narrow_reach;
   /// Memory of a pass per pixel [bytes].
   static constexpr std::size_t bytes_per_pixel(std::size_t groups);
 
@@ -36,34 +40,58 @@ public:
 
   /// After all pixels: replaces their light by what is fitted, in the window. `blur`, unless it is
   /// null, takes how much that blurs.
-  void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr) const;
+  void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr);
 
 private:
   struct Pixel {
-    Rgb light;      ///< smooth light per albedo, of all groups of lights
     Rgb factor;     ///< albedo times transmittance
     Vec3f position; ///< render space
     Vec3f normal;
     int surface = -1; ///< -1: none that is fitted
   };
+  /// Light of the pixels, and of each group of lights.
+  struct Planes {
+    std::vector<Rgb> light;
+    std::vector<std::vector<Rgb>> groups;
+  };
+  /// A part of the light, per albedo: of the pixels themselves, from narrow and from wide planes.
+  struct Part {
+    Planes own, narrow, wide;
+    std::vector<float> variance; ///< of a pixel's own light, mean of channels
+  };
+  enum PartIndex : std::uint8_t { smooth, straight, part_count };
   struct Share {
     std::size_t pixel;
     double weight;
   };
-  using Shares = std::array<Share, (2 * reach + 1) * (2 * reach + 1)>;
-  std::span<const Share> shares(int x, int y, float radius, Shares& shares) const;
+  static constexpr int taps = (2 * narrow_reach + 1) * (2 * narrow_reach + 1);
+  using Shares = std::array<Share, taps>;
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+  template <class Visit>
+  void visit_neighbours(int x, int y, int step, const Visit& visit) const;
+  std::span<const Share> shares(int x, int y, float radius, int step, Shares& shares) const;
   float farthest_off(int x, int y, float radius) const;
+  void fit_narrow(int x, int y);
+  void fit_wide(int x, int y);
   void fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const;
+  std::array<float, 2> weights_of_planes(const Part& part, int x, int y) const;
+  float best_weight(float variance, float difference) const;
 
   const Camera& camera_;
   int width_, height_;
-  float radius_; ///< [pixels]
+  int pass_;
+  float narrow_, wide_; ///< radii of the planes [pixels, and steps]
   std::vector<Pixel> pixels_;
-  std::vector<std::vector<Rgb>> groups_; ///< Pixel::light of each group, by pixel
+  std::vector<float> variance_of_narrow_; ///< of a narrow plane over that of a pixel's own light
+  std::array<Part, part_count> parts_;
 };
 
 constexpr std::size_t SurfaceFit::bytes_per_pixel(std::size_t groups) {
-  return sizeof(Pixel) + groups * sizeof(Rgb);
+  return sizeof(Pixel) + sizeof(float) +
+         part_count * (sizeof(float) + 3 * (1 + groups) * sizeof(Rgb));
 }
 
 } // namespace vdbeam

@@ -17,8 +17,9 @@ namespace {
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
 /// Paths of a matt surface, whose light is fitted over pixels (SurfaceFit), and additional shadow
-/// rays towards lights with an extent, since shadows are not fitted.
-constexpr int matt_paths = 2, more_shadow_rays = 6;
+/// rays towards lights with an extent. Twice or half of them change error times time by less than a
+/// fifth (research-log/surface-fit.md).
+constexpr int matt_paths = 2, more_shadow_rays = 4;
 /// Additional rays that look for lamps behind rough glass and gather nothing else, by this factor.
 constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
@@ -66,6 +67,27 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
     way.weight *= both / (reflects ? reflected : both - reflected);
   return way;
 }
+
+/// Mean of independent estimates of light.
+class MeanOfLight {
+public:
+  void add(const GroupedLight& light) {
+    sum_ += light;
+    squares_ += light.sum() * light.sum();
+    ++count_;
+  }
+  GroupedLight mean() const { return sum_ * (1 / count_); }
+  /// The mean's, estimated from at least two.
+  Rgb variance() const {
+    const Rgb mean = sum_.sum() * (1 / count_);
+    return (squares_ * (1 / count_) - mean * mean) * (1 / (count_ - 1));
+  }
+
+private:
+  GroupedLight sum_;
+  Rgb squares_;
+  float count_ = 0;
+};
 
 bool samples_extended_light(const World& world, const WalkTracer& tracer) {
   for (std::size_t i = 0; i < world.lights.size(); ++i)
@@ -146,26 +168,29 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   constexpr float least_albedo = 1e-3f;
   const bool fitted = std::min(albedo.x, std::min(albedo.y, albedo.z)) > least_albedo;
   const int paths = fitted ? matt_paths : paths_per_ray;
-  GroupedLight beyond, straight, photons;
+  GroupedLight beyond, photons;
+  MeanOfLight straight;
   for (int i = 0; i < paths; ++i) {
     Rng rng = path_rng(i);
     GroupedLight by_shadow_rays;
     beyond += surfaces_.by_paths(vertex, direction, rng, &by_shadow_rays) - by_shadow_rays;
-    straight += by_shadow_rays;
+    straight.add(by_shadow_rays);
     if (i > 0)
       continue;
     photons = surfaces_.by_photons(vertex, rng); // the same for all
     for (int ray = 0; ray < more_shadow_rays_; ++ray)
-      straight += surfaces_.tracer().lights_at_surface(vertex, rng, true) * vertex.absorbed();
+      straight.add(surfaces_.tracer().lights_at_surface(vertex, rng, true) * vertex.absorbed());
   }
   beyond *= 1 / static_cast<float>(paths);
-  straight *= 1 / static_cast<float>(paths + more_shadow_rays_);
   const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
-  SeenSurface seen{.radiance = beyond + straight + photons + emitted, .lamp = lamp_of(vertex)};
+  SeenSurface seen{.radiance = beyond + straight.mean() + photons + emitted,
+                   .lamp = lamp_of(vertex)};
   if (!fitted)
     return seen;
   seen.albedo = albedo;
   seen.smooth = beyond / albedo;
+  seen.straight = straight.mean() / albedo;
+  seen.straight_variance = mean_component(straight.variance() / (albedo * albedo));
   seen.position = Vec3f(vertex.hit().position);
   seen.normal = vertex.hit().shading_normal * (vertex.front() ? 1.0f : -1.0f);
   seen.surface = vertex.hit().surface;

@@ -20,6 +20,10 @@ struct SeenSurface {
   // For a matt surface:
   /// The part of `radiance` that comes by way of other surfaces and the medium, per albedo.
   GroupedLight smooth = {};
+  /// The part that shadow rays from the surface find, per albedo, and the variance of this mean
+  /// over them, mean of channels.
+  GroupedLight straight = {};
+  float straight_variance = 0;
   Rgb albedo = {};     ///< of the surface
   Vec3f position = {}; ///< render space
   Vec3f normal = {};   ///< on the side that is seen
