@@ -149,7 +149,10 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
     Rng rng = path_rng(0);
-    return {{}, caught_shadow(world_, camera, rng)};
+    SeenSurface seen{.caught = caught_shadow(world_, camera, rng)};
+    if (input_.layers && input_.layers->tells_added_light())
+      seen.added = surfaces_.added_to_plate(vertex, camera.ray().direction, rng).sum();
+    return seen;
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
@@ -180,7 +183,8 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   }
   beyond *= 1 / static_cast<float>(paths);
   const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
-  SeenSurface seen{beyond + straight.mean() + photons + emitted, 0, lamp_of(vertex)};
+  SeenSurface seen{.radiance = beyond + straight.mean() + photons + emitted,
+                   .lamp = lamp_of(vertex)};
   if (!fitted)
     return seen;
   seen.albedo = albedo;
@@ -356,9 +360,10 @@ GroupedLight SurfaceShading::along(const CameraRay& ray, const DepthProfile& pro
 Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
   Rgb left(1);
   const PeakTakenOut* peak = world_.medium.peak.get();
-  for (std::size_t v = 0; peak && !profile.empty() && v < world_.medium.volumes.size(); ++v)
+  for (std::size_t v = 0; peak && !profile.empty() && v < profile.volume_count(); ++v)
     for (int c = 0; c < 3; ++c)
-      left[c] *= std::exp(-peak->excess[v][c] * profile.tau(profile.knots() - 1, v));
+      left[c] *=
+          std::exp(-peak->excess[profile.volume(v)][c] * profile.tau(profile.knots() - 1, v));
   return left;
 }
 

@@ -24,8 +24,8 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   for (std::size_t i = 0; i < deep.count(); ++i) {
     cursor.move_to(std::min(deep.end(i), profile.back()));
     Rgb after, light;
-    for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
-      after += world.medium.peak->excess[v] * cursor.tau(v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      after += world.medium.peak->excess[profile.volume(v)] * cursor.tau(v);
     for (int c = 0; c < 3; ++c)
       light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(after[c] - before[c]);
     deep.add_light(i, light);
@@ -40,15 +40,15 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   Rgb before;
   for (std::size_t knot = 1; knot < profile.knots(); ++knot) {
     Rgb after;
-    for (std::size_t v = 0; v < excess.size(); ++v)
-      after += excess[v] * profile.tau(knot, v);
-    for (std::size_t v = 0; v < excess.size(); ++v) {
-      const Rgb own = excess[v] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      after += excess[profile.volume(v)] * profile.tau(knot, v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v) {
+      const Rgb own = excess[profile.volume(v)] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
       Rgb light;
       for (int c = 0; c < 3; ++c)
         if (const float all = after[c] - before[c]; all > 0)
           light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(all) * own[c] / all;
-      volumes.add(world.medium.volumes[v].setting, light);
+      volumes.add(world.medium.volumes[profile.volume(v)].setting, light);
     }
     before = after;
   }
@@ -71,8 +71,8 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
   const std::size_t last = ray.profile.knots() - 1;
   const Rgb tau = ray.profile.channels(world.medium, last);
   Rgb excess;
-  for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
-    excess += world.medium.peak->excess[v] * ray.profile.tau(last, v);
+  for (std::size_t v = 0; v < ray.profile.volume_count(); ++v)
+    excess += world.medium.peak->excess[ray.profile.volume(v)] * ray.profile.tau(last, v);
   Rgb through, scattered;
   for (int c = 0; c < 3; ++c) {
     through[c] = radiance.sum()[c] * std::exp(-tau[c]);
@@ -125,7 +125,7 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
                  const Rgb& tr) {
   Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo;
   if (ray.camera.hit && world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
-    light = Rgb(1 - surface.shadow);
+    light = Rgb(1 - surface.caught.mean);
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
 }
 

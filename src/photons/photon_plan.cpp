@@ -3,6 +3,7 @@
 #include "medium/depth_profile.h"
 #include "photons/hidden_lights.h"
 #include "transport/camera_ray.h"
+#include "transport/photon_targets.h"
 
 #include <cmath>
 
@@ -215,8 +216,7 @@ RadiusSettings radius_settings(const EstimatorInput& input, double neighbours, f
 RadiusSettings surface_radii(const EstimatorInput& input, float scale) {
   RadiusSettings radii = radius_settings(input, surface_neighbours, scale);
   if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
-    radii.max_radius = static_cast<float>(widest_surface_kernel *
-                                          length(input.world.surfaces->set->bounds().size()));
+    radii.max_radius = static_cast<float>(widest_surface_kernel * surface_extent(input.world));
   return radii;
 }
 
