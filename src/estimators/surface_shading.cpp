@@ -1,5 +1,6 @@
 #include "estimators/surface_shading.h"
 
+#include "math/mean_of_light.h"
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
 #include "rays/caught_shadow.h"
@@ -67,27 +68,6 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
     way.weight *= both / (reflects ? reflected : both - reflected);
   return way;
 }
-
-/// Mean of independent estimates of light.
-class MeanOfLight {
-public:
-  void add(const GroupedLight& light) {
-    sum_ += light;
-    squares_ += light.sum() * light.sum();
-    ++count_;
-  }
-  GroupedLight mean() const { return sum_ * (1 / count_); }
-  /// The mean's, estimated from at least two.
-  Rgb variance() const {
-    const Rgb mean = sum_.sum() * (1 / count_);
-    return (squares_ * (1 / count_) - mean * mean) * (1 / (count_ - 1));
-  }
-
-private:
-  GroupedLight sum_;
-  Rgb squares_;
-  float count_ = 0;
-};
 
 bool samples_extended_light(const World& world, const WalkTracer& tracer) {
   for (std::size_t i = 0; i < world.lights.size(); ++i)

@@ -131,7 +131,7 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
 
 /// Shadow rays of a pixel: more where its ray crosses shafts of light.
 int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, const RngKey& key) {
-  // Of 1, 2, 4 and 8 that with the least error times time (research-log/surface-fit.md).
+  // The best of 1, 2, 4 and 8 (research-log/surface-fit.md).
   constexpr int in_shafts = 2;
   if (ray.profile.empty())
     return 1;
