@@ -170,9 +170,9 @@ def draw(runs, folder, references, noise):
     except ModuleNotFoundError as problem:
         stop_without(problem)
 
-    for scene in dict.fromkeys(run.scene for run in runs):
-        plots.plot_scene(runs, scene, folder / scene, noise.get(scene))
-    page.write_page(runs, folder, references)
+    places = {scene: plots.plot_scene(runs, scene, folder / scene, noise.get(scene))
+              for scene in dict.fromkeys(run.scene for run in runs)}
+    page.write_page(runs, folder, references, places)
 
 
 def main(arguments=None):

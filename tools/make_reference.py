@@ -14,7 +14,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs" / "reference"
-COMMANDS = ["render", "live", "info", "init", "plan", "compare", "merge", "farm", "farm slurm", "farm openjd", "help"]
+COMMANDS = ["render", "live", "info", "init", "plan", "compare", "merge", "summary", "farm", "farm slurm", "farm openjd",
+            "help"]
 # Options that several commands share are printed for `render` only.
 SHARED = ["When to stop:", "Scene:"]
 

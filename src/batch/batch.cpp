@@ -45,8 +45,10 @@ namespace {
 Batch::Batch(const SceneDocument& document, const std::string& scene, std::vector<int> frames,
              BatchOptions options)
     : document_(document), frames_(std::move(frames)), options_(std::move(options)),
-      renderer_(options_.frame), farm_(options_.farm, frames_.size()) {
+      renderer_(options_.frame), farm_(options_.farm, frames_.size()),
+      page_(options_.frame.files, options_.frame.exposure, options_.frame.view) {
   summary_.scene = scene;
+  summary_.origin = this_batch();
   summary_.frames = frames_;
 }
 
@@ -132,8 +134,19 @@ Batch::Reading Batch::load_aside(int frame, const SharedLoaded& before, bool alo
   return reading;
 }
 
+/// Ends the program, while a frame is being read, with summary and page of the frames before it.
+void Batch::leave_interrupted() {
+  int code = signal_exit_code();
+  try {
+    code = finish();
+  } catch (const Error& error) {
+    log_error(error.what());
+  }
+  leave_now(code);
+}
+
 /// Waits for a frame whose turn has come: from now on its time runs.
-Batch::Loaded Batch::wait_for(Reading& reading) const {
+Batch::Loaded Batch::wait_for(Reading& reading) {
   const Stopwatch stopwatch;
   std::optional<Heartbeat> heartbeat;
   if (!options_.frame.quiet && !is_smart_terminal(STDERR_FILENO))
@@ -141,7 +154,7 @@ Batch::Loaded Batch::wait_for(Reading& reading) const {
   while (reading.frame.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
     if (stop_requested()) {
       say("interrupted while files were read");
-      leave_now(signal_exit_code());
+      leave_interrupted();
     }
     if (stopwatch.seconds() > reading.watch->limit)
       reading.watch->give_up = true;
@@ -153,6 +166,7 @@ Batch::Loaded Batch::wait_for(Reading& reading) const {
 
 int Batch::run() {
   SharedLoaded loaded;
+  page_.make_folder();
   send_event(
       "batch",
       {{"scene", summary_.scene}, {"frames", frames_}, {"output", options_.frame.files.output}});
@@ -188,12 +202,13 @@ void Batch::fail(std::size_t index, const std::exception& error, FrameOutcome& o
   const Failure failure = describe(error);
   outcome.status = "failed";
   outcome.reason = failure.line;
+  outcome.exit_code = static_cast<int>(failure.code);
   if (frames_.size() > 1) // else the program reports it itself
     send_frame_error(outcome.frame, failure);
   send_frame_end(outcome);
   farm_.failure(outcome.reason);
   farm_.frame_at(index, 1);
-  summary_.outcomes.push_back(outcome);
+  record(outcome);
   if (frames_.size() > 1)
     log("{}: {}", title(index), outcome.reason);
 }
@@ -225,8 +240,21 @@ void Batch::handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcom
   }
   if (!loaded.note.empty() && loaded.note != "is not there")
     announce("rendered again: " + loaded.note);
-  if (!renderer_.render_frame(loaded.frame, name, farm_, index))
+  if (!renderer_.render_frame(loaded.frame, name, farm_, index, outcome))
     outcome.status = "interrupted";
+}
+
+/// Keeps an outcome and shows it on the page. A page that cannot be written now is written again at
+/// the end of the batch.
+void Batch::record(const FrameOutcome& outcome) {
+  summary_.outcomes.push_back(outcome);
+  summary_.origin.date = date_text();
+  page_.add(outcome, outcome.output);
+  try {
+    page_.write({&summary_, 1}, summary_.outcomes.size() == frames_.size());
+  } catch (const FrameError& error) {
+    say(error.what());
+  }
 }
 
 /// One frame and what became of it. False where the batch ends with it.
@@ -249,7 +277,7 @@ bool Batch::process(std::size_t index, const Loaded& loaded) {
   }
   outcome.seconds = watch.seconds();
   send_frame_end(outcome);
-  summary_.outcomes.push_back(outcome);
+  record(outcome);
   if (outcome.status != "interrupted")
     farm_.frame_at(index, 1);
   return true;
@@ -261,7 +289,10 @@ int Batch::finish() {
   if (frames_.size() > 1)
     say(summary_.text());
   if (const FrameFiles& files = options_.frame.files; !files.summary.empty())
-    summary_.write(output_path(files, Output::summary, 0));
+    summary_.write(output_path(files, Output::summary, frames_.front()));
+  page_.write({&summary_, 1}, true);
+  if (!page_.problem().empty())
+    throw FrameError(page_.problem());
   if (stop_requested() && summary_.outcomes.size() < frames_.size())
     return signal_exit_code();
   if (!summary_.with_status("interrupted").empty())

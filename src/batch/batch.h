@@ -2,6 +2,7 @@
 
 #include "batch/batch_summary.h"
 #include "batch/frame_renderer.h"
+#include "batch/page_writer.h"
 
 #include <atomic>
 #include <exception>
@@ -57,10 +58,12 @@ private:
   Loaded load(int frame, const SharedLoaded& before, bool alone, Watch& watch) const;
   void read(Loaded& loaded, const SharedLoaded& before, bool alone, Watch& watch) const;
   Reading load_aside(int frame, const SharedLoaded& before, bool alone) const;
-  Loaded wait_for(Reading& reading) const;
+  Loaded wait_for(Reading& reading);
+  [[noreturn]] void leave_interrupted();
   void handle(std::size_t index, const Loaded& loaded, FrameOutcome& outcome);
   bool process(std::size_t index, const Loaded& loaded);
   void fail(std::size_t index, const std::exception& error, FrameOutcome& outcome);
+  void record(const FrameOutcome& outcome);
   std::string title(std::size_t index) const;
   void say(const std::string& line) const;
   int finish();
@@ -71,6 +74,7 @@ private:
   FrameRenderer renderer_;
   FarmProgress farm_;
   BatchSummary summary_;
+  PageWriter page_;
 };
 
 } // namespace vdbeam::cli

@@ -30,7 +30,9 @@ std::string BatchSummary::text() const {
 }
 
 void BatchSummary::write(const std::string& path) const {
-  nlohmann::ordered_json json{{"scene", scene}, {"frames_asked", frames}};
+  nlohmann::ordered_json json{{"scene", scene}};
+  add_origin(json, origin);
+  json["frames_asked"] = frames;
   for (const char* status : {"done", "skipped", "failed", "interrupted"})
     json[status] = with_status(status);
   json["frames"] = nlohmann::ordered_json::array();
@@ -41,6 +43,14 @@ void BatchSummary::write(const std::string& path) const {
                                  {"seconds", outcome.seconds}};
     if (!outcome.reason.empty())
       entry["reason"] = outcome.reason;
+    if (outcome.exit_code)
+      entry["exit_code"] = *outcome.exit_code;
+    if (outcome.error)
+      entry["error"] = *outcome.error;
+    if (outcome.error_low && outcome.error_high) {
+      entry["error_low"] = *outcome.error_low;
+      entry["error_high"] = *outcome.error_high;
+    }
     json["frames"].push_back(std::move(entry));
   }
   write_json_output(json, path);

@@ -171,7 +171,8 @@ void FileClaims::outputs_of(const FrameFiles& files, const std::vector<Output>& 
                             const std::vector<int>& frames, const std::string& whose) {
   for (const OutputKind& kind : output_kinds())
     if (std::find(wanted.begin(), wanted.end(), kind.output) != wanted.end())
-      outputs(whose + kind.name, kind.pattern(files), frames);
+      outputs(whose + kind.name, kind.pattern(files),
+              kind.of_all_frames ? std::vector{frames.front()} : frames);
 }
 
 } // namespace vdbeam::cli

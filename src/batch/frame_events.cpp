@@ -51,6 +51,10 @@ const char* name_of(Output kind) {
     return "report";
   case Output::summary:
     return "summary";
+  case Output::page:
+    return "page";
+  case Output::thumbnail:
+    return "thumbnail";
   }
   return "";
 }

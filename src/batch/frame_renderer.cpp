@@ -42,6 +42,19 @@ RenderSettings progress_settings(const Scene& scene, const std::optional<PassRan
   return settings;
 }
 
+/// What is known of the error of the image.
+void add_error(FrameOutcome& outcome, const RenderResult& result) {
+  if (result.passes.empty())
+    return;
+  const auto known = [](double value) {
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  };
+  const PassRecord& last = result.passes.back();
+  outcome.error = known(last.error_estimate);
+  outcome.error_low = known(last.error_low);
+  outcome.error_high = known(last.error_high);
+}
+
 } // namespace
 
 std::string FrameRenderer::path(Output output, int frame) const {
@@ -315,7 +328,8 @@ void FrameRenderer::display(const LoadedFrame& loaded, const Image& image) const
 }
 
 bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& title,
-                                 FarmProgress& farm, std::size_t index) const {
+                                 FarmProgress& farm, std::size_t index,
+                                 FrameOutcome& outcome) const {
   const Scene& scene = loaded.scene;
   const RenderSettings settings = progress_settings(scene, options_.pass_range);
   Progress progress(title, settings, options_.quiet);
@@ -368,6 +382,7 @@ bool FrameRenderer::render_frame(const LoadedFrame& loaded, const std::string& t
         fmt::format("{}: the time limit of {} ended the frame before its first pass: the image is "
                     "a quick look, for viewing only; allow more time or render fewer pixels",
                     output(loaded.frame()), format_duration(*scene.render.time)));
+  add_error(outcome, result);
   progress.finish(end_text(result, output(loaded.frame())));
   return true;
 }

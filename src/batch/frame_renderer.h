@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/batch_summary.h"
 #include "batch/note_book.h"
 #include "console/display.h"
 #include "console/progress.h"
@@ -52,9 +53,9 @@ public:
   /// written only when it is complete, else a checkpoint; without a whole pass it is a quick look,
   /// under its own name where the time limit ended it (and a FrameError says so), as a snapshot
   /// where a signal did. False where a signal ended it. Throws InputError and FrameError. `index`
-  /// is the frame's place in the batch.
+  /// is the frame's place in the batch; `outcome` gets the error of the image.
   bool render_frame(const LoadedFrame& loaded, const std::string& title, FarmProgress& farm,
-                    std::size_t index) const;
+                    std::size_t index, FrameOutcome& outcome) const;
 
   /// Writes what stands for a frame whose volume is missing: black, without opacity.
   void write_black(const LoadedFrame& loaded) const;

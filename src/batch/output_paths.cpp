@@ -119,6 +119,25 @@ private:
   std::size_t longest_name_ = 0;
 };
 
+/// "page//" becomes "page".
+std::string without_slashes(std::string path) {
+  while (path.size() > 1 && path.back() == '/')
+    path.pop_back();
+  return path;
+}
+
+/// A folder that the program makes where it is missing; its parent must be there.
+void check_output_folder(const std::string& option, const std::string& folder) {
+  if (has_frame_pattern(folder))
+    fail(option, folder,
+         "one page shows all frames; name a folder without a place for the frame number");
+  std::error_code error;
+  if (!fs::exists(folder, error))
+    PathCheck(option).check(without_slashes(folder));
+  else if (!fs::is_directory(folder, error))
+    fail(option, folder, "is not a folder");
+}
+
 } // namespace
 
 void check_output_path(const std::string& option, const std::string& path,
@@ -141,10 +160,15 @@ void check_output_path(const std::string& option, const std::string& path,
 }
 
 void check_output_paths(const FrameFiles& files, const std::vector<int>& frames) {
+  if (!files.html.empty())
+    check_output_folder("--html", files.html);
   for (const OutputKind& kind : output_kinds()) {
     const std::string pattern = kind.pattern(files);
     if (pattern.empty() || (kind.is_text && is_stdout(pattern)))
       continue;
+    std::error_code error;
+    if (*kind.in_folder != '\0' && !fs::exists(files.html, error))
+      continue; // nothing is in its way
     const std::vector<int>& wanted = kind.of_all_frames ? std::vector{frames.front()} : frames;
     if (!kind.is_side_file()) {
       check_output_path(kind.name, pattern, wanted);

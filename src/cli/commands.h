@@ -16,6 +16,7 @@ CommandRun add_live(CLI::App& app);
 CommandRun add_plan(CLI::App& app);
 CommandRun add_compare(CLI::App& app);
 CommandRun add_merge(CLI::App& app);
+CommandRun add_summary(CLI::App& app);
 CommandRun add_farm(CLI::App& app);
 CommandRun add_help(CLI::App& app);
 CommandRun add_generate(CLI::App& app);

@@ -34,6 +34,7 @@ const char* const examples = R"(Examples:
   vdbeam render smoke.toml -f 1-24 -o smoke.####.exr      a sequence; also 1-100x2, 1,5,9-12
   vdbeam render cloud.toml --target-error 0.001 --set volume.0.extinction=80
   vdbeam render smoke.toml -f 1-240 -o smoke.####.exr --skip-existing --checkpoint 5m
+  vdbeam render smoke.toml -f 1-240 -o smoke.####.exr --html page
   vdbeam render cloud.toml --pass-range 0-31 -o part0.exr
   vdbeam render cloud.toml --reference ref.exr --report report.json)";
 
@@ -98,6 +99,10 @@ void check_options(const RenderOptions& options) {
     throw InputError("--reference: excludes --region");
   if (frame.files.reference.empty() && !frame.files.second_reference.empty())
     throw InputError("--second-reference: belongs to --reference; give both");
+  if (frame.pass_range && !frame.files.html.empty())
+    throw InputError(
+        "--html: excludes --pass-range; render the merge with --html, or make the page "
+        "with vdbeam summary");
   if (frame.pass_range && options.batch.missing == MissingFile::black)
     throw InputError("--missing black: excludes --pass-range");
 }
@@ -244,6 +249,9 @@ void add_batch_options(CLI::App& app, RenderOptions& options) {
   app.add_option("--summary", batch.frame.files.summary,
                  "Write the result of each frame as JSON; - is stdout")
       ->option_text("FILE.json");
+  app.add_option("--html", batch.frame.files.html,
+                 "Write a page about the batch to this folder, replaced after each frame")
+      ->option_text("FOLDER");
   add_choice<FarmFormat>(
       app, "--progress", batch.farm,
       {{"plain", FarmFormat::plain},
@@ -283,7 +291,7 @@ void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
                  "--reference", "--second-reference", "--report"});
   group_options(app, "Sequences and farms",
                 {"-f", "--skip-existing", "--overwrite", "--on-error", "--missing", "--checkpoint",
-                 "--no-resume", "--pass-range", "--summary", "--progress"});
+                 "--no-resume", "--pass-range", "--summary", "--html", "--progress"});
 }
 
 } // namespace

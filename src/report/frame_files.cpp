@@ -15,13 +15,20 @@ constexpr OutputKind kinds[] = {
     {Output::preview, "--preview", &FrameFiles::preview},
     {Output::report, "--report", &FrameFiles::report, "", true},
     {Output::summary, "--summary", &FrameFiles::summary, "", true, true},
+    {Output::page, "--html", &FrameFiles::html, "", false, true, "index.html"},
+    {Output::thumbnail, "the thumbnails of --html", &FrameFiles::html, "", false, false,
+     "frame.####.png"},
 };
 
 } // namespace
 
 std::string OutputKind::pattern(const FrameFiles& files) const {
   const std::string& given = files.*option;
-  if (given.empty() || !is_side_file())
+  if (given.empty())
+    return given;
+  if (*in_folder != '\0')
+    return (std::filesystem::path(given) / in_folder).string();
+  if (!is_side_file())
     return given;
   return std::filesystem::path(given).replace_extension(std::string(side) + ".exr").string();
 }
@@ -32,8 +39,7 @@ std::span<const OutputKind> output_kinds() {
 
 std::string output_path(const FrameFiles& files, Output output, int frame) {
   const OutputKind& kind = kinds[static_cast<std::size_t>(output)];
-  const std::string pattern = kind.pattern(files);
-  return kind.of_all_frames ? pattern : substitute_frame(pattern, frame);
+  return substitute_frame(kind.pattern(files), frame);
 }
 
 } // namespace vdbeam

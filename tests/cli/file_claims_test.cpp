@@ -129,14 +129,19 @@ TEST_F(FileClaims, NoOutputReplacesAFileThatAKeyNames) {
       given.*kind.option = "given.exr";
       const std::string victim = output_path(given, kind.output, 1);
       const std::string bytes = "the bytes of " + victim;
+      if (*kind.in_folder != '\0')
+        fs::create_directory(folder_ / "given.exr");
       write(victim, bytes);
       Names words{"render", "s.toml", "-f",         "1",     "--passes",
                   "1",      "-o",     given.output, "--set", key_path(key, 0) + "=" + victim};
       if (kind.option != &FrameFiles::output)
-        words.insert(words.end(), {kind.name, "given.exr"});
+        words.insert(
+            words.end(),
+            {std::string(kind.name).substr(std::string(kind.name).rfind("--")), "given.exr"});
       expect_refused(words, kind.name + std::string(" ") + victim, key_path(key, 0));
       EXPECT_EQ(read(victim), bytes);
       fs::remove(folder_ / victim);
+      fs::remove(folder_ / "given.exr");
     }
   }
   EXPECT_GE(keys, 5);

@@ -10,7 +10,7 @@ TEST_F(Usage, HelpOfEveryCommandHasExamples) {
   EXPECT_EQ(top.code, 0);
   EXPECT_NE(top.out.find("Exit codes:"), std::string::npos);
   for (const char* command :
-       {"render", "info", "init", "plan", "compare", "merge", "farm", "help"}) {
+       {"render", "info", "live", "init", "plan", "compare", "merge", "summary", "farm", "help"}) {
     EXPECT_NE(top.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
     const auto help = run({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
@@ -57,11 +57,11 @@ TEST_F(Usage, TyposAreToldWithWhatWasMeant) {
   const std::string s = VDBEAM_SOURCE_DIR "/data/smoke/smoke.00";
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{},
-       "vdbeam: which command? render, info, init, plan, compare, merge, farm or help; "
-       "vdbeam --help describes them\n"},
+       "vdbeam: which command? render, info, live, init, plan, compare, merge, summary, farm "
+       "or help; vdbeam --help describes them\n"},
       {{"rendr", "x.vdb"},
-       "vdbeam: rendr is not one of its commands, which are render, info, init, plan, compare, "
-       "merge, farm and help; did you mean render?\n"},
+       "vdbeam: rendr is not one of its commands, which are render, info, live, init, plan, "
+       "compare, merge, summary, farm and help; did you mean render?\n"},
       {{"x.vdb"}, "vdbeam: x.vdb is not a command; to render it: vdbeam render x.vdb\n"},
       {{"x.toml"}, "vdbeam: x.toml is not a command; to render it: vdbeam render x.toml\n"},
       {{"--versoin"}, "vdbeam: there is no option --versoin; did you mean --version?\n"},
@@ -148,6 +148,7 @@ TEST_F(Usage, HelpFitsATerminal) {
                                              {"plan"},
                                              {"compare"},
                                              {"merge"},
+                                             {"summary"},
                                              {"farm"},
                                              {"farm", "slurm"},
                                              {"farm", "openjd"},

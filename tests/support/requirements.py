@@ -7,13 +7,16 @@ DEBIAN = "/usr/bin/python3"
 SKIPPED = 77  # what CTest shows as skipped
 
 
+def required(part):
+    """Whether VDBEAM_REQUIRE, a list of parts with commas between them, names the part."""
+    return part in os.environ.get("VDBEAM_REQUIRE", "").split(",")
+
+
 def skip(part, reason):
     """Ends a test that cannot run for want of `part` ("slurm", "browser", "blender", "disk", "numpy"
-    or "binutils"): as skipped, or as failed where VDBEAM_REQUIRE, a list of parts with commas between
-    them, names it."""
-    required = part in os.environ.get("VDBEAM_REQUIRE", "").split(",")
-    print(f"{'failed, since VDBEAM_REQUIRE names ' + part if required else 'skipped'}: {reason}")
-    sys.exit(1 if required else SKIPPED)
+    or "binutils"): as skipped, or as failed where VDBEAM_REQUIRE names it."""
+    print(f"{'failed, since VDBEAM_REQUIRE names ' + part if required(part) else 'skipped'}: {reason}")
+    sys.exit(1 if required(part) else SKIPPED)
 
 
 def import_failed(problem):

@@ -2,6 +2,7 @@
 """The page of tools/error_vs_time.py in a real browser: it loads without errors, the slider and the mouse
 move the border between the images, the images can be chosen."""
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -56,6 +57,29 @@ class ErrorPage(unittest.TestCase):
         self.assertEqual(self.value("performance.getEntriesByType('resource')"
                                     ".filter(r => !r.name.startsWith('data:')).length"), 0)
         self.assertTrue(self.value("document.documentElement.scrollWidth <= innerWidth"))
+        self.assertEqual(self.browser.console_errors(), [])
+
+    def hover(self, fraction):
+        """Puts the pointer on the first plot, at this fraction of the width of its axes; returns the lines shown."""
+        offset = self.value(f"""(() => {{
+            const place = scenes[0].place,
+                  box = document.querySelector(".plot").getBoundingClientRect();
+            return box.width * (place.left + {fraction} * (place.right - place.left) - 0.5); }})()""")
+        self.browser.drag(".plot", (0, 0), (round(offset), 0))
+        return self.value("[...document.querySelectorAll('.values')[0].children].map(line => line.textContent)")
+
+    def test_pointer_shows_the_values_of_all_curves(self):
+        lines = self.hover(0.5)
+        self.assertEqual(len(lines), 5)
+        seconds = float(lines[0].split()[1])
+        products = {"beam": 0.002, "gather": 0.001, "march": 0.05, "path": 0.03}
+        for line in lines[1:]:
+            # The error is C / seconds, with factors of 1 and 1.1 for the seeds 1 and 2.
+            name, mean, low, high = re.match(r"(\w+): MRSE (\S+) \((\S+) to (\S+) over 2 seeds\)", line).groups()
+            for text, factor in ((mean, 1.1 ** 0.5), (low, 1), (high, 1.1)):
+                self.assertAlmostEqual(float(text) * seconds / products[name] / factor, 1, delta=0.03)
+        self.assertEqual(self.value("document.querySelector('.pointer').hidden"), False)
+        self.assertIn("beam: no value", self.hover(0.01))  # before the first pass has ended
         self.assertEqual(self.browser.console_errors(), [])
 
     def test_slider_moves_the_border(self):

@@ -61,6 +61,10 @@ class Browser:
     def command(self, path, body=None, method="POST"):
         return self._call(method, self.session + path, body)
 
+    def devtools(self, command, parameters):
+        """A command of the Chrome DevTools Protocol."""
+        return self.command("/goog/cdp/execute", {"cmd": command, "params": parameters})
+
     def open(self, url):
         self.command("/url", {"url": url})
 

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib import image as matplotlib_image
 
 from . import exr
-from .report import ReportError, group_runs, table
+from .report import ReportError, group_runs, join_seeds, table
 
 TEMPLATE = Path(__file__).with_name("page.html")
 # Errors are shown as |v - r| / (r + 0.01), the root of a pixel's MRSE, from 0 to this.
@@ -75,7 +75,19 @@ def _conditions(folder, runs):
     return html.escape("Measured " + "; ".join(parts) + ".")
 
 
-def _scene_data(scene, runs, folder, reference_paths):
+def _values(scene, runs, points=60):
+    """The curves of a scene as numbers, for the pointer: seconds, MRSE, and its least and largest over the seeds."""
+    curves = []
+    for name, estimator, group in group_runs(runs):
+        curve = join_seeds(group, points) if name == scene else None
+        if curve is not None:
+            columns = zip(curve.seconds, curve.mrse, curve.low, curve.high)
+            curves.append({"name": estimator, "seeds": len(group),
+                           "points": [[float(f"{value:.4g}") for value in row] for row in columns]})
+    return curves
+
+
+def _scene_data(scene, runs, folder, reference_paths, place):
     """What the page shows of one scene: the run with the first seed of each estimator."""
     firsts = [group[0] for name, _, group in group_runs(runs) if name == scene]
     pictures = [exr.read_rgb(path) for path in reference_paths]
@@ -97,7 +109,7 @@ def _scene_data(scene, runs, folder, reference_paths):
     curves, dark = (_data_url((folder / f"{scene}{ending}.svg").read_bytes(), "image/svg+xml")
                     for ending in ("", ".dark"))
     return {"name": scene, "curves": curves, "dark": dark, "images": images, "errors": errors,
-            "settings": settings}
+            "settings": settings, "place": place, "values": _values(scene, runs)}
 
 
 def _html_table(markdown):
@@ -110,9 +122,10 @@ def _html_table(markdown):
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def write_page(runs, folder, references):
-    """Writes FOLDER/index.html from the runs' images and reports. `references`: scene -> one or two EXRs."""
-    scenes = [_scene_data(scene, runs, folder, references[scene])
+def write_page(runs, folder, references, places):
+    """Writes FOLDER/index.html from the runs' images and reports. `references`: scene -> one or two EXRs; `places`:
+    scene -> what plots.plot_scene returned."""
+    scenes = [_scene_data(scene, runs, folder, references[scene], places[scene])
               for scene in dict.fromkeys(run.scene for run in runs)]
     # "</" would end the script element.
     data = json.dumps(scenes).replace("</", "<\\/")

@@ -29,7 +29,7 @@ def _label(axis):
 def plot_scene(runs, scene, path_stem, noise=None):
     """Writes PATH_STEM.png and PATH_STEM.svg, and PATH_STEM.dark.svg for dark pages: a line per
     estimator (the geometric mean over the seeds), a band from the least to the largest, and the
-    reference's own noise."""
+    reference's own noise. Returns where the axes lie in the drawing, for a page that shows values."""
     for style, ending in (("default", ""), ("dark_background", ".dark")):
         with plt.style.context(style):
             plt.rcParams["svg.hashsalt"] = "vdbeam"  # the same file for the same data
@@ -37,7 +37,15 @@ def plot_scene(runs, scene, path_stem, noise=None):
             if not ending:
                 figure.savefig(f"{path_stem}.png", dpi=144)
             figure.savefig(f"{path_stem}{ending}.svg", metadata={"Date": None}, transparent=True)
+            place = _place(figure.axes[0])
             plt.close(figure)
+    return place
+
+
+def _place(axes):
+    """The edges of the axes as fractions of the drawing, from its top left, and the seconds at the left and right."""
+    box = axes.get_position()
+    return {"left": box.x0, "right": box.x1, "top": 1 - box.y1, "bottom": 1 - box.y0, "seconds": axes.get_xlim()}
 
 
 def _draw(runs, scene, noise):
@@ -58,7 +66,7 @@ def _draw(runs, scene, noise):
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("seconds of rendering")
-    axes.set_ylabel("MRSE")
+    axes.set_ylabel("error (MRSE, mean relative squared error)")
     axes.set_title(scene)
     _label(axes.xaxis)
     _label(axes.yaxis)
