@@ -25,7 +25,7 @@ struct LiveEdit {
   int edit = 0;                     ///< its number, from 1
   std::vector<std::string> changed; ///< keys that differ from the last scene, if any
   bool mixed = false;               ///< nothing is rendered anew: only strengths of lights changed
-  /// Of what was read and built for it; what is not counted was kept.
+  /// Counts what was read and built for it; everything else was kept.
   std::uint64_t grids_read = 0, meshes_read = 0, trees_built = 0;
 };
 

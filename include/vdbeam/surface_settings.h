@@ -38,9 +38,10 @@ struct MaterialSettings {
 };
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the
-/// origin, the square from -1 to 1 in x and y, and the disk of radius 1 in that plane; the front of
-/// the latter two faces +z.
-enum class SurfaceShape { file, sphere, quad, disk };
+/// origin, the square from -1 to 1 in x and y, the disk of radius 1 in that plane, all of that
+/// plane without an end, the cube from -1 to 1, and the closed cylinder of radius 1 about the z
+/// axis from z = -1 to 1; the front of what is flat faces +z. A plane cannot emit.
+enum class SurfaceShape { file, sphere, quad, disk, plane, box, cylinder };
 
 struct SurfaceSettings {
   std::string name; ///< in Cryptomatte; empty: mesh0, mesh1, ...

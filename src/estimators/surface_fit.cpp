@@ -100,8 +100,8 @@ float SurfaceFit::farthest_off(int x, int y, float radius) const {
   return static_cast<float>(farthest_off_plane * pixel_width) * (radius + 0.5f);
 }
 
-/// Calls visit(pixel, dx, dy) for the pixels around at whole steps, of which there are 3 to each
-/// side, that show the same surface.
+/// Calls visit(pixel, dx, dy) for the pixels that show the same surface, up to 3 steps to each
+/// side.
 template <class Visit>
 void SurfaceFit::visit_neighbours(int x, int y, int step, const Visit& visit) const {
   const int surface = pixels_[index(x, y)].surface;

@@ -21,6 +21,15 @@ GroupedLight SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f&
                               straight);
 }
 
+GroupedLight SurfaceLighting::added_to_plate(const SurfaceVertex& vertex, const Vec3f& direction,
+                                             Rng& rng) const {
+  constexpr int paths = 4;
+  GroupedLight sum;
+  for (int i = 0; i < paths; ++i)
+    sum += tracer_.added_to_plate(vertex.hit(), direction, rng, !shows_photons(vertex));
+  return sum / static_cast<float>(paths) + by_photons(vertex, rng);
+}
+
 GroupedLight SurfaceLighting::by_photons(const SurfaceVertex& vertex, Rng& rng) const {
   if (!shows_photons(vertex))
     return {};

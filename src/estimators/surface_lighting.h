@@ -25,6 +25,8 @@ public:
   GroupedLight by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
                         GroupedLight* straight = nullptr) const;
   GroupedLight by_photons(const SurfaceVertex& vertex, Rng& rng) const;
+  /// The light of a shadow catcher that the plate does not have.
+  GroupedLight added_to_plate(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
 private:
   /// Photons bring light to the surface, which it spreads.

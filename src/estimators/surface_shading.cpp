@@ -1,5 +1,6 @@
 #include "estimators/surface_shading.h"
 
+#include "math/mean_of_light.h"
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
 #include "rays/caught_shadow.h"
@@ -68,27 +69,6 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
   return way;
 }
 
-/// Mean of independent estimates of light.
-class MeanOfLight {
-public:
-  void add(const GroupedLight& light) {
-    sum_ += light;
-    squares_ += light.sum() * light.sum();
-    ++count_;
-  }
-  GroupedLight mean() const { return sum_ * (1 / count_); }
-  /// The mean's, estimated from at least two.
-  Rgb variance() const {
-    const Rgb mean = sum_.sum() * (1 / count_);
-    return (squares_ * (1 / count_) - mean * mean) * (1 / (count_ - 1));
-  }
-
-private:
-  GroupedLight sum_;
-  Rgb squares_;
-  float count_ = 0;
-};
-
 bool samples_extended_light(const World& world, const WalkTracer& tracer) {
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     if (tracer.samples_light(i) && !world.lights[i].is_delta())
@@ -149,7 +129,10 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   const SurfaceVertex vertex(*world_.surfaces, *camera.hit, camera.ray().direction);
   if (vertex.material().is_shadow_catcher()) {
     Rng rng = path_rng(0);
-    return {{}, caught_shadow(world_, camera, rng)};
+    SeenSurface seen{.caught = caught_shadow(world_, camera, rng)};
+    if (input_.layers && input_.layers->tells_added_light())
+      seen.added = surfaces_.added_to_plate(vertex, camera.ray().direction, rng).sum();
+    return seen;
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
@@ -180,7 +163,8 @@ SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direc
   }
   beyond *= 1 / static_cast<float>(paths);
   const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
-  SeenSurface seen{beyond + straight.mean() + photons + emitted, 0, lamp_of(vertex)};
+  SeenSurface seen{.radiance = beyond + straight.mean() + photons + emitted,
+                   .lamp = lamp_of(vertex)};
   if (!fitted)
     return seen;
   seen.albedo = albedo;
@@ -356,9 +340,10 @@ GroupedLight SurfaceShading::along(const CameraRay& ray, const DepthProfile& pro
 Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
   Rgb left(1);
   const PeakTakenOut* peak = world_.medium.peak.get();
-  for (std::size_t v = 0; peak && !profile.empty() && v < world_.medium.volumes.size(); ++v)
+  for (std::size_t v = 0; peak && !profile.empty() && v < profile.volume_count(); ++v)
     for (int c = 0; c < 3; ++c)
-      left[c] *= std::exp(-peak->excess[v][c] * profile.tau(profile.knots() - 1, v));
+      left[c] *=
+          std::exp(-peak->excess[profile.volume(v)][c] * profile.tau(profile.knots() - 1, v));
   return left;
 }
 

@@ -3,6 +3,7 @@
 #include "estimators/surface_fit.h"
 
 #include "machine/stopwatch.h"
+#include "rays/crossed_shadows.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
@@ -23,8 +24,8 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   for (std::size_t i = 0; i < deep.count(); ++i) {
     cursor.move_to(std::min(deep.end(i), profile.back()));
     Rgb after, light;
-    for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
-      after += world.medium.peak->excess[v] * cursor.tau(v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      after += world.medium.peak->excess[profile.volume(v)] * cursor.tau(v);
     for (int c = 0; c < 3; ++c)
       light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(after[c] - before[c]);
     deep.add_light(i, light);
@@ -39,15 +40,15 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   Rgb before;
   for (std::size_t knot = 1; knot < profile.knots(); ++knot) {
     Rgb after;
-    for (std::size_t v = 0; v < excess.size(); ++v)
-      after += excess[v] * profile.tau(knot, v);
-    for (std::size_t v = 0; v < excess.size(); ++v) {
-      const Rgb own = excess[v] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      after += excess[profile.volume(v)] * profile.tau(knot, v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v) {
+      const Rgb own = excess[profile.volume(v)] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
       Rgb light;
       for (int c = 0; c < 3; ++c)
         if (const float all = after[c] - before[c]; all > 0)
           light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(all) * own[c] / all;
-      volumes.add(world.medium.volumes[v].setting, light);
+      volumes.add(world.medium.volumes[profile.volume(v)].setting, light);
     }
     before = after;
   }
@@ -70,8 +71,8 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
   const std::size_t last = ray.profile.knots() - 1;
   const Rgb tau = ray.profile.channels(world.medium, last);
   Rgb excess;
-  for (std::size_t v = 0; v < world.medium.volumes.size(); ++v)
-    excess += world.medium.peak->excess[v] * ray.profile.tau(last, v);
+  for (std::size_t v = 0; v < ray.profile.volume_count(); ++v)
+    excess += world.medium.peak->excess[ray.profile.volume(v)] * ray.profile.tau(last, v);
   Rgb through, scattered;
   for (int c = 0; c < 3; ++c) {
     through[c] = radiance.sum()[c] * std::exp(-tau[c]);
@@ -124,8 +125,23 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
                  const Rgb& tr) {
   Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo;
   if (ray.camera.hit && world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
-    light = Rgb(1 - surface.shadow);
+    light = Rgb(1 - surface.caught.mean);
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
+}
+
+/// Shadow rays of a pixel: more where its ray crosses shafts of light.
+int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, const RngKey& key) {
+  // The best of 1, 2, 4 and 8 (research-log/surface-fit.md).
+  constexpr int in_shafts = 2;
+  if (ray.profile.empty())
+    return 1;
+  const PhotonPlan& plan = photons.plan();
+  const int samples = plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1));
+  Rng rng(key, RngStage::crossed_shadows, ray.stream);
+  return plan.chooses_direct_samples && crosses_shadows(photons.world(), ray.camera.ray(),
+                                                        ray.profile, plan.sampled_lights, rng)
+             ? samples * in_shafts
+             : samples;
 }
 
 /// Which pixels of the tile lie on edges.
@@ -200,8 +216,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
   shade_emission(input, world, ray.camera, ray.profile, target.pixel, image, counts.emission_rays);
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
-  const int of_pixel =
-      plan.direct_samples_of(ray.profile.empty() ? 0 : ray.profile.total(ray.profile.knots() - 1));
+  const int of_pixel = direct_samples(photons, ray, key);
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
   const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
                                &photons.shadows(), input.stop};

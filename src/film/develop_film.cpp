@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace vdbeam {
 
@@ -113,13 +114,16 @@ void Film::add_layer(const std::string& name, Image& image) const {
     const std::string channel(1, "RGB"[c]);
     if (name == "background")
       add(channel, true, [&](std::size_t i) { return background_.high(3 * i + c) / n; });
+    const auto variance = [&](std::size_t i) {
+      const double mean = sum(3 * i + c, true) / n;
+      return passes_ < 2
+                 ? 0.0
+                 : std::max(0.0, squares_.high(3 * i + c) - n * mean * mean) / (n * (n - 1));
+    };
     if (name == "variance")
-      add(channel, false, [&](std::size_t i) {
-        const double mean = sum(3 * i + c, true) / n;
-        return passes_ < 2
-                   ? 0.0
-                   : std::max(0.0, squares_.high(3 * i + c) - n * mean * mean) / (n * (n - 1));
-      });
+      add(channel, false, variance);
+    if (name == "error")
+      add(channel, false, [&](std::size_t i) { return std::sqrt(variance(i)); });
   }
 }
 

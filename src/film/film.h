@@ -94,7 +94,8 @@ public:
   DeepFilm* deep() { return deep_ ? &*deep_ : nullptr; }
   const DeepFilm* deep() const { return deep_ ? &*deep_ : nullptr; }
   /// Adds one of the layers that develop() leaves out, or nothing: background, transmittance,
-  /// variance, that of the mean of the passes (float), and samples, rays per pixel (float).
+  /// variance, that of the mean of the passes (float), error, its root (float), and samples, rays
+  /// per pixel (float).
   void add_layer(const std::string& name, Image& image) const;
 
   /// The expected MRSE of develop()'s R, G, B, without bias, from the variance of the passes: the

@@ -14,10 +14,10 @@ namespace {
 
 const std::vector<std::string>& usual_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all{"beauty",          "alpha",           "volume",  "volume_direct",
-                                 "volume_indirect", "volume_emission", "depth",   "background",
-                                 "transmittance",   "variance",        "samples", "lights",
-                                 "volumes",         "cryptomatte"};
+    std::vector<std::string> all{
+        "beauty",          "alpha",   "volume",     "volume_direct", "volume_indirect",
+        "volume_emission", "depth",   "background", "transmittance", "variance",
+        "error",           "samples", "lights",     "volumes",       "cryptomatte"};
     const std::vector<std::string> planes = plane_layer_names();
     all.insert(all.end(), planes.begin(), planes.end());
     return all;

@@ -1,5 +1,8 @@
 #include "geometry/shape.h"
 
+#include "geometry/shape_math.h"
+#include "geometry/simple_shapes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -39,31 +42,7 @@ double most_stretch(const Affine& map) {
   return std::sqrt(mean + 2 * p * std::cos(std::acos(std::clamp(half, -1.0, 1.0)) / 3));
 }
 
-double distance_to_edge(const Vec3d& p, const Vec3d& a, const Vec3d& edge) {
-  const double square = dot(edge, edge);
-  const double along = square > 0 ? std::clamp(dot(p - a, edge) / square, 0.0, 1.0) : 0;
-  return length(p - a - edge * along);
-}
-
-/// From a point to a triangle: to its plane where the point stands above it, else to an edge.
-double distance_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d normal = cross(b - a, c - a);
-  const double square = dot(normal, normal);
-  const bool above = square > 0 && dot(cross(b - a, p - a), normal) >= 0 &&
-                     dot(cross(c - b, p - b), normal) >= 0 && dot(cross(a - c, p - c), normal) >= 0;
-  if (above)
-    return std::abs(dot(p - a, normal)) / std::sqrt(square);
-  return std::min({distance_to_edge(p, a, b - a), distance_to_edge(p, b, c - b),
-                   distance_to_edge(p, c, a - c)});
-}
-
 constexpr double pi_d = std::numbers::pi;
-
-/// The angle from +x towards +y, as a share of the full turn, in [0, 1).
-double turn(const Vec3d& point) {
-  const double share = std::atan2(point.y, point.x) / (2 * pi_d);
-  return share < 0 ? share + 1 : share;
-}
 
 class MeshShape final : public Shape {
 public:
@@ -284,10 +263,21 @@ std::shared_ptr<const Shape> make_mesh_shape(Mesh mesh) {
 }
 
 std::shared_ptr<const Shape> make_simple_shape(SurfaceShape kind) {
-  if (kind == SurfaceShape::sphere)
+  switch (kind) {
+  case SurfaceShape::sphere:
     return std::make_shared<SphereShape>();
-  if (kind == SurfaceShape::disk)
+  case SurfaceShape::disk:
     return std::make_shared<DiskShape>();
+  case SurfaceShape::plane:
+    return make_plane_shape();
+  case SurfaceShape::box:
+    return make_box_shape();
+  case SurfaceShape::cylinder:
+    return make_cylinder_shape();
+  case SurfaceShape::file:
+  case SurfaceShape::quad:
+    break;
+  }
   return std::make_shared<QuadShape>();
 }
 

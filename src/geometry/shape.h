@@ -39,6 +39,8 @@ public:
   virtual ~Shape() = default;
 
   virtual std::size_t primitives() const = 0;
+  /// It has no end: its bounds are those of a part, and it needs no tree.
+  virtual bool is_infinite() const { return false; }
   virtual Boxd bounds(std::size_t primitive) const = 0;
   /// The nearest point of the line origin + t direction with t_begin < t < t_end; `direction` need
   /// not have unit length.
@@ -46,7 +48,7 @@ public:
                                             const Vec3d& direction, double t_begin,
                                             double t_end) const = 0;
   /// The distance of a point from a primitive in its place, both in render space, or less: exact
-  /// for triangles and quads, and for spheres and disks that are not stretched.
+  /// for what is flat, and for spheres, disks and cylinders that are not stretched.
   virtual double distance(std::size_t primitive, const Vec3d& point,
                           const ShapePlace& place) const = 0;
   virtual double area() const = 0;

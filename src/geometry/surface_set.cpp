@@ -37,8 +37,9 @@ bool approach_primitive(RTCPointQueryFunctionArguments* args) {
 } // namespace
 
 struct SurfaceSet::Data {
-  DevicePtr device;
+  DevicePtr device; ///< null where all surfaces are planes
   std::vector<Placed> surfaces;
+  std::vector<unsigned> planes; ///< surfaces without an end, which stand in no tree
   std::map<const Shape*, std::shared_ptr<const ShapeTree>> trees;
   ScenePtr scene;
   Boxd bounds;
@@ -47,8 +48,10 @@ struct SurfaceSet::Data {
   int trees_built = 0;
 
   void place(std::vector<PlacedShape>&& placed);
+  void bound_planes(double reach);
   void grow_trees(double reach, const Data* previous);
   void build_scene();
+  bool meet_planes(Query& query) const;
   void run(Query& query) const;
 };
 
@@ -57,28 +60,54 @@ void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
     Placed entry{std::move(surface), {}, {}};
     const Shape& shape = *entry.surface.shape;
     entry.place = ShapePlace::at(entry.surface.to_render);
-    entry.bounds = mapped(entry.surface.to_render, shape.bounds());
-    bounds.extend(entry.bounds);
-    most_shrink = std::max(most_shrink, entry.place.most_shrink);
+    if (shape.is_infinite()) {
+      planes.push_back(static_cast<unsigned>(surfaces.size()));
+    } else {
+      entry.bounds = mapped(entry.surface.to_render, shape.bounds());
+      bounds.extend(entry.bounds);
+      most_shrink = std::max(most_shrink, entry.place.most_shrink);
+    }
     surfaces.push_back(std::move(entry));
+  }
+}
+
+/// What lights aim photons at: of an evenly lit plane, all but this part of the light that it sends
+/// to a point at the distance h comes from within h / part.
+void SurfaceSet::Data::bound_planes(double reach) {
+  constexpr double part = 5e-5;
+  for (const unsigned i : planes) {
+    Placed& entry = surfaces[i];
+    const Vec3d normal = entry.normal({0, 0, 1});
+    const Vec3d foot = normal * dot(normal, entry.surface.to_render.translation);
+    const double radius = (reach + length(foot)) / part;
+    Vec3d half;
+    for (int a = 0; a < 3; ++a)
+      half[a] = radius * std::sqrt(std::max(0.0, 1 - normal[a] * normal[a]));
+    entry.bounds = {foot - half, foot + half};
   }
 }
 
 /// A tree for each shape, those of the previous set where their boxes are wide enough.
 void SurfaceSet::Data::grow_trees(double reach, const Data* previous) {
-  device = previous ? previous->device : make_device();
+  if (planes.size() == surfaces.size())
+    return;
+  device = previous && previous->device ? previous->device : make_device();
   // Embree rounds rays to single precision in each shape's own space; boxes are wider by as much,
   // but never by so much that they hold nothing out.
   constexpr double rounding = 1e-6, widest = 0.01;
   std::map<const Shape*, double> margins;
   for (const Placed& entry : surfaces) {
     const Shape* shape = entry.surface.shape.get();
+    if (shape->is_infinite())
+      continue;
     const double size = length(shape->bounds().size());
     const double local_reach = reach / least_stretch(entry.place.to_shape) + size;
     margins[shape] = std::max(margins[shape], std::min(rounding * local_reach, widest * size));
   }
   for (const Placed& entry : surfaces) {
     const std::shared_ptr<const Shape>& shape = entry.surface.shape;
+    if (shape->is_infinite())
+      continue;
     std::shared_ptr<const ShapeTree>& tree = trees[shape.get()];
     if (tree)
       continue;
@@ -95,9 +124,13 @@ void SurfaceSet::Data::grow_trees(double reach, const Data* previous) {
 }
 
 void SurfaceSet::Data::build_scene() {
+  if (!device)
+    return;
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].surface.shape->is_infinite())
+      continue;
     RTCGeometry instance = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     const Affine& map = surfaces[i].surface.to_render;
     float matrix[12];
@@ -115,9 +148,36 @@ void SurfaceSet::Data::build_scene() {
   commit(scene.get(), device);
 }
 
+/// False where nothing more is asked for.
+bool SurfaceSet::Data::meet_planes(Query& query) const {
+  // Single precision holds the squares of positions.
+  constexpr double farthest = 1e17;
+  const double end = query.t_end;
+  for (const unsigned i : planes) {
+    const Placed& entry = surfaces[i];
+    if (query.camera && !entry.surface.visible)
+      continue;
+    query.enter(i);
+    const auto hit = entry.surface.shape->intersect(0, query.local_origin, query.local_direction,
+                                                    query.t_begin, std::min(query.t_end, farthest));
+    if (!hit)
+      continue;
+    query.hit = *hit;
+    query.found = i;
+    query.found_primitive = 0;
+    query.t_end = hit->t;
+  }
+  const bool met = query.found != RTC_INVALID_GEOMETRY_ID;
+  if (!met)
+    query.t_end = end;
+  return device && !(met && query.any);
+}
+
 void SurfaceSet::Data::run(Query& query) const {
   rtcInitIntersectContext(&query.context);
   query.surfaces = &surfaces;
+  if (!meet_planes(query))
+    return;
   // A far origin is moved up to the surfaces.
   const Vec3d center = bounds.center();
   const double radius = 0.5 * length(bounds.size());
@@ -152,9 +212,10 @@ SurfaceSet::SurfaceSet(std::vector<PlacedShape> surfaces, double reach, const Su
     : data_(std::make_unique<Data>()) {
   data_->place(std::move(surfaces));
   const Boxd& box = data_->bounds;
-  const double coordinate = std::max(length(box.lower), length(box.upper));
-  data_->grow_trees(reach + coordinate + length(box.size()),
-                    previous ? previous->data_.get() : nullptr);
+  if (!box.empty())
+    reach += std::max(length(box.lower), length(box.upper)) + length(box.size());
+  data_->bound_planes(reach);
+  data_->grow_trees(reach, previous ? previous->data_.get() : nullptr);
   data_->build_scene();
   // Embree's trees over user geometry take about 60 bytes per primitive.
   constexpr std::size_t tree_bytes = 60;
@@ -199,6 +260,12 @@ bool SurfaceSet::occluded(const Vec3d& origin, const Vec3d& direction, double t_
 }
 
 double SurfaceSet::distance(const Vec3d& point, double most) const {
+  for (const unsigned i : data_->planes) {
+    const Placed& entry = data_->surfaces[i];
+    most = std::min(most, entry.surface.shape->distance(0, point, entry.place));
+  }
+  if (!data_->device)
+    return most;
   Nearest nearest{&data_->surfaces, point, most};
   // Embree 3.13 begins in a shape's own space with the radius as it is, in units of that space: too
   // small where the shape is. From the first primitive on it converts the radius.
@@ -219,6 +286,9 @@ const Boxd& SurfaceSet::bounds() const {
 Boxd SurfaceSet::bounds(std::size_t surface) const {
   return data_->surfaces[surface].bounds;
 }
+bool SurfaceSet::is_infinite(std::size_t surface) const {
+  return data_->surfaces[surface].surface.shape->is_infinite();
+}
 std::size_t SurfaceSet::bytes() const {
   return data_->bytes;
 }
@@ -227,7 +297,18 @@ double SurfaceSet::area(std::size_t surface) const {
   const Placed& entry = data_->surfaces[surface];
   const Shape& shape = *entry.surface.shape;
   constexpr int points = 64;
+  constexpr std::size_t few = 8;
   double sum = 0;
+  if (const std::size_t count = shape.primitives(); count > 1 && count <= few) {
+    for (std::size_t primitive = 0; primitive < count; ++primitive) {
+      const double part = shape.area_before(primitive + 1) - shape.area_before(primitive);
+      for (int i = 0; i < points * points; ++i) {
+        const AreaPlace place{(i % points + 0.5) / points, (i / points + 0.5) / points};
+        sum += part * entry.stretch(shape.sample(primitive, place).normal);
+      }
+    }
+    return sum / (points * points);
+  }
   for (int i = 0; i < points * points; ++i) {
     const int row = i / points;
     const double u = (i % points + 0.5) / points, v = (row + 0.5) / points;

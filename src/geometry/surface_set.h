@@ -80,8 +80,10 @@ public:
   double distance(const Vec3d& point, double most) const;
 
   std::size_t size() const;
-  const Boxd& bounds() const; ///< of all surfaces
+  const Boxd& bounds() const; ///< of all surfaces but planes; empty where there are no others
+  /// Bounds of one; of a plane, of the part that sends light to the medium and to other surfaces.
   Boxd bounds(std::size_t surface) const;
+  bool is_infinite(std::size_t surface) const;
   std::size_t bytes() const;
   double area(std::size_t surface) const;
   SurfacePoint sample(std::size_t surface, double u_primitive, double u, double v) const;

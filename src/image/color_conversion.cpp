@@ -21,7 +21,7 @@ void for_each_color(Image& image, const Visit& visit) {
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
     const std::string& red = image.channels[i].name;
     if (!(red == "R" || red.ends_with(".R")) || red.starts_with("variance") ||
-        red.starts_with("CryptoObject"))
+        red.starts_with("error.") || red.starts_with("shadow.") || red.starts_with("CryptoObject"))
       continue;
     const std::string layer = red.substr(0, red.size() - 1);
     std::vector<float>* planes[3] = {&image.channels[i].data, nullptr, nullptr};

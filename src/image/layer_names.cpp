@@ -18,6 +18,8 @@ constexpr LayerName names[] = {{"volume_direct", "volume_direct", "VolumeDir"},
                                {"background", "background", "Env"},
                                {"depth", "", "Depth"}, // Arnold's is the channel Z itself
                                {"depth_near", "volume_Z", ""},
+                               {"denoising_albedo", "albedo", "Denoising Albedo"},
+                               {"denoising_normal", "N", "Denoising Normal"},
                                {"position", "P", "Position"},
                                {"motion", "motionvector", "Vector"}};
 constexpr std::string_view view_layer = "ViewLayer.";

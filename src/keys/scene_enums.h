@@ -99,11 +99,14 @@ struct EnumNames<EmissionLaw> {
 };
 template <>
 struct EnumNames<SurfaceShape> {
-  static constexpr std::array<std::pair<SurfaceShape, std::string_view>, 4> table{
+  static constexpr std::array<std::pair<SurfaceShape, std::string_view>, 7> table{
       {{SurfaceShape::file, "file"},
        {SurfaceShape::sphere, "sphere"},
        {SurfaceShape::quad, "quad"},
-       {SurfaceShape::disk, "disk"}}};
+       {SurfaceShape::disk, "disk"},
+       {SurfaceShape::plane, "plane"},
+       {SurfaceShape::box, "box"},
+       {SurfaceShape::cylinder, "cylinder"}}};
 };
 template <>
 struct EnumNames<VolumeShape> {

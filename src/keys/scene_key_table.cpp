@@ -156,7 +156,9 @@ void add_mesh(KeyTable& table) {
   table.section(SceneSection::mesh);
   table.add("type", &S::shape,
             "triangles from a file, or a shape: the unit sphere about the origin, the square "
-            "from -1 to 1 in x and y, the unit disk in that plane; square and disk face +z");
+            "from -1 to 1 in x and y, the unit disk in that plane, the plane without an end, the "
+            "cube from -1 to 1, the closed cylinder of radius 1 from -1 to 1 along z; what is flat "
+            "faces +z");
   table.add("file", &S::file, "an .obj, .ply, .gltf or .glb file; #### stands for the frame number")
       .file(InputKind::mesh)
       .types({"file"});

@@ -15,7 +15,7 @@ void DeepRay::add_opacity(const Medium& medium, const DepthProfile& profile) con
     cursor.move_to(std::min(end(i), profile.back()));
     Rgb after;
     for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      after += medium.volumes[v].channel_scale * cursor.tau(v);
+      after += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
     float opacity = 0;
     for (int c = 0; c < 3; ++c) // no difference of transmittances, which would lose digits
       opacity += std::exp(-before[c]) * opacity_of(after[c] - before[c]);

@@ -5,9 +5,10 @@
 
 namespace vdbeam {
 
-/// Calls add(v, share) with what volume v adds to the ray's opacity between a knot of its profile
-/// and the one before, once per channel of the light: the integral of Tr sigma_t,v dt, a third for
-/// each channel. Over all knots and volumes the shares add up to the opacity, mean over channels.
+/// Calls add(v, share) with what volume v of the medium adds to the ray's opacity between a knot of
+/// its profile and the one before, once per channel of the light: the integral of Tr sigma_t,v dt,
+/// a third for each channel. Over all knots and volumes the shares add up to the opacity, mean over
+/// channels.
 template <class Add>
 void add_opacity(const Medium& medium, const DepthProfile& profile, std::size_t knot,
                  const Add& add) {
@@ -17,9 +18,9 @@ void add_opacity(const Medium& medium, const DepthProfile& profile, std::size_t 
     if (!(depth > 0))
       continue;
     const float added = std::exp(-before[c]) * opacity_of(depth) / (3 * depth);
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
-      add(v, added * medium.volumes[v].channel_scale[c] *
-                 (profile.tau(knot, v) - profile.tau(knot - 1, v)));
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      add(profile.volume(v), added * medium.volumes[profile.volume(v)].channel_scale[c] *
+                                 (profile.tau(knot, v) - profile.tau(knot - 1, v)));
   }
 }
 

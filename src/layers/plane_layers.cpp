@@ -11,13 +11,16 @@ namespace {
 
 constexpr float far_away = 1e10f; // as the layer `depth` has it
 
-constexpr std::array<PlaneLayer, 7> layers{{{"depth_near", "Z", true, false, far_away},
-                                            {"depth_far", "Z", true, false, far_away},
-                                            {"position", "XYZ", true},
-                                            {"motion", "XY", true},
-                                            {"density_gradient", "XYZ", true},
-                                            {"holdout", "Y", false, true},
-                                            {"shadow", "Y", false, true}}};
+constexpr std::array<PlaneLayer, 10> layers{{{"depth_near", "Z", true, false, far_away},
+                                             {"depth_far", "Z", true, false, far_away},
+                                             {"position", "XYZ", true},
+                                             {"motion", "XY", true},
+                                             {"density_gradient", "XYZ", true},
+                                             {"denoising_albedo", "BGR", false, true},
+                                             {"denoising_normal", "XYZ", false, true},
+                                             {"holdout", "Y", false, true},
+                                             {"shadow", "BGR", false, true},
+                                             {"catcher_light", "BGR", false, true}}};
 constexpr PlaneLayer volume_layer{"volume_", "RGBA", false, true};
 
 } // namespace

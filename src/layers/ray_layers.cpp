@@ -82,8 +82,9 @@ Vec3f extinction_gradient(const Volume& volume, const Vec3f& point) {
 RayLayers::RayLayers(const Scene& scene, const Velocities& velocities)
     : names_(plane_names(scene)), near_(find("depth_near.Z")), far_(find("depth_far.Z")),
       position_(find("position.X")), motion_(find("motion.X")),
-      gradient_(find("density_gradient.X")), holdout_(find("holdout.Y")),
-      shadow_(find("shadow.Y")) {
+      gradient_(find("density_gradient.X")), albedo_(find("denoising_albedo.B")),
+      normal_(find("denoising_normal.X")), holdout_(find("holdout.Y")), shadow_(find("shadow.B")),
+      added_(find("catcher_light.B")) {
   const SceneObjects objects = scene_objects(scene);
   for (const std::size_t object : objects.of_volume) {
     volume_planes_.push_back(find("volume_" + objects.names[object] + ".A"));
@@ -131,6 +132,10 @@ public:
     if (plane >= 0)
       image_.planes[static_cast<std::size_t>(plane)][pixel_] += static_cast<float>(value);
   }
+  /// Planes of colours are in the order B, G, R.
+  void add_color(int blue, const Vec3d& color) const {
+    add(blue, Vec3d{color.z, color.y, color.x});
+  }
   void add(int first, const Vec3d& value) const {
     for (int a = 0; a < 3 && first >= 0; ++a)
       add(first + a, value[a]);
@@ -173,43 +178,73 @@ void RayLayers::record(const World& world, const CameraRay& camera, const DepthP
     for (int a = 0; a < 2; ++a)
       planes.add(motion_ + a, behind * moved[static_cast<std::size_t>(a)]);
   }
+  if (camera.hit && behind > 0)
+    record_features_of_surface(world, camera, behind, planes);
   record_pieces(world, camera, profile, planes);
+}
+
+/// What guides a denoiser at the surface at the ray's end. Metal and glass, whose colour does not
+/// vary over them, count as white, as Open Image Denoise proposes.
+void RayLayers::record_features_of_surface(const World& world, const CameraRay& camera,
+                                           float behind, const Planes& planes) const {
+  if (albedo_ < 0 && normal_ < 0)
+    return;
+  const Vec3f& direction = camera.ray().direction;
+  const SurfaceVertex vertex(*world.surfaces, *camera.hit, direction);
+  Rgb albedo;
+  if (vertex.light() >= 0)
+    albedo = min(vertex.emitted(), Rgb(1));
+  else if (!vertex.material().is_shadow_catcher())
+    albedo = vertex.material().shows_surroundings() ? Rgb(1) : vertex.matt_albedo();
+  planes.add_color(albedo_, Vec3d(albedo) * static_cast<double>(behind));
+  const Vec3f normal = vertex.hit().shading_normal * (vertex.front() ? behind : -behind);
+  planes.add(normal_, Vec3d(normal));
 }
 
 /// The planes of the surface at the ray's end; returns what the ray shows of it.
 float RayLayers::record_surface(const World& world, const CameraRay& camera, const Seen& seen,
                                 const Planes& planes) const {
-  if (!camera.hit)
+  if (!camera.hit) {
+    planes.add_color(shadow_, Vec3d(seen.left));
     return 0;
+  }
+  const float left = mean_component(seen.left);
   const Material& material = world.surfaces->material(*camera.hit);
   if (material.is_holdout()) {
-    planes.add(holdout_, static_cast<double>(seen.left));
+    planes.add(holdout_, static_cast<double>(left));
+    planes.add_color(shadow_, Vec3d(seen.left));
     return 0;
   }
   if (!material.is_shadow_catcher())
-    return seen.left;
-  const float behind = seen.left * seen.shadow;
-  planes.add(shadow_, static_cast<double>(behind));
-  return behind;
+    return left;
+  planes.add_color(shadow_, Vec3d(seen.left * seen.plate_left));
+  planes.add_color(added_, Vec3d(seen.left * seen.added));
+  return left * seen.shadow;
 }
 
 /// The planes of the medium that the ray meets, piece by piece of its profile.
 void RayLayers::record_pieces(const World& world, const CameraRay& camera,
                               const DepthProfile& profile, const Planes& planes) const {
-  if (motion_ < 0 && gradient_ < 0 && !tells_volumes_)
+  const bool turned = gradient_ >= 0 || normal_ >= 0;
+  if (motion_ < 0 && albedo_ < 0 && !turned && !tells_volumes_)
     return;
   const Medium& medium = world.medium;
   const double scale = world.space.scale;
+  Vec3d inwards;
+  double whole = 0;
   for_each_piece(medium, profile, [&](const Piece& piece) {
     const Vec3f point = camera.ray().at(piece.t);
     Vec3f gradient;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
+    for (std::size_t i = 0; i < profile.volume_count(); ++i) {
+      const std::size_t v = profile.volume(i);
       const Volume& volume = medium.volumes[v];
       const auto share = static_cast<double>(piece.added[v]);
       if (volume_planes_[volume.setting] >= 0)
         planes.add(volume_planes_[volume.setting] - 1, share);
-      if (gradient_ >= 0)
+      if (turned)
         gradient += extinction_gradient(volume, point);
+      if (albedo_ >= 0 && share > 0)
+        planes.add_color(albedo_, Vec3d(volume.albedo_at(point)) * share);
       if (motion_ < 0 || !(share > 0))
         continue;
       const SceneMotion::Pixels moved =
@@ -217,8 +252,14 @@ void RayLayers::record_pieces(const World& world, const CameraRay& camera,
       planes.add(motion_, share * moved[0]);
       planes.add(motion_ + 1, share * moved[1]);
     }
-    planes.add(gradient_, Vec3d(gradient) * (scale * scale * static_cast<double>(piece.total)));
+    const auto total = static_cast<double>(piece.total);
+    planes.add(gradient_, Vec3d(gradient) * (scale * scale * total));
+    inwards += Vec3d(gradient) * total;
+    whole += total;
   });
+  // The mean over the ray before it is made a normal: of single voxels it would be noise.
+  if (const double size = length(inwards); size > 0)
+    planes.add(normal_, inwards * (-whole / size));
 }
 
 } // namespace vdbeam

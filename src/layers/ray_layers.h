@@ -23,12 +23,16 @@ public:
   int volume_plane(std::size_t setting) const { return volume_planes_[setting]; }
   /// Light adds up over groups of lights; all else is the same for each of them.
   bool is_light(std::size_t plane) const;
+  /// They hold the light on shadow catchers that the plate does not have.
+  bool tells_added_light() const { return added_ >= 0; }
 
   /// The medium along a ray, as seen by the camera.
   struct Seen {
-    float left;   ///< what the medium lets through of the light behind
-    float shadow; ///< of the surface at the ray's end, that of a shadow catcher
-    float depth;  ///< what the ray adds to PassImage::depth
+    Rgb left;       ///< what the medium lets through of the light behind
+    float depth;    ///< what the ray adds to PassImage::depth
+    float shadow;   ///< opacity of the shadow catcher at the ray's end
+    Rgb plate_left; ///< the share of the plate's light that arrives there
+    Rgb added;      ///< its radiance by light that the plate does not have
   };
   /// Radiance of the ray without the light of volumes.
   void record(const World& world, const CameraRay& camera, const DepthProfile& profile,
@@ -40,11 +44,14 @@ private:
                        const Planes& planes) const;
   void record_pieces(const World& world, const CameraRay& camera, const DepthProfile& profile,
                      const Planes& planes) const;
+  void record_features_of_surface(const World& world, const CameraRay& camera, float behind,
+                                  const Planes& planes) const;
   int find(const std::string& name) const;
 
   std::vector<std::string> names_;
-  int near_, far_, position_, motion_, gradient_, holdout_, shadow_; ///< first planes; -1: none
-  std::vector<int> volume_planes_;                                   ///< by volume of the scene
+  /// First planes; -1: none.
+  int near_, far_, position_, motion_, gradient_, albedo_, normal_, holdout_, shadow_, added_;
+  std::vector<int> volume_planes_; ///< by volume of the scene
   bool tells_volumes_ = false;
   std::optional<SceneMotion> scene_motion_;
 };

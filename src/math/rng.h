@@ -24,7 +24,8 @@ enum class RngStage : std::uint64_t {
   split,
   surface,
   line,
-  final_gather
+  final_gather,
+  crossed_shadows
 };
 
 /// Everything that identifies a stream, except the index within its stage.

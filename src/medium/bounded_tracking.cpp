@@ -44,11 +44,11 @@ Collision exact_collision(const Volume& volume, const Segment& segment, Rng& rng
 
 Collision exact_collision(const Medium& medium, const Segment& segment, Rng& rng) {
   Collision first;
-  for (const Volume& volume : medium.volumes) {
-    const Collision hit = exact_collision(volume, segment, rng);
+  medium.for_each_met(segment, [&](std::size_t v) {
+    const Collision hit = exact_collision(medium.volumes[v], segment, rng);
     if (hit.t < first.t)
       first = hit;
-  }
+  });
   return first;
 }
 

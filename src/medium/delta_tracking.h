@@ -106,11 +106,14 @@ private:
 class MediumTracker {
 public:
   MediumTracker(const Medium& medium, const Segment& segment) : first_(medium.volumes[0], segment) {
-    if (medium.volumes.size() > 1) {
+    if (medium.volumes.size() < 2)
+      return;
+    if (!medium.tree)
       others_.reserve(medium.volumes.size() - 1);
-      for (std::size_t i = 1; i < medium.volumes.size(); ++i)
-        others_.emplace_back(medium.volumes[i], segment);
-    }
+    medium.for_each_met(segment, [&](std::size_t v) {
+      if (v > 0)
+        others_.emplace_back(medium.volumes[v], segment);
+    });
   }
 
   /// As VolumeTracker's.

@@ -5,14 +5,18 @@ namespace vdbeam {
 void DepthProfile::build(const Medium& medium, const Segment& segment, float cutoff) {
   t_.clear();
   tau_.clear();
-  volumes_ = medium.volumes.size();
+  met_.clear();
+  volumes_ = 0;
   if (segment.empty())
     return;
   const float limit = -std::log(std::max(cutoff, 1e-30f));
-  if (volumes_ == 1)
+  if (medium.volumes.size() == 1) {
+    met_.push_back(0);
+    volumes_ = 1;
     build_single(medium.volumes[0], segment, limit);
-  else
+  } else {
     build_several(medium, segment, limit);
+  }
 }
 
 namespace {
@@ -55,18 +59,22 @@ void DepthProfile::build_single(const Volume& volume, const Segment& segment, fl
 }
 
 void DepthProfile::build_several(const Medium& medium, const Segment& segment, float limit) {
-  std::vector<DepthProfile> parts(volumes_);
-  for (std::size_t v = 0; v < volumes_; ++v) {
-    parts[v].build_single(medium.volumes[v], segment, limit);
-    t_.insert(t_.end(), parts[v].t_.begin(), parts[v].t_.end());
-  }
+  std::vector<DepthProfile> parts;
+  medium.for_each_met(segment, [&](std::size_t v) {
+    DepthProfile part;
+    part.build_single(medium.volumes[v], segment, limit);
+    if (part.empty())
+      return;
+    t_.insert(t_.end(), part.t_.begin(), part.t_.end());
+    met_.push_back(static_cast<std::uint32_t>(v));
+    parts.push_back(std::move(part));
+  });
+  volumes_ = met_.size();
   std::sort(t_.begin(), t_.end());
   t_.erase(std::unique(t_.begin(), t_.end()), t_.end());
   tau_.resize(t_.size() * volumes_);
-  for (std::size_t v = 0; v < volumes_; ++v) {
-    if (!parts[v].empty())
-      read_at_knots(parts[v], medium.volumes[v], segment.ray, v);
-  }
+  for (std::size_t v = 0; v < volumes_; ++v)
+    read_at_knots(parts[v], medium.volumes[met_[v]], segment.ray, v);
 }
 
 /// Optical depth of volume v, whose own profile is `part`, at every knot. Knots of other volumes

@@ -7,8 +7,9 @@ namespace vdbeam {
 
 /// Optical depth along one camera ray: exact at the crossings of lattice planes and inside cubes
 /// that are optically thick, linear in between.
-/// One value per volume, for its strongest channel, so that overlapping media of different albedo,
-/// phase function or colour can be separated.
+/// One value per volume that the ray meets, for its strongest channel, so that overlapping media of
+/// different albedo, phase function or colour can be separated. These volumes are numbered from 0
+/// in the profile; `volume` has their numbers in the medium.
 class DepthProfile {
 public:
   /// Integrates to the segment's end or until less than `cutoff` of the light is left in every
@@ -20,8 +21,12 @@ public:
   float t(std::size_t knot) const { return t_[knot]; }
   float front() const { return t_.front(); } ///< where the medium begins
   float back() const { return t_.back(); }   ///< where the profile ends
+  /// Volumes that the ray meets.
   std::size_t volume_count() const { return volumes_; }
-  /// Optical depth of volume v from the start to a knot.
+  /// Number in the medium of volume v of the profile; they ascend.
+  std::size_t volume(std::size_t v) const { return met_[v]; }
+  const std::vector<std::uint32_t>& met() const { return met_; }
+  /// Optical depth of volume v of the profile from the start to a knot.
   float tau(std::size_t knot, std::size_t v = 0) const { return tau_[knot * volumes_ + v]; }
   /// Sum over the volumes, strongest channels.
   float total(std::size_t knot) const {
@@ -34,14 +39,15 @@ public:
   Rgb channels(const Medium& medium, std::size_t knot) const {
     Rgb sum;
     for (std::size_t v = 0; v < volumes_; ++v)
-      sum += medium.volumes[v].channel_scale * tau(knot, v);
+      sum += medium.volumes[met_[v]].channel_scale * tau(knot, v);
     return sum;
   }
-  /// The same ray in a medium whose volumes have `factors` times the extinction.
+  /// The same ray in a medium whose volumes have `factors` times the extinction, by their numbers
+  /// in the medium.
   DepthProfile scaled(const std::vector<float>& factors) const {
     DepthProfile result = *this;
     for (std::size_t i = 0; i < tau_.size(); ++i)
-      result.tau_[i] *= factors[i % volumes_];
+      result.tau_[i] *= factors[met_[i % volumes_]];
     return result;
   }
   /// Largest optical depth of one piece, weighted with what is seen of it: how fine a resampling
@@ -58,6 +64,7 @@ private:
   void read_at_knots(const DepthProfile& part, const Volume& volume, const Ray& ray, std::size_t v);
 
   std::size_t volumes_ = 1;
+  std::vector<std::uint32_t> met_;
   std::vector<float> t_, tau_;
 };
 
@@ -72,7 +79,7 @@ class ProfileCursor {
 public:
   explicit ProfileCursor(const DepthProfile& profile) : profile_(&profile) {}
 
-  /// Optical depth of volume v at the place of the last `move_to`.
+  /// Optical depth of volume v of the profile at the place of the last `move_to`.
   float tau(std::size_t v = 0) const {
     const float a = profile_->tau(knot_, v);
     return a + fraction_ * (profile_->tau(knot_ + 1, v) - a);

@@ -7,7 +7,7 @@ float DistanceSampler::channel_tau(std::size_t knot, int c) const {
     return profile_.total(knot);
   float sum = 0;
   for (std::size_t v = 0; v < profile_.volume_count(); ++v)
-    sum += medium_.volumes[v].channel_scale[c] * profile_.tau(knot, v);
+    sum += medium_.volumes[profile_.volume(v)].channel_scale[c] * profile_.tau(knot, v);
   return sum;
 }
 
@@ -48,7 +48,7 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
   Rgb tau, linear_tau, linear_sigma;
   for (std::size_t v = 0; v < weights_.size(); ++v) {
-    const Volume& volume = medium_.volumes[v];
+    const Volume& volume = medium_.volumes[profile_.volume(v)];
     const float begin = profile_.tau(knot, v), piece = profile_.tau(knot + 1, v) - begin;
     const Vec3f point = ray_.at(t);
     const float sigma = volume.extinction * volume.density_inside(point);
@@ -70,7 +70,7 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
     transmittance = Rgb(transmittance.x);
   for (Rgb& weight : weights_)
     weight *= pdf > 0 ? transmittance / pdf : Rgb(0);
-  return {t, pdf, ray_.at(t), &weights_};
+  return {t, pdf, ray_.at(t), &weights_, &profile_.met()};
 }
 
 std::optional<VolumeChoice> choose_volume(const ScatterPoint& point, float u) {
@@ -87,7 +87,7 @@ std::optional<VolumeChoice> choose_volume(const ScatterPoint& point, float u) {
   const float own = mean_component(weights[volume]);
   if (!(own > 0))
     return std::nullopt;
-  return VolumeChoice{volume, weights[volume] * (total / own)};
+  return VolumeChoice{(*point.volumes)[volume], weights[volume] * (total / own)};
 }
 
 } // namespace vdbeam

@@ -11,9 +11,10 @@ struct ScatterPoint {
   float t = 0;
   float pdf = 0; ///< density of t, over the channels' choice too
   Vec3f position;
-  /// Per volume: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws is the
-  /// integral of sigma_s Tr along the ray.
+  /// Per volume of the profile: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws
+  /// is the integral of sigma_s Tr along the ray.
   const std::vector<Rgb>* weights = nullptr;
+  const std::vector<std::uint32_t>* volumes = nullptr; ///< their numbers in the medium
 };
 
 /// Draws distances in proportion to what scatters, from a ray's depth profile: forced scattering,
@@ -24,7 +25,7 @@ public:
   /// The arguments must outlive the sampler. Requires a profile that is not empty.
   DistanceSampler(const Medium& medium, const Ray& ray, const DepthProfile& profile)
       : medium_(medium), ray_(ray), profile_(profile),
-        end_(profile.channels(medium, profile.knots() - 1)), weights_(medium.volumes.size()) {}
+        end_(profile.channels(medium, profile.knots() - 1)), weights_(profile.volume_count()) {}
 
   /// 1 - Tr of the whole ray in channel c.
   float opacity(int c) const { return opacity_of(end_[c]); }
@@ -51,7 +52,7 @@ private:
 
 /// A volume that scatters at a point, and what it weighs.
 struct VolumeChoice {
-  std::size_t volume = 0;
+  std::size_t volume = 0; ///< its number in the medium
   Rgb weight;
 };
 

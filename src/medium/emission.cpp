@@ -51,12 +51,12 @@ public:
     if (last || t >= profile_.t(knot_ + 1))
       return profile_.channels(medium_, last ? knot_ : knot_ + 1);
     for (std::size_t v = 0; v < profile_.volume_count(); ++v) {
+      const Volume& volume = medium_.volumes[profile_.volume(v)];
       const float begin = profile_.tau(knot_, v), end = profile_.tau(knot_ + 1, v);
       float tau = begin;
       if (end > begin && t > profile_.t(knot_))
-        tau =
-            std::min(tau + cube_optical_depth(medium_.volumes[v], ray_, profile_.t(knot_), t), end);
-      sum += medium_.volumes[v].channel_scale * tau;
+        tau = std::min(tau + cube_optical_depth(volume, ray_, profile_.t(knot_), t), end);
+      sum += volume.channel_scale * tau;
     }
     return sum;
   }

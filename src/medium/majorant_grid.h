@@ -18,6 +18,8 @@ public:
   explicit MajorantGrid(const DensityField& field);
 
   float operator[](std::size_t cell_offset) const { return majorants_[cell_offset]; }
+  /// The same for copies, and for nothing else.
+  const void* values() const { return majorants_.data(); }
   std::size_t bytes() const { return majorants_.bytes(); }
 
 private:

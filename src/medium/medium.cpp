@@ -1,5 +1,7 @@
 #include "medium/medium.h"
 
+#include <set>
+
 namespace vdbeam {
 
 bool Medium::isotropic() const {
@@ -10,13 +12,40 @@ bool Medium::isotropic() const {
 }
 
 std::size_t Medium::bytes() const {
-  std::size_t sum = 0;
-  for (const Volume& volume : volumes)
-    sum += volume.field.bytes() + volume.majorants.bytes() +
-           (volume.color ? volume.color->bytes() : 0);
+  std::size_t sum = tree ? tree->bytes() : 0;
+  std::set<const void*> known; // volumes share what they have in common
+  for (const Volume& volume : volumes) {
+    if (known.insert(volume.field.values()).second)
+      sum += volume.field.bytes();
+    if (known.insert(volume.majorants.values()).second)
+      sum += volume.majorants.bytes();
+    if (volume.color && known.insert(volume.color.get()).second)
+      sum += volume.color->bytes();
+  }
   for (const Emitter& emitter : emitters)
     sum += emitter.field->bytes();
   return sum;
+}
+
+void Medium::grow_tree() {
+  tree = nullptr;
+  if (volumes.size() <= VolumeTree::few)
+    return;
+  std::vector<Boxf> boxes;
+  boxes.reserve(volumes.size());
+  for (const Volume& volume : volumes) {
+    // All cells, since light paths collide in empty parts of cells too.
+    const Vec3d cells = Vec3d(volume.field.cell_counts()) * double{DensityField::cell_width};
+    Affine to_local;
+    for (std::size_t row = 0; row < 3; ++row)
+      to_local.rows[row] = Vec3d(volume.to_local.rows[row]);
+    to_local.translation = Vec3d(volume.to_local.translation);
+    const Boxd box = to_local.inverse().bounds({Vec3d(0), cells});
+    const Vec3d margin =
+        box.size() * 1e-5 + max(max(box.upper, -box.lower), Vec3d(0)) * 1e-6 + Vec3d(1e-7);
+    boxes.push_back({Vec3f(box.lower - margin), Vec3f(box.upper + margin)});
+  }
+  tree = std::make_shared<const VolumeTree>(boxes);
 }
 
 Segment Medium::clip(Segment segment) const {

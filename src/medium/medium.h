@@ -4,6 +4,7 @@
 #include "math/ray.h"
 #include "medium/grid_traversal.h"
 #include "medium/majorant_grid.h"
+#include "medium/volume_tree.h"
 #include "phase/aureole.h"
 #include "phase/phase_function.h"
 #include "volume/color_field.h"
@@ -72,6 +73,7 @@ struct Medium {
   std::vector<Emitter> emitters;     ///< of the volumes that glow, whether or not they do more
   std::vector<PhaseFunction> phases; ///< one per group of volumes with the same phase function
   std::shared_ptr<const PeakTakenOut> peak; ///< null: this is the scene's own medium
+  std::shared_ptr<const VolumeTree> tree;   ///< over the volumes; null: they are few
   Boxf bounds;                              ///< of all that is not empty, render space
   bool chromatic = false;                   ///< extinction differs between channels
 
@@ -92,6 +94,28 @@ struct Medium {
     return false;
   }
   std::size_t bytes() const;
+  /// Puts a tree over the volumes, where they are many.
+  void grow_tree();
+  /// Calls visit(v) for the volumes that the segment may meet, in the order of their numbers; it
+  /// must not call this function.
+  template <class Visit>
+  void for_each_met(const Segment& segment, const Visit& visit) const {
+    if (!tree) {
+      for (std::size_t v = 0; v < volumes.size(); ++v)
+        visit(v);
+      return;
+    }
+    static thread_local std::vector<std::uint32_t> met;
+    met.clear();
+    tree->find(segment, met);
+    for (const std::uint32_t v : met)
+      visit(std::size_t{v});
+  }
+  /// The same for those in whose box a point may lie; all of them where there is no tree.
+  template <class Visit>
+  void for_each_at(const Vec3f& point, const Visit& visit) const {
+    for_each_met({{point, Vec3f(0)}, 0, 0}, visit);
+  }
   /// Part of the segment inside `bounds`; empty where it misses.
   Segment clip(Segment segment) const;
 };

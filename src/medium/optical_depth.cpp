@@ -32,7 +32,9 @@ Rgb optical_depth(const Medium& medium, const Segment& segment, float limit, flo
                   Rgb* taken_out) {
   Rgb tau{0, 0, 0};
   weakest = 0;
-  for (std::size_t v = 0; v < medium.volumes.size() && weakest < limit; ++v) {
+  medium.for_each_met(segment, [&](std::size_t v) {
+    if (weakest >= limit)
+      return;
     const Volume& volume = medium.volumes[v];
     const float scale =
         std::min(volume.channel_scale.x, std::min(volume.channel_scale.y, volume.channel_scale.z));
@@ -48,7 +50,7 @@ Rgb optical_depth(const Medium& medium, const Segment& segment, float limit, flo
     tau += volume.channel_scale * sum;
     if (taken_out && medium.peak)
       *taken_out += medium.peak->excess[v] * sum;
-  }
+  });
   return tau;
 }
 

@@ -69,8 +69,8 @@ void ShadowLattice::trace_column(const Medium& medium, int column) {
   for (int z = 0; z < counts_.z; ++z) {
     cursor.move_to(static_cast<float>(z) * spacing_.z);
     Rgb tau;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
-      tau += medium.volumes[v].channel_scale * cursor.tau(v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
     depths[z] = std::min(std::min(tau.x, tau.y), std::min(tau.z, opaque_optical_depth));
   }
 }

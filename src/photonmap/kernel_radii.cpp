@@ -11,10 +11,12 @@ namespace {
 /// Cells hold about this share of a kernel's photons: fewer would cost more, more would be coarse.
 constexpr float cell_share = 1.0f / 16;
 
-/// Where no least radius was asked for: far below any useful kernel, far above rounding.
-float radius_floor(const PhotonBlocks& blocks, float asked) {
-  if (asked > 0)
-    return asked;
+/// Where no least radius was asked for: far below any useful kernel, far above rounding. A few
+/// photons that lie very far away, on a plane without an end, do not raise it.
+float radius_floor(const PhotonBlocks& blocks, const RadiusSettings& settings) {
+  if (settings.min_radius > 0)
+    return settings.min_radius;
+  constexpr float share_of_widest = 1e-4f;
   constexpr std::size_t photons_at_once = 4096;
   const Boxf box = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once), Boxf(),
@@ -28,7 +30,8 @@ float radius_floor(const PhotonBlocks& blocks, float asked) {
         return a;
       });
   const Vec3f reach = max(max(box.upper, -box.lower), Vec3f(0));
-  return std::max({max_component(box.size()) * 1e-5f, max_component(reach) * 1e-6f, 1e-9f});
+  const float of_all = std::max(max_component(box.size()) * 1e-5f, max_component(reach) * 1e-6f);
+  return std::max(std::min(of_all, share_of_widest * settings.max_radius), 1e-9f);
 }
 
 } // namespace
@@ -37,7 +40,7 @@ void find_kernel_radii(PhotonBlocks& blocks, const RadiusSettings& settings) {
   const std::size_t count = blocks.count();
   if (count == 0)
     return;
-  const float floor = radius_floor(blocks, settings.min_radius);
+  const float floor = radius_floor(blocks, settings);
   const float ceiling = std::max(floor, settings.max_radius);
   const float neighbours = std::max(1.0f, settings.neighbours);
   std::size_t cell = 1;

@@ -14,10 +14,10 @@ constexpr float sin_sixth[6] = {0, 0.866025f, 0.866025f, 0, -0.866025f, -0.86602
 } // namespace
 
 bool KernelSupport::inside(const Vec3f& point) const {
-  for (const Volume& volume : medium_->volumes)
-    if (volume.majorant(point) > 0)
-      return true;
-  return false;
+  bool found = false;
+  medium_->for_each_at(
+      point, [&](std::size_t v) { found = found || medium_->volumes[v].majorant(point) > 0; });
+  return found;
 }
 
 float KernelSupport::disc_share(const Vec3f& photon, float radius) const {

@@ -3,6 +3,7 @@
 #include "medium/depth_profile.h"
 #include "photons/hidden_lights.h"
 #include "transport/camera_ray.h"
+#include "transport/photon_targets.h"
 
 #include <cmath>
 
@@ -100,6 +101,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
       settings.store == PhotonStore::scatter || common_albedo(input.world.medium);
   plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
   plan.most_direct_samples = plan.direct_samples;
+  plan.chooses_direct_samples = settings.direct_samples == 0;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
   return plan;
 }
@@ -214,8 +216,7 @@ RadiusSettings radius_settings(const EstimatorInput& input, double neighbours, f
 RadiusSettings surface_radii(const EstimatorInput& input, float scale) {
   RadiusSettings radii = radius_settings(input, surface_neighbours, scale);
   if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
-    radii.max_radius = static_cast<float>(widest_surface_kernel *
-                                          length(input.world.surfaces->set->bounds().size()));
+    radii.max_radius = static_cast<float>(widest_surface_kernel * surface_extent(input.world));
   return radii;
 }
 

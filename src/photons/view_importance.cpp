@@ -45,8 +45,8 @@ void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, flo
   for (; !walk.done(); walk.advance()) {
     cursor.move_to(walk.t());
     Rgb tau = hidden;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
-      tau += medium.volumes[v].channel_scale * cursor.tau(v);
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
     const Vec3<int>& cell = walk.cell();
     raise(table[field.cell_offset(cell.x, cell.y, cell.z)],
           weight * std::exp(-std::min(tau.x, std::min(tau.y, tau.z))));
@@ -75,8 +75,12 @@ public:
       const Sight sight = std::move(sights.back());
       sights.pop_back();
       profile.build(medium, sight.ray.segment, floor_);
-      for (std::size_t v = 0; v < medium.volumes.size() && !profile.empty(); ++v)
-        mark_cells(medium, v, hidden_, sight.weight, sight.ray.segment.ray, profile, tables_[v]);
+      if (!profile.empty())
+        medium.for_each_met({sight.ray.segment.ray, profile.front(), profile.back()},
+                            [&](std::size_t v) {
+                              mark_cells(medium, v, hidden_, sight.weight, sight.ray.segment.ray,
+                                         profile, tables_[v]);
+                            });
       if (sight.ray.hit && sight.mirrors < most_mirrors)
         go_on(sight, rng, sights);
     }

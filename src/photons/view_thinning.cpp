@@ -19,13 +19,13 @@ std::vector<float> worth_of(const World& world, const Camera& camera, const Cell
     return view_importance_at(world, importance, photons);
   std::vector<float> values(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    for (std::size_t v = 0; v < importance.size(); ++v) {
+    world.medium.for_each_at(photons.position[i], [&](std::size_t v) {
       const Volume& volume = world.medium.volumes[v];
       const Vec3f& position = photons.position[i];
       values[i] = std::max(values[i], importance[v][volume.cell_at(position)] *
                                           towards_camera(camera, world.medium, volume, position,
                                                          photons.direction[i]));
-    }
+    });
   return values;
 }
 
@@ -42,9 +42,10 @@ std::vector<float> view_importance_at(const World& world, const CellTables& impo
                                       const PhotonList& photons) {
   std::vector<float> values(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    for (std::size_t v = 0; v < importance.size(); ++v)
+    world.medium.for_each_at(photons.position[i], [&](std::size_t v) {
       values[i] =
           std::max(values[i], importance[v][world.medium.volumes[v].cell_at(photons.position[i])]);
+    });
   return values;
 }
 

@@ -1,5 +1,6 @@
 #include "camera/camera.h"
 #include "grids/fog_grid.h"
+#include "plan/grids_once.h"
 #include "plan/plan.h"
 #include "plan/surface_files.h"
 #include "prepare/read_volumes.h"
@@ -19,10 +20,11 @@ Boxd visible_bounds(const GridSummary& grid, const std::array<double, 12>& m) {
 
 /// The header of a grid, cropped as reading the grid will crop it: voxels inside the box that may
 /// be active count as active. What moves may come from anywhere.
-GridSummary read_header(const Scene& scene, const VolumeSettings& volume, const std::string& name) {
+GridSummary read_header(const Scene& scene, const VolumeSettings& volume, const std::string& name,
+                        GridsOnce& grids) {
   if (volume.fog.made())
     return fog_header(volume);
-  GridSummary grid = read_grid_header(volume.file, name);
+  GridSummary grid = grids.header(volume.file, name);
   const std::optional<WantedBox> wanted = wanted_box(volume, nullptr);
   if (!wanted || !scene.moments.empty() || grid.active_voxels == 0 || is_level_set(grid))
     return grid;
@@ -40,14 +42,15 @@ GridSummary read_header(const Scene& scene, const VolumeSettings& volume, const 
 
 /// Voxels of the grids that a volume's emission is made from, as their headers say; 0 where one of
 /// them is empty.
-std::uint64_t count_glowing_voxels(const Scene& scene, const VolumeSettings& volume, Boxd& bounds) {
+std::uint64_t count_glowing_voxels(const Scene& scene, const VolumeSettings& volume, Boxd& bounds,
+                                   GridsOnce& grids) {
   std::uint64_t voxels = 0;
   if (!volume.glows())
     return voxels;
   for (const std::string& name : {volume.emission.temperature, volume.emission.intensity}) {
     if (name.empty())
       continue;
-    const GridSummary grid = read_header(scene, volume, name);
+    const GridSummary grid = read_header(scene, volume, name, grids);
     if (grid.active_voxels == 0)
       return 0;
     voxels += grid.active_voxels;
@@ -61,15 +64,16 @@ std::uint64_t count_glowing_voxels(const Scene& scene, const VolumeSettings& vol
 RenderPlan make_plan(const Scene& scene) {
   std::vector<VolumeFacts> facts;
   Boxd bounds;
+  GridsOnce grids;
   for (const VolumeSettings& volume : scene.volumes) {
     VolumeFacts fact{true, 0};
     if (volume.needs_density()) {
-      const GridSummary grid = read_header(scene, volume, volume.density);
+      const GridSummary grid = read_header(scene, volume, volume.density, grids);
       fact = {grid.active_voxels == 0, grid.active_voxels};
       if (!fact.empty)
         bounds.extend(visible_bounds(grid, volume.transform));
     }
-    fact.glowing_voxels = count_glowing_voxels(scene, volume, bounds);
+    fact.glowing_voxels = count_glowing_voxels(scene, volume, bounds, grids);
     facts.push_back(fact);
   }
   const Camera camera(scene.camera, scene.image, {});

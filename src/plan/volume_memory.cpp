@@ -1,6 +1,7 @@
 #include "grids/edited_field.h"
 #include "grids/fog_grid.h"
 #include "machine/memory.h"
+#include "plan/grids_once.h"
 #include "plan/memory_model.h"
 #include "prepare/read_volumes.h"
 #include "vdb/vector_reader.h"
@@ -9,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <set>
 
 namespace vdbeam {
@@ -58,15 +59,15 @@ Affine cells_to_world(const Affine& index_to_world, double scale) {
 
 class VolumeEstimate {
 public:
-  VolumeEstimate(const Scene& scene, const VolumeSettings& volume)
-      : scene_(scene), volume_(volume) {}
+  VolumeEstimate(const Scene& scene, const VolumeSettings& volume, GridsOnce& grids)
+      : scene_(scene), volume_(volume), grids_(grids) {}
 
   /// The grid of this name, refined and displaced as the volume has it.
   FieldMemory source(const std::string& name) {
     if (volume_.fog.made())
       return fog();
     const GridShape& shape = shape_of(name);
-    const GridSummary header = read_grid_header(volume_.file, name);
+    const GridSummary& header = grids_.header(volume_.file, name);
     std::optional<WantedBox::Voxels> wanted;
     if (const auto box = wanted_box(volume_, nullptr);
         box && scene_.moments.empty() && header.grid_class != "Level Set")
@@ -85,13 +86,11 @@ public:
   }
 
   const GridShape& shape_of(const std::string& name) {
-    auto found = shapes_.find(name);
-    if (found == shapes_.end())
-      found = shapes_
-                  .emplace(name, volume_.fog.made() ? fog_grid_shape(volume_)
-                                                    : read_grid_shape(volume_.file, name))
-                  .first;
-    return found->second;
+    if (!volume_.fog.made())
+      return grids_.shape(volume_.file, name);
+    if (!fog_shape_)
+      fog_shape_ = fog_grid_shape(volume_);
+    return *fog_shape_;
   }
 
 private:
@@ -151,7 +150,8 @@ private:
 
   const Scene& scene_;
   const VolumeSettings& volume_;
-  std::map<std::string, GridShape> shapes_;
+  GridsOnce& grids_;
+  std::optional<GridShape> fog_shape_;
 };
 
 /// Whether the frame's shutter sees the volume at several moments.
@@ -272,11 +272,12 @@ VolumesMemory estimate_volumes(const Scene& scene) {
   VolumesMemory all;
   MeanDepth depth;
   std::uint64_t most = 0, sources = 0, moving = 0;
+  GridsOnce grids;
   std::set<std::string> known; // volumes of the same values share them
   for (const VolumeSettings& volume : scene.volumes) {
     if (!volume.present)
       continue;
-    VolumeEstimate estimate(scene, volume);
+    VolumeEstimate estimate(scene, volume, grids);
     VolumeMemory memory;
     memory.moves = moves(scene, volume);
     const bool density = volume.needs_density(), glows = volume.glows();

@@ -2,12 +2,15 @@
 
 #include "medium/optical_depth.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace vdbeam {
 
 namespace {
 
-/// Shadow rays to a light that has an extent.
-constexpr int samples_per_light = 16;
+/// Shadow rays to a light that has an extent, and samples by which it is weighed.
+constexpr int rays_per_light = 16, samples_per_light = 64;
 
 /// Transmittance of the medium and of all surfaces but catchers.
 Rgb unobstructed(const World& world, Vec3d origin, const IncidentSample& sample) {
@@ -26,30 +29,72 @@ Rgb unobstructed(const World& world, Vec3d origin, const IncidentSample& sample)
   }
 }
 
+/// The light of one light on a surface, without and with what stands in its way.
+struct Irradiance {
+  Rgb whole, arriving;
+};
+
+/// Calls visit(sample, cosine) for samples of a light, which fill a shifted lattice.
+template <class Visit>
+void for_each_sample(const Light& light, const Vec3f& point, const Vec3f& normal, int count,
+                     Rng& rng, const Visit& visit) {
+  constexpr float golden = 0.6180340f;
+  const float u = rng.uniform(), v = rng.uniform();
+  for (int s = 0; s < count; ++s) {
+    const float turned = v + golden * static_cast<float>(s);
+    const IncidentSample sample =
+        light.sample_incident(point, (static_cast<float>(s) + u) / static_cast<float>(count),
+                              std::min(turned - std::floor(turned), 0x1.fffffep-1f));
+    const float cosine = dot(sample.wi, normal) / static_cast<float>(count);
+    if (cosine > 0 && max_component(sample.value) > 0)
+      visit(sample, cosine);
+  }
+}
+
+Irradiance irradiance_of(const World& world, const Light& light, const SurfaceHit& hit,
+                         const Vec3f& normal, Rng& rng) {
+  Irradiance sum;
+  const Vec3f point(hit.position);
+  for_each_sample(light, point, normal, light.is_delta() ? 1 : rays_per_light, rng,
+                  [&](const IncidentSample& sample, float cosine) {
+                    const Rgb light_there = sample.value * cosine;
+                    sum.whole += light_there;
+                    sum.arriving += light_there * unobstructed(world, hit.leave(sample.wi), sample);
+                  });
+  if (light.is_delta())
+    return sum;
+  Rgb whole;
+  for_each_sample(
+      light, point, normal, samples_per_light, rng,
+      [&](const IncidentSample& sample, float cosine) { whole += sample.value * cosine; });
+  for (int c = 0; c < 3; ++c)
+    sum.arriving[c] = sum.whole[c] > 0 ? whole[c] * (sum.arriving[c] / sum.whole[c]) : whole[c];
+  sum.whole = whole;
+  return sum;
+}
+
 } // namespace
 
-float caught_shadow(const World& world, const CameraRay& camera, Rng& rng) {
-  const LightSet& lights = world.lights;
+CaughtShadow caught_shadow(const World& world, const CameraRay& camera, Rng& rng) {
   const SurfaceHit& hit = *camera.hit;
   const Vec3f& direction = camera.ray().direction;
   const Vec3f normal = hit.normal * std::copysign(1.0f, -dot(hit.normal, direction));
-  Rgb lit, expected;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const Light& light = lights[i];
-    const int samples = light.is_delta() ? 1 : samples_per_light;
-    for (int s = 0; s < samples; ++s) {
-      const float u = (static_cast<float>(s) + rng.uniform()) / static_cast<float>(samples);
-      const float v = rng.uniform();
-      const IncidentSample sample = light.sample_incident(Vec3f(hit.position), u, v);
-      const float cosine = dot(sample.wi, normal) / static_cast<float>(samples);
-      if (!(cosine > 0) || max_component(sample.value) <= 0)
-        continue;
-      expected += sample.value * cosine;
-      lit += sample.value * unobstructed(world, hit.leave(sample.wi), sample) * cosine;
-    }
+  Irradiance all;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    if (!in_plate(world.lights, i))
+      continue;
+    const Irradiance light = irradiance_of(world, world.lights[i], hit, normal, rng);
+    all.whole += light.whole;
+    all.arriving += light.arriving;
   }
-  const float whole = mean_component(expected);
-  return whole > 0 ? std::clamp(1 - mean_component(lit) / whole, 0.0f, 1.0f) : 0;
+  CaughtShadow caught;
+  const float whole = mean_component(all.whole);
+  if (whole > 0)
+    caught.mean = std::clamp(1 - mean_component(all.arriving) / whole, 0.0f, 1.0f);
+  for (int c = 0; c < 3; ++c)
+    if (all.whole[c] > 0)
+      caught.left[c] = std::clamp(all.arriving[c] / all.whole[c], 0.0f, 1.0f);
+  return caught;
 }
 
 } // namespace vdbeam

@@ -233,10 +233,11 @@ private:
   Rgb scattered(const ScatterPoint& point, std::size_t light, float factor) {
     const Medium& medium = world_.medium;
     Rgb sum;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v) {
-      const Rgb& weight = (*point.weights)[v];
+    for (std::size_t i = 0; i < point.weights->size(); ++i) {
+      const Rgb& weight = (*point.weights)[i];
       if (!(max_component(weight) > 0))
         continue;
+      const std::size_t v = profile_.volume(i);
       const Rgb radiance =
           weight * scattered_light(world_, light,
                                    single_phase(medium.volumes[v].phase_index, point.t),
@@ -256,8 +257,8 @@ private:
     ProfileCursor cursor(profile_);
     cursor.move_to(t);
     Rgb through;
-    for (std::size_t v = 0; v < medium.volumes.size(); ++v)
-      through += peak.excess[v] * cursor.tau(v);
+    for (std::size_t v = 0; v < profile_.volume_count(); ++v)
+      through += peak.excess[profile_.volume(v)] * cursor.tau(v);
     for (int c = 0; c < 3; ++c)
       through[c] = std::exp(-through[c]);
     return {peak.original[i], &peak.gathered[i], &peak.aureoles[i], peak.forward[i], through};

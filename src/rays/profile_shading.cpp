@@ -16,7 +16,7 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
   cursor.move_to(t);
   Rgb tau;
   for (std::size_t v = 0; v < profile.volume_count(); ++v)
-    tau += medium.volumes[v].channel_scale * cursor.tau(v);
+    tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
@@ -102,7 +102,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   GroupedLight background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
     background += surface.radiance * tr;
-    end_at_surface(world, camera, surface.shadow, seen);
+    end_at_surface(world, camera, surface.caught.mean, seen);
   }
   image.add(&PassImage::background, pixel, background);
   image.opacity[pixel] += seen.opacity;
@@ -110,7 +110,8 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   if (!image.coverage.empty())
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
-    input.layers->record(world, camera, profile, {mean_component(tr), surface.shadow, seen.depth},
+    input.layers->record(world, camera, profile,
+                         {tr, seen.depth, surface.caught.mean, surface.caught.left, surface.added},
                          pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep)
     deep.add_opacity(world.medium, profile);

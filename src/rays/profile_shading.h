@@ -2,6 +2,7 @@
 
 #include "math/grouped_light.h"
 #include "medium/depth_profile.h"
+#include "rays/caught_shadow.h"
 #include "rays/estimator_input.h"
 #include "transport/camera_ray.h"
 
@@ -12,7 +13,8 @@ namespace vdbeam {
 /// Light of the surface at the end of a camera ray.
 struct SeenSurface {
   GroupedLight radiance = {}; ///< that leaves it against the ray
-  float shadow = 0; ///< on a shadow catcher; nothing else of it is visible (caught_shadow)
+  CaughtShadow caught = {};   ///< on a shadow catcher; nothing else of it is visible
+  Rgb added = {}; ///< radiance that leaves a shadow catcher by light that the plate does not have
   /// The part of `radiance` that the surface emits, as a light with shadow rays.
   GroupedLight lamp = {};
   // For a matt surface:

@@ -19,14 +19,15 @@ constexpr double invisible = 0.005;
 /// Optical depth along a segment, in the channel with most.
 double depth_along(const Medium& medium, const Segment& segment) {
   Rgb depth{0, 0, 0};
-  for (const Volume& volume : medium.volumes) {
+  medium.for_each_met(segment, [&](std::size_t v) {
+    const Volume& volume = medium.volumes[v];
     float sum = 0;
     for_each_piece(volume, segment, [&](float, float, float piece) {
       sum += piece;
       return true;
     });
     depth += volume.channel_scale * sum;
-  }
+  });
   return static_cast<double>(max_component(depth));
 }
 

@@ -40,9 +40,8 @@ bool comes_first(const SceneKey& key) {
 }
 
 constexpr const char* other_tables = R"(
-# [[mesh]]                              # a floor; type = "file" and file = "prop.obj" read a mesh
-# type = "quad"
-# scale = 10
+# [[mesh]]                              # a ground; type = "file" and file = "prop.obj" read a mesh
+# type = "plane"
 # rotate = [{}, 0, 0]
 # translate = [0, 0, 0]
 # material = {{ type = "diffuse", albedo = 0.3 }}

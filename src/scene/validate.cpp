@@ -139,7 +139,12 @@ public:
     const SurfaceSettings& surface = scene_.surfaces[index];
     if (surface.shape == SurfaceShape::file && surface.file.empty())
       fail(fmt::format("mesh.{}", index),
-           "needs a file, or a type that needs none: sphere, quad or disk");
+           "needs a file, or a type that needs none: sphere, quad, disk, plane, box or cylinder");
+    if (surface.shape == SurfaceShape::plane && shines(surface.material))
+      fail(fmt::format("mesh.{}.material.type", index),
+           "must not emit on a plane, which has no end: use type = \"quad\" with a scale, or a "
+           "light "
+           "of type \"environment\"");
     check_transform(fmt::format("mesh.{}.transform", index), surface.transform);
   }
 

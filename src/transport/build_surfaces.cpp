@@ -30,6 +30,10 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
                                    i, wrong));
   };
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].shape->is_infinite()) {
+      check(length(surfaces[i].to_render.translation) < farthest, i, "too far away from");
+      continue;
+    }
     const Boxd box = mapped(surfaces[i].to_render, surfaces[i].shape->bounds());
     const double size = max_component(box.size()), away = length(box.center()) + size;
     check(size < widest, i, "thousands of millions of times larger than");
@@ -41,6 +45,8 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
     check(least_stretch(surfaces[i].to_render.inverse()) > reach / farthest, i,
           "a million million times smaller, in some direction, than");
 }
+
+const Boxd everywhere{Vec3d(-1e300), Vec3d(1e300)};
 
 /// The material of a lamp whose power is given [W]: radiance times pi times the area of its sides.
 std::unique_ptr<Material> material_of_power(MaterialSettings material, double world_area,
@@ -72,6 +78,8 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
 Boxd world_bounds(const std::vector<WorldShape>& shapes) {
   Boxd bounds;
   for (const WorldShape& entry : shapes) {
+    if (entry.shape->is_infinite())
+      continue;
     const Boxd box = entry.shape->bounds();
     for (int corner = 0; corner < 8; ++corner)
       bounds.extend(entry.to_world.point({corner & 1 ? box.upper.x : box.lower.x,
@@ -110,7 +118,8 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
           settings[i].material, surfaces->set->area(i) / (space.scale * space.scale), space.scale);
   for (std::size_t i = 0; i < settings.size(); ++i)
     if (surfaces->materials[i]->is_solid())
-      surfaces->solids.push_back(surfaces->set->bounds(i));
+      surfaces->solids.push_back(shapes[i].shape->is_infinite() ? everywhere
+                                                                : surfaces->set->bounds(i));
   return surfaces;
 }
 

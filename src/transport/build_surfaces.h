@@ -22,6 +22,7 @@ struct WorldShape {
 std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings,
                                     SurfaceStore& store, std::vector<std::string>& notes);
 
+/// Returns the bounds of all shapes but planes.
 Boxd world_bounds(const std::vector<WorldShape>& shapes);
 
 /// The surfaces in render space; null where there are none, and then nothing of Embree is started.

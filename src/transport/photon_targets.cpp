@@ -33,6 +33,13 @@ bool contains(const Boxd& box, const Boxd& other) {
   return true;
 }
 
+bool contains_all(const Boxd& box, const SurfaceSet& surfaces) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (!contains(box, surfaces.bounds(i)))
+      return false;
+  return true;
+}
+
 /// The surfaces within a box, and the medium's boxes.
 OccupiedRegion region_within(const Boxd& box, const OccupiedRegion& medium,
                              const SurfaceSet& surfaces) {
@@ -90,13 +97,15 @@ bool meets(const Medium& medium, const Ray& ray) {
   const Segment segment = medium.clip({ray});
   if (segment.empty())
     return false;
-  for (const Volume& volume : medium.volumes)
-    for (GridTraversal walk = volume.traverse(segment); !walk.done(); walk.advance()) {
+  bool met = false;
+  medium.for_each_met(segment, [&](std::size_t v) {
+    const Volume& volume = medium.volumes[v];
+    for (GridTraversal walk = volume.traverse(segment); !met && !walk.done(); walk.advance()) {
       const Vec3<int>& cell = walk.cell();
-      if (volume.majorants[volume.field.cell_offset(cell.x, cell.y, cell.z)] > 0)
-        return true;
+      met = volume.majorants[volume.field.cell_offset(cell.x, cell.y, cell.z)] > 0;
     }
-  return false;
+  });
+  return met;
 }
 
 bool meets_target(const World& world, std::size_t target, const Ray& ray) {
@@ -143,7 +152,7 @@ std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,
     const Vec3d center(medium.center);
     while (static_cast<int>(targets.size()) + 1 < most_targets) {
       const Boxd box{center - Vec3d(half), center + Vec3d(half)};
-      if (contains(box, surfaces.bounds()))
+      if (contains_all(box, surfaces))
         break;
       OccupiedRegion region = region_within(box, medium, surfaces);
       if (region.boxes.size() > medium.boxes.size())
@@ -167,6 +176,26 @@ bool counts_for_its_target(const World& world, const EmittedPhoton& photon) {
     if (meets_target(world, target, photon.ray))
       return true;
   return false;
+}
+
+double surface_extent(const World& world) {
+  constexpr double plane_share = 10;
+  const SurfaceSet& set = *world.surfaces->set;
+  const double shapes = set.bounds().empty() ? 0 : length(set.bounds().size());
+  bool plane = false;
+  for (std::size_t i = 0; i < set.size(); ++i)
+    plane = plane || set.is_infinite(i);
+  const double medium = 2 * static_cast<double>(world.region.radius);
+  return plane ? plane_share * std::max(shapes, medium) : shapes;
+}
+
+bool may_hold_photons(const World& world, const SurfaceHit& hit) {
+  const SurfaceSet& set = *world.surfaces->set;
+  if (!set.is_infinite(static_cast<std::size_t>(hit.surface)))
+    return true;
+  constexpr double farthest = 100;
+  const Vec3d center = world.medium.visible() ? Vec3d(world.region.center) : set.bounds().center();
+  return length(hit.position - center) < farthest * surface_extent(world);
 }
 
 Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedPhoton& photon) {

@@ -20,6 +20,13 @@ bool counts_for_its_target(const World& world, const EmittedPhoton& photon);
 /// surface stands before that, at its light, or before everything if the light is far away.
 Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedPhoton& photon);
 
+/// How wide the surfaces are, render units; a plane counts as ten times what stands on it.
+double surface_extent(const World& world);
+
+/// False for points of planes so far away that what photons bring there is not seen, while they
+/// would spoil the scale of all others.
+bool may_hold_photons(const World& world, const SurfaceHit& hit);
+
 /// The cones about the spheres of the world's targets as seen from a point, from the medium's on;
 /// none for those in whose sphere the point lies.
 class TargetCones {

@@ -41,9 +41,11 @@ constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
 /// Rate of tentative collisions: the majorants of overlapping volumes add.
 float total_majorant(const Medium& medium, const Ray& ray, const Collision& hit) {
   float sum = hit.majorant;
-  for (const Volume& volume : medium.volumes)
-    if (&volume != hit.volume)
-      sum += volume.majorant(ray.at(hit.t));
+  const Vec3f point = ray.at(hit.t);
+  medium.for_each_at(point, [&](std::size_t v) {
+    if (&medium.volumes[v] != hit.volume)
+      sum += medium.volumes[v].majorant(point);
+  });
   return sum;
 }
 
@@ -164,7 +166,8 @@ private:
     if (vertex.material().is_black() ||
         !absorption_roulette(vertex.absorbed(), path.throughput, path.rng))
       return false;
-    if (path.for_surfaces && vertex.material().takes_photons())
+    if (path.for_surfaces && vertex.material().takes_photons() &&
+        may_hold_photons(world_, vertex.hit()))
       store_at(vertex, path);
     else if (!path.met_surface && path.bounces == 0)
       path.for_surfaces = vertex.material().throws_light() && lights_surfaces(path.light);

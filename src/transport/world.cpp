@@ -127,7 +127,6 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
       std::min(settings.extinction * static_cast<double>(strongest) / scale, greatest);
   volume.extinction = static_cast<float>(extinction);
   limit_density(volume, settings, scale, notes);
-  volume.majorants = MajorantGrid(volume.field);
   volume.to_local = Affinef(local_to_render.inverse());
   volume.channel_scale = strongest > 0 ? settings.extinction_scale / strongest : Rgb(1);
   volume.albedo = settings.albedo;
@@ -140,6 +139,14 @@ Volume make_volume(DensityGrid&& grid, const VolumeSettings& settings,
   }
   volume.voxel_size = static_cast<float>(edge);
   return volume;
+}
+
+/// Gives a volume the majorants of an earlier one with the same values, or its own.
+void share_majorants(const std::vector<Volume>& earlier, Volume& volume) {
+  const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const Volume& other) {
+    return other.field.values() == volume.field.values();
+  });
+  volume.majorants = same == earlier.end() ? MajorantGrid(volume.field) : same->majorants;
 }
 
 Emitter make_emitter(const EmissionGrid& grid, const VolumeSettings& settings,
@@ -271,10 +278,12 @@ void add_medium(const Scene& scene, std::vector<DensityGrid>& grids,
     add_region(world.region, grids[i].field, map);
     Volume volume = make_volume(std::move(grids[i]), settings, map, world.space.scale, notes);
     volume.setting = i;
+    share_majorants(world.medium.volumes, volume);
     volume.phase_index = phase_index_of(world.medium.phases, known_phases, settings.phase);
     world.medium.chromatic = world.medium.chromatic || !is_grey(volume.channel_scale);
     world.medium.volumes.push_back(std::move(volume));
   }
+  world.medium.grow_tree();
 }
 
 } // namespace

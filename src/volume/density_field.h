@@ -67,6 +67,8 @@ public:
   /// Null where the density does not change along y alone.
   const DensityLayers* layers() const { return layers_.get(); }
 
+  /// The same for copies, and for nothing else.
+  const void* values() const { return maxima_.data(); }
   std::size_t brick_count() const { return bricks_.size() / brick_size; }
   std::size_t bytes() const;
 

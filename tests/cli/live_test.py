@@ -75,6 +75,8 @@ class Live:
 class LiveTest(InTempFolder):
     def setUp(self):
         super().setUp()
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder.name)
         shutil.copy(DATA / "fog.vdb", "fog.vdb")
         self.save(scene())
         self.live = None

@@ -69,9 +69,26 @@ protected:
     write_volume("staggered", file("ball.vdb"), options);
     write_volume("noise", file("cloud.vdb"), options);
     std::string layers;
-    for (const char* name : {"alpha", "volume", "depth", "lights", "cryptomatte", "background",
-                             "transmittance", "variance", "samples", "depth_near", "depth_far",
-                             "position", "motion", "density_gradient", "volumes"})
+    for (const char* name : {"alpha",
+                             "volume",
+                             "depth",
+                             "lights",
+                             "cryptomatte",
+                             "background",
+                             "transmittance",
+                             "variance",
+                             "samples",
+                             "depth_near",
+                             "depth_far",
+                             "position",
+                             "motion",
+                             "density_gradient",
+                             "denoising_albedo",
+                             "denoising_normal",
+                             "error",
+                             "shadow",
+                             "catcher_light",
+                             "volumes"})
       layers += std::string("[[layer]]\nname = \"") + name + "\"\n";
     write("s.toml", shot + layers);
   }

@@ -216,5 +216,29 @@ TEST(KernelRadiiLimits, TargetsAgree) {
   oracle::expect_same_bits(radii);
 }
 
+/// On a plane without an end a few photons lie very far away: the others keep their kernels.
+TEST(KernelRadii, PhotonsFarAwayDoNotWidenTheOthers) {
+  const PhotonBlocks blocks = [] {
+    PhotonBlocks made = ordered_blocks(20000, [](Rng& rng) {
+      const float scale = rng.uniform() < 0.005f ? 1e3f : 1;
+      const float x = rng.uniform() * scale;
+      return Vec3f{x, rng.uniform() * scale, 0};
+    });
+    RadiusSettings settings = adaptive(64);
+    settings.max_radius = 0.5;
+    find_kernel_radii(made, settings);
+    return made;
+  }();
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < blocks.count(); ++i)
+    if (max_component(blocks.position(i)) < 1) {
+      sum += static_cast<double>(blocks.at(i, PhotonBlocks::radius));
+      ++count;
+    }
+  EXPECT_GT(count, 19000);
+  EXPECT_LT(sum / count, 0.1);
+}
+
 } // namespace
 } // namespace vdbeam

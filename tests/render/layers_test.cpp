@@ -138,12 +138,12 @@ TEST(Layers, CompressionOfTheFile) {
 }
 
 TEST(Layers, TellsWhatIsWrong) {
-  EXPECT_EQ(
-      error_of({"layer.0.name=shadows"}),
-      "layer.0.name must be beauty, alpha, volume, volume_direct, volume_indirect, "
-      "volume_emission, depth, background, transmittance, variance, samples, lights, volumes, "
-      "cryptomatte, depth_near, depth_far, position, motion, density_gradient, holdout, "
-      "shadow or volume_volume0, got \"shadows\"; did you mean shadow?");
+  EXPECT_EQ(error_of({"layer.0.name=shadows"}),
+            "layer.0.name must be beauty, alpha, volume, volume_direct, volume_indirect, "
+            "volume_emission, depth, background, transmittance, variance, error, samples, lights, "
+            "volumes, cryptomatte, depth_near, depth_far, position, motion, density_gradient, "
+            "denoising_albedo, denoising_normal, holdout, shadow, catcher_light or volume_volume0, "
+            "got \"shadows\"; did you mean shadow?");
   EXPECT_EQ(error_of({"layer.0.name=depth", "layer.1.name=depth"}),
             "layer.1.name must not be there twice, got \"depth\"");
   EXPECT_EQ(

@@ -167,12 +167,15 @@ INSTANTIATE_TEST_SUITE_P(
             "s.toml:2: light.0.type must be distant, point, spot, environment, sky, atmosphere "
             "or sun, got \"area\"; a light with an area is a [[mesh]] with material = { type = "
             "\"emissive\", radiance = 10 }"},
-        BadScene{"[[mesh]]\ntype = 'plane'\n",
-                 "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"plane\"; did you "
-                 "mean quad?"},
         BadScene{"[[mesh]]\ntype = 'cube'\n",
-                 "s.toml:2: mesh.0.type must be file, sphere, quad or disk, got \"cube\"; solids "
-                 "come from files (.obj, .ply, .gltf, .glb)"},
+                 "s.toml:2: mesh.0.type must be file, sphere, quad, disk, plane, box or cylinder, "
+                 "got \"cube\"; did you mean box?"},
+        BadScene{"[[mesh]]\ntype = 'cone'\n",
+                 "s.toml:2: mesh.0.type must be file, sphere, quad, disk, plane, box or cylinder, "
+                 "got \"cone\"; solids come from files (.obj, .ply, .gltf, .glb)"},
+        BadScene{"[[mesh]]\ntype = 'plane'\nmaterial = 'emissive'\n",
+                 "s.toml:3: mesh.0.material.type must not emit on a plane, which has no end: use "
+                 "type = \"quad\" with a scale, or a light of type \"environment\""},
         BadScene{"[image]\nworking_space = 'ACEScg'\n",
                  "s.toml:2: image.working_space must be rec709, rec2020, acescg or aces2065_1, got "
                  "\"ACEScg\"; did you mean acescg?"},

@@ -105,8 +105,9 @@ private:
   double power(std::size_t photon) const { return mean_component(Vec3d(photons_.power[photon])); }
   double majorant(const Vec3f& point) const {
     double sum = 0;
-    for (const Volume& volume : medium_.volumes)
-      sum += static_cast<double>(volume.majorant(point));
+    medium_.for_each_at(point, [&](std::size_t v) {
+      sum += static_cast<double>(medium_.volumes[v].majorant(point));
+    });
     return sum;
   }
 

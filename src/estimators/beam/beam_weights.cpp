@@ -146,13 +146,14 @@ public:
                  const KnotRange& range, const WeightTable& table, int ray) {
     const float begin = static_cast<float>(range.begin - shift);
     const float end = camera.hit ? camera.segment.t_end : infinity;
-    const std::size_t volumes = world_.medium.volumes.size();
+    const std::size_t volumes = profile.volume_count();
     ProfileCursor cursor(profile);
+    profile_ = &profile;
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
     albedos_.clear();
-    for (const Volume& volume : world_.medium.volumes)
-      albedos_.push_back(volume.albedo);
+    for (std::size_t v = 0; v < volumes; ++v)
+      albedos_.push_back(volume(v).albedo);
     for (int i = 0; i < range.intervals; ++i) {
       const float from = begin + static_cast<float>(i) * table.step;
       cursor.move_to(begin + static_cast<float>(i + 1) * table.step);
@@ -165,7 +166,7 @@ public:
         find_albedos(camera.ray().at(from + 0.5f * length_));
       if (settings_.store == PhotonStore::scatter)
         write_transmittance(table, i + 1, ray);
-      else if (volumes == 1 && channels_ == 1)
+      else if (world_.medium.volumes.size() == 1 && channels_ == 1)
         write_simple(table, i, ray);
       else
         write_scattering(table, i, ray);
@@ -185,10 +186,14 @@ private:
   void find_albedos(const Vec3f& point) {
     for (std::size_t v = 0; v < albedos_.size(); ++v)
       if (after_[v] > before_[v])
-        albedos_[v] = world_.medium.volumes[v].albedo_at(point);
+        albedos_[v] = volume(v).albedo_at(point);
   }
 
-  bool counts(std::size_t volume) const { return !settings_.only || (*settings_.only)[volume]; }
+  /// Volume v of the profile at hand.
+  const Volume& volume(std::size_t v) const { return world_.medium.volumes[profile_->volume(v)]; }
+  bool counts(std::size_t v) const {
+    return !settings_.only || (*settings_.only)[profile_->volume(v)];
+  }
 
   /// Gives half of an interval's mean weight to the knot at either end. The knots at the ends of
   /// the table, or of the ray, which weigh over half an interval, get all of theirs: photons lie
@@ -207,23 +212,23 @@ private:
   }
 
   void write_scattering(const WeightTable& table, int interval, int ray) {
-    const std::vector<Volume>& volumes = world_.medium.volumes;
+    const std::size_t volumes = profile_->volume_count();
     for (int c = 0; c < channels_; ++c) {
       float tau_before = 0, tau_after = 0;
-      for (std::size_t v = 0; v < volumes.size(); ++v) {
-        tau_before += volumes[v].channel_scale[c] * before_[v];
-        tau_after += volumes[v].channel_scale[c] * after_[v];
+      for (std::size_t v = 0; v < volumes; ++v) {
+        tau_before += volume(v).channel_scale[c] * before_[v];
+        tau_after += volume(v).channel_scale[c] * after_[v];
       }
       const float piece = tau_after - tau_before;
       if (!(piece > 0))
         continue;
       const float scattered = std::exp(-tau_before) * opacity_of(piece) / length_;
-      for (std::size_t v = 0; v < volumes.size(); ++v) {
+      for (std::size_t v = 0; v < volumes; ++v) {
         if (!counts(v))
           continue;
-        const float share = volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
+        const float share = volume(v).channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : albedos_[v][c];
-        deposit(table, volumes[v].phase_index, c, interval, ray, scattered * share * albedo);
+        deposit(table, volume(v).phase_index, c, interval, ray, scattered * share * albedo);
       }
     }
   }
@@ -231,27 +236,29 @@ private:
   /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several
   /// phase functions share by their volumes' part in the interval.
   void write_transmittance(const WeightTable& table, int knot, int ray) {
-    const std::vector<Volume>& volumes = world_.medium.volumes;
+    const std::size_t volumes = profile_->volume_count();
+    const bool first = !settings_.only || (*settings_.only)[0];
     for (int c = 0; c < channels_; ++c) {
       float tau = 0, piece = 0;
-      for (std::size_t v = 0; v < volumes.size(); ++v) {
-        tau += volumes[v].channel_scale[c] * 0.5f * (before_[v] + after_[v]);
-        piece += albedos_[v][c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]);
+      for (std::size_t v = 0; v < volumes; ++v) {
+        tau += volume(v).channel_scale[c] * 0.5f * (before_[v] + after_[v]);
+        piece += albedos_[v][c] * volume(v).channel_scale[c] * (after_[v] - before_[v]);
       }
       const float tr = std::exp(-tau);
       if (!(piece > 0)) {
-        *weight(table, volumes[0].phase_index, c, knot, ray) += counts(0) ? tr : 0;
+        *weight(table, world_.medium.volumes[0].phase_index, c, knot, ray) += first ? tr : 0;
         continue;
       }
-      for (std::size_t v = 0; v < volumes.size(); ++v)
+      for (std::size_t v = 0; v < volumes; ++v)
         if (counts(v))
-          *weight(table, volumes[v].phase_index, c, knot, ray) +=
-              tr * albedos_[v][c] * volumes[v].channel_scale[c] * (after_[v] - before_[v]) / piece;
+          *weight(table, volume(v).phase_index, c, knot, ray) +=
+              tr * albedos_[v][c] * volume(v).channel_scale[c] * (after_[v] - before_[v]) / piece;
     }
   }
 
   const World& world_;
   const WeightSettings& settings_;
+  const DepthProfile* profile_ = nullptr; ///< of the ray at hand
   int channels_;
   bool colored_;                      ///< albedos change along the ray
   std::vector<float> before_, after_; ///< optical depths at the ends of the interval at hand

@@ -32,7 +32,8 @@ public:
     const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / step_)));
     const float step = (end - begin) / static_cast<float>(steps);
     ProfileCursor cursor(profile);
-    std::vector<float> before(medium.volumes.size()), after(medium.volumes.size());
+    profile_ = &profile;
+    std::vector<float> before(profile.volume_count()), after(profile.volume_count());
     gathered_.resize(medium.phases.size());
     straight_.resize(medium.phases.size());
     straight = {};
@@ -66,36 +67,39 @@ public:
   }
 
 private:
+  /// Volume v of the profile at hand.
+  const Volume& volume(std::size_t v) const { return world_.medium.volumes[profile_->volume(v)]; }
+
   /// Scattering coefficient at a point, where photons do not contain it.
   void find_albedos(const Vec3f& point) {
     albedos_.clear();
-    for (const Volume& volume : world_.medium.volumes)
-      albedos_.push_back(photons_.plan().albedo_in_power ? Rgb(1) : volume.albedo_at(point));
+    for (std::size_t v = 0; v < profile_->volume_count(); ++v)
+      albedos_.push_back(photons_.plan().albedo_in_power ? Rgb(1) : volume(v).albedo_at(point));
   }
 
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
             const Rgb* gathered, const VolumeLights& of_volumes = {}) const {
-    const std::vector<Volume>& volumes = world_.medium.volumes;
+    const std::size_t volumes = profile_->volume_count();
     Rgb tau, piece;
-    for (std::size_t v = 0; v < volumes.size(); ++v) {
-      tau += volumes[v].channel_scale * before[v];
-      piece += volumes[v].channel_scale * (after[v] - before[v]);
+    for (std::size_t v = 0; v < volumes; ++v) {
+      tau += volume(v).channel_scale * before[v];
+      piece += volume(v).channel_scale * (after[v] - before[v]);
     }
     Rgb sum;
     for (int c = 0; c < 3; ++c) {
       const float tr = std::exp(-tau[c]);
       const float whole =
           scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * opacity_of(piece[c]);
-      for (std::size_t v = 0; v < volumes.size(); ++v) {
+      for (std::size_t v = 0; v < volumes; ++v) {
         const float share = piece[c] > 0
-                                ? volumes[v].channel_scale[c] * (after[v] - before[v]) / piece[c]
-                                : 1 / static_cast<float>(volumes.size());
-        const float light = whole * share * albedos_[v][c] * gathered[volumes[v].phase_index][c];
+                                ? volume(v).channel_scale[c] * (after[v] - before[v]) / piece[c]
+                                : 1 / static_cast<float>(volumes);
+        const float light = whole * share * albedos_[v][c] * gathered[volume(v).phase_index][c];
         sum[c] += light;
         if (of_volumes) {
           Rgb of_channel;
           of_channel[c] = light;
-          of_volumes.add(volumes[v].setting, of_channel);
+          of_volumes.add(volume(v).setting, of_channel);
         }
       }
     }
@@ -104,6 +108,7 @@ private:
 
   const World& world_;
   const PhotonPass& photons_;
+  const DepthProfile* profile_ = nullptr; ///< of the ray at hand
   bool scatter_photons_;
   float step_ = 0, reach_ = 0;
   std::vector<Rgb> albedos_;  ///< per volume

@@ -54,7 +54,7 @@ SeenSurface PathEstimator::seen_surface(const RayTask& ray, Scratch& scratch) co
   const std::uint64_t stream = ray.pixel * (PathEffort::most + 1);
   Rng rng(ray.key, RngStage::surface, stream);
   if (input_.world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
-    return {{}, caught_shadow(input_.world, ray.camera, rng)};
+    return seen_catcher(ray, rng);
   const PartDraws draws = ray.draws_of(PathPart::surface, rng.uniform());
   GroupedLight sum;
   for (int i = 1; i <= draws.count; ++i) {
@@ -63,6 +63,17 @@ SeenSurface PathEstimator::seen_surface(const RayTask& ray, Scratch& scratch) co
                                 nullptr, &scratch.counts.walk_collisions);
   }
   return {sum *= draws.weight};
+}
+
+/// A shadow catcher and, where it is asked for, the light on it that the plate does not have.
+SeenSurface PathEstimator::seen_catcher(const RayTask& ray, Rng& rng) const {
+  SeenSurface seen{.caught = caught_shadow(input_.world, ray.camera, rng)};
+  constexpr int paths = 4;
+  for (int i = 0; i < paths && input_.layers && input_.layers->tells_added_light(); ++i)
+    seen.added +=
+        tracer_.added_to_plate(*ray.camera.hit, ray.camera.ray().direction, rng, true).sum() /
+        paths;
+  return seen;
 }
 
 /// Single scattering, from the depth profile.

@@ -40,6 +40,7 @@ private:
   void begin_walk(const RayTask& ray, const ScatterPoint& point, float share, Rng& rng,
                   const Rng& walk_rng, Scratch& scratch, PassImage& image) const;
   SeenSurface seen_surface(const RayTask& ray, Scratch& scratch) const;
+  SeenSurface seen_catcher(const RayTask& ray, Rng& rng) const;
   void scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
   void send_walks(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
   static void add_deep_light(const PathWalk& walk, PassImage& image);

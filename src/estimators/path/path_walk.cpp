@@ -73,7 +73,7 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     return false;
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
   walk.segment.ray.origin = point;
-  walk.skips_sampled = walk.from_surface = false;
+  walk.skips_sampled = walk.from_surface = walk.in_plate = false;
   walk.light = walk.all_light ? 0 : world_.lights.size();
   sample_lights(walk);
   return true;
@@ -177,7 +177,7 @@ void WalkTracer::gather_light(PathWalk& walk, float medium_end, float t_end) con
 GroupedLight WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
   const Ray& ray = segment.ray;
   GroupedLight sum;
-  for (std::size_t i = 0; i < world_.lights.size(); ++i) {
+  for (std::size_t i = 0; i < world_.lights.size() && !walk.in_plate; ++i) {
     const Light& light = world_.lights[i];
     if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out_sampled()))
       continue;

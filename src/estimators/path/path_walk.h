@@ -38,6 +38,8 @@ struct PathWalk : Flight {
   bool skips_sampled = false; ///< none on this flight, since it was found before
   bool all_light = true;      ///< else only that which surfaces get straight from lights
   bool from_surface = false;  ///< the present flight begins at such a surface
+  /// It has met nothing but shadow catchers: the light of the plate's lights is in the plate.
+  bool in_plate = false;
 
   SurfaceRoulette surfaces;
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
@@ -80,11 +82,17 @@ public:
                             bool all_light = true, bool emits = true,
                             GroupedLight* straight = nullptr, std::uint64_t* steps = nullptr) const;
 
+  /// Radiance that leaves a shadow catcher against `direction` by light that the plate which it
+  /// stands for does not have: of surfaces that shine, of glowing volumes, and what the medium and
+  /// other surfaces send there of the rest.
+  GroupedLight added_to_plate(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                              bool all_light) const;
+
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
   /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of
   /// this tracer does, the walk.
   GroupedLight lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
-                                 bool goes_on_as_walk = false) const;
+                                 bool goes_on_as_walk = false, bool in_plate = false) const;
   bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
 
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
@@ -100,6 +108,8 @@ public:
   bool leave(PathWalk& walk) const;
 
 private:
+  GroupedLight follow_from(const SurfaceVertex& vertex, PathWalk& first, GroupedLight* straight,
+                           std::uint64_t* steps) const;
   float roulette_from(const Rgb& throughput) const;
   void sample_lights(PathWalk& walk) const;
   void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;

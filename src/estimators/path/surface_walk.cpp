@@ -1,4 +1,5 @@
 #include "estimators/path/path_walk.h"
+#include "rays/caught_shadow.h"
 #include "transport/next_event.h"
 
 #include <utility>
@@ -13,10 +14,30 @@ GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direct
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
-  first.least_weight = roulette_from(Rgb(1));
   GroupedLight sum;
   if (emits)
     sum.add(vertex.emitted(), group_of(world_, vertex));
+  sum += follow_from(vertex, first, straight, steps);
+  rng = first.rng; // for what the caller draws next
+  return sum;
+}
+
+GroupedLight WalkTracer::added_to_plate(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
+                                        bool all_light) const {
+  const SurfaceVertex vertex(*world_.surfaces, hit, direction);
+  PathWalk first(rng, vertex.absorbed());
+  first.all_light = all_light;
+  first.in_plate = true;
+  const GroupedLight sum = follow_from(vertex, first, nullptr, nullptr);
+  rng = first.rng;
+  return sum;
+}
+
+/// Light of a walk that begins at a surface, and of its branches.
+GroupedLight WalkTracer::follow_from(const SurfaceVertex& vertex, PathWalk& first,
+                                     GroupedLight* straight, std::uint64_t* steps) const {
+  first.least_weight = roulette_from(Rgb(1));
+  GroupedLight sum;
   std::vector<PathWalk> branches;
   const auto follow = [&](PathWalk& walk, bool goes_on) {
     for (; goes_on; goes_on = step(walk, branches))
@@ -33,7 +54,6 @@ GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direct
     branches.pop_back();
     follow(walk, true);
   }
-  rng = first.rng; // for what the caller draws next
   return sum;
 }
 
@@ -59,10 +79,11 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   const Material& material = vertex.material();
   if (material.is_black())
     return false;
+  walk.in_plate = walk.in_plate && material.is_shadow_catcher();
   const bool counts_straight =
       !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
   if (counts_straight)
-    walk.add(lights_at_surface(vertex, walk.rng, true) * walk.throughput);
+    walk.add(lights_at_surface(vertex, walk.rng, true, walk.in_plate) * walk.throughput);
   const MaterialSample next = leave_surface(vertex, walk.rng);
   walk.throughput *= next.weight;
   walk.refraction *= next.refraction;
@@ -114,10 +135,10 @@ MaterialSample WalkTracer::leave_surface(const SurfaceVertex& vertex, Rng& rng) 
 }
 
 GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
-                                           bool goes_on_as_walk) const {
+                                           bool goes_on_as_walk, bool in_plate) const {
   GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
-    if (!shadow_rays_[i])
+    if (!shadow_rays_[i] || (in_plate && vdbeam::in_plate(world_.lights, i)))
       continue;
     const auto shadow_ray = sample_shadow_ray(
         world_.lights[i], Vec3f(vertex.hit().position), rng, [&](const Vec3f& wi) {
