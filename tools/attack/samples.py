@@ -182,8 +182,14 @@ def make_films(folder):
     render("--pass-range", "0-0", "-o", "first_deep.exr", "--set", "image.deep=true")
 
 
+def make_summaries(folder):
+    """What a batch says of itself, from which pages are made."""
+    subprocess.run([judge.BINARY, "render", "fog.toml", *SMALL, "--passes", "2", "-o", "finished.exr", "--skip-existing",
+                    "--summary", "frames.summary"], check=True, cwd=folder)
+
+
 MAKERS = {"volume": make_volumes, "mesh": make_meshes, "camera": make_cameras, "picture": make_pictures,
-          "profile": make_profiles, "film": make_films}
+          "profile": make_profiles, "film": make_films, "summary": make_summaries}
 
 
 def make(folder):

@@ -8,7 +8,7 @@ import judge
 
 # What arguments stand for. A placeholder that is in neither list stops the campaigns: it must be added to one.
 FILES = {"SCENE|VDB": ("scene", "volume"), "VDB": ("volume",), "FILE...": ("volume", "mesh", "picture"),
-         "IMAGE": ("film", "picture"), "REFERENCE": ("film", "picture"), "PARTIAL...": ("film",), "PARTIAL": ("film",),
+         "IMAGE": ("film", "picture"), "REFERENCE": ("film", "picture"), "PARTIAL...": ("film",), "PARTIAL": ("film",), "SUMMARY.json...": ("summary",),
          "FILE.exr": ("film", "picture"), "FILE": ("film",), "FILE.png": (), "FILE.json": (), "FILE.toml": (), "FOLDER": ()}
 VALUES = {"N", "T", "E", "L", "NAME", "WxH", "KEY=VALUE", "RANGE", "STOPS", "A-B", "X0,Y0,X1,Y1", "T|N", "MIB", "OPTION",
           "PATH", "HOST:PORT"}
@@ -108,7 +108,8 @@ def arguments(command):
 
 @functools.cache
 def commands():
-    """Every command, e.g. "render", "farm slurm", but those that only describe the program."""
+    """Every command, e.g. "render", "farm slurm", but those that only describe the program, and `live`, which reads a
+    scene as `render` does and ends only when it is interrupted."""
     found = []
 
     def walk(name):
@@ -117,7 +118,7 @@ def commands():
         below = [word for group in groups for word in re.findall(r"^  (\w+)", group, re.M)]
         for word in below:
             walk(f"{name} {word}".strip())
-        if name and not below and name != "help":
+        if name and not below and name not in ("help", "live"):
             found.append(name)
 
     walk("")

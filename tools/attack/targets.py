@@ -109,7 +109,7 @@ class Targets:
         files = {name: data}
         beside = {".bin": name.replace("buffer", "parts").replace(".bin", ".gltf"), ".mtl": "mesh.obj"}
         named = beside.get(name[name.rfind("."):], name)
-        if kind == "volume" and rng.random() < 0.4 or kind in ("mesh", "picture") and rng.random() < 0.3:
+        if not self.doors[kind] or kind == "volume" and rng.random() < 0.4 or kind in ("mesh", "picture") and rng.random() < 0.3:
             return Case("", files, self.argument_words(kind, named, rng))
         key, owner = rng.choice(self.doors[kind] if rng.random() < 0.95 else self.any_door)
         files["scene.toml"] = scene_with(key, named, owner).encode()
@@ -150,7 +150,7 @@ class Targets:
             return ["fog.toml"]
         if argument.placeholder == "PARTIAL...":
             return ["first.exr", "second.exr"]
-        return {"VDB": ["sphere_packed.vdb"], "FILE...": ["sphere_packed.vdb"]}.get(argument.placeholder, ["finished.exr"])
+        return {"VDB": ["sphere_packed.vdb"], "SUMMARY.json...": ["frames.summary"], "FILE...": ["sphere_packed.vdb"]}.get(argument.placeholder, ["finished.exr"])
 
     def film(self, rng):
         """A damaged image that vdbeam wrote, in each of the places where it is read again."""
@@ -223,7 +223,7 @@ class Targets:
 
     def clash(self, rng):
         """An output that is also an input: each key of kind file and each output, also those beside -o."""
-        kind = rng.choice(list(self.readable))
+        kind = rng.choice([kind for kind, doors in self.doors.items() if doors])
         key, owner = rng.choice(self.doors[kind])
         name = rng.choice(list(self.first_of(kind)))
         ending = name[name.rfind("."):]
@@ -258,6 +258,8 @@ def required(command):
         return [*samples.SMALL, "--passes", "1", "-o", "out.exr"]
     if command == "merge":
         return ["-o", "out.exr", "-q"]
+    if command == "summary":
+        return ["--html", "page"]
     if command.startswith("farm"):
         return ["-f", "1-2", "-o", "out.####.exr"]
     return []
