@@ -176,8 +176,9 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
   const Choices& choices = passes->choices();
   const EstimatorType type =
       choices.gathers_finally(0) ? EstimatorType::gather : EstimatorType::beam;
-  // Most light passes the medium by, as where it hangs over a wide ground.
-  constexpr double fewest_per_path = 1.0 / 20;
+  // Most light passes the medium by, as where it hangs over a wide ground. A kernel pilot, which
+  // needs thousands of photons, shows what they are worth.
+  const double fewest_per_path = choices.trial ? 1.0 / 100 : 1.0 / 20;
   const double stored = choices.photons.stored_per_path;
   if (photon_input.plan.needs(Stage::photons) && photon_input.world.surfaces &&
       stored < fewest_per_path && !photon_input.stopped())

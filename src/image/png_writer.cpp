@@ -80,15 +80,10 @@ void write_png(const Image& picture, const std::string& path, double exposure,
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = 0;
-  std::vector<unsigned char> encoded;
-  bool good = png_image_write_get_memory_size(png, size, 0, pixels.data(), 0, nullptr) != 0;
-  if (good) {
-    encoded.resize(size);
-    good =
-        png_image_write_to_memory(&png, encoded.data(), &size, 0, pixels.data(), 0, nullptr) != 0;
-  }
-  if (!good)
+  // To ask for the exact size would compress the pixels twice.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::vector<unsigned char> encoded(size);
+  if (png_image_write_to_memory(&png, encoded.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
     throw FrameError(fmt::format("{}: cannot be written: {}", path, png.message));
   AtomicFile file(path);
   file.write(encoded.data(), size);
