@@ -39,8 +39,8 @@ struct LiveHooks {
 
 /// Renders the latest scene that it was given, until its stop rule is met or there is a newer one.
 /// It keeps what does not change: volumes, meshes and the trees over them, photons where only the
-/// camera moves. Every light, and what glows, has an image of its own, so that an edit of
-/// strengths and colours of lights is shown at once and rendering goes on.
+/// camera moves. Every light has an image of its own, and all volumes that glow have one together,
+/// so that an edit of strengths and colours of lights is shown at once and rendering goes on.
 class LiveSession {
 public:
   explicit LiveSession(LiveHooks hooks);

@@ -219,14 +219,6 @@ private:
   std::optional<Unread> unread_;
 };
 
-/// The first frame of a sequence that is on disk, unless a number is given.
-int choose_frame(const LiveOptions& options, const SceneDocument& document) {
-  if (options.frame)
-    return *options.frame;
-  const std::vector<int> there = document.frames_on_disk();
-  return document.has_frame_pattern() && !there.empty() ? there.front() : 1;
-}
-
 int run_live(LiveOptions& options) {
   if (options.progress == "json")
     enable_events();
@@ -235,7 +227,7 @@ int run_live(LiveOptions& options) {
     options.preview = std::filesystem::path(options.scene.path()).stem().string() + ".live.png";
   if (!options.preview.empty())
     output_format(options.preview);
-  const int frame = choose_frame(options, document);
+  const int frame = choose_frame(options.frame, document);
   FileClaims claims;
   claims.scene(document, options.scene.path(), {frame});
   claims.output("--preview", options.preview);

@@ -117,10 +117,7 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPl
 
 int run_plan(const PlanOptions& options) {
   const SceneDocument document = options.scene.open();
-  int frame = options.frame.value_or(1);
-  if (!options.frame && document.has_frame_pattern())
-    if (const auto frames = document.frames_on_disk(); !frames.empty())
-      frame = frames.front();
+  const int frame = choose_frame(options.frame, document);
   const Scene scene = document.scene_at(frame);
   for (const std::string& note : scene.notes)
     log("note: {}", note);

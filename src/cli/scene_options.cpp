@@ -40,6 +40,13 @@ const std::vector<ShorthandRow>& shorthand_table() {
 
 } // namespace
 
+int choose_frame(const std::optional<int>& asked, const SceneDocument& document) {
+  if (asked)
+    return *asked;
+  const std::vector<int> there = document.frames_on_disk();
+  return document.has_frame_pattern() && !there.empty() ? there.front() : 1;
+}
+
 std::string option_for_key(const std::string& key) {
   if (key == "image.width" || key == "image.height")
     return "--resolution WxH";

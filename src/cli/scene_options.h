@@ -3,6 +3,7 @@
 #include "scene/scene_document.h"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct ShorthandRow {
 /// How the command line sets a key: "--passes" for "render.passes", "--set image.fps=VALUE" for one
 /// that has no option of its own.
 std::string option_for_key(const std::string& key);
+
+/// The frame of a command that shows one: `asked`, else the first of a sequence on disk, else 1.
+int choose_frame(const std::optional<int>& asked, const SceneDocument& document);
 
 /// The options that name a scene and change it, shared by the commands that take one.
 class SceneOptions {

@@ -83,8 +83,8 @@ public:
                             GroupedLight* straight = nullptr, std::uint64_t* steps = nullptr) const;
 
   /// Radiance that leaves a shadow catcher against `direction` by light that the plate which it
-  /// stands for does not have: of surfaces that shine, of glowing volumes, and what the medium and
-  /// other surfaces send there of the rest.
+  /// stands for does not have: light of surfaces that shine, of glowing volumes, and light of the
+  /// others that comes by way of the medium and of other surfaces.
   GroupedLight added_to_plate(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                               bool all_light) const;
 
