@@ -77,7 +77,8 @@ class Campaign:
         if lost := [name for name in case.inputs if after.get(name) != before[name]]:
             return f"an output replaced or removed an input: {lost}, exit code {result.code}"
         for name in after:
-            is_picture = case.words[0] in ("render", "merge")  # the others write text, whatever the name
+            # The other commands write text, whatever the name, and a batch page is a folder.
+            is_picture = case.words[0] in ("render", "merge") and not (self.place / name).is_dir()
             if after[name] != before.get(name) and is_picture and (wrong := judge.half_written(self.place / name)):
                 return f"{name}: {wrong}, exit code {result.code}"
         if case.must_succeed and result.code == 2 and unmarked(case):
