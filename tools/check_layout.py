@@ -8,7 +8,7 @@ import re
 import sys
 
 # A folder of src includes only from itself and from the folders before it.
-LAYERS = ["text", "math", "machine", "image", "volume", "vdb", "grids", "geometry", "phase", "materials", "lights",
+LAYERS = ["text", "math", "tuning", "machine", "image", "volume", "vdb", "grids", "geometry", "phase", "materials", "lights",
           "photonmap", "medium", "camera", "transport", "layers", "errors", "film", "compare", "keys", "scene",
           "rays", "photons", "estimators", "choose", "report", "prepare", "plan", "render", "live", "farm", "page", "console", "batch", "cli", "python"]
 LINE_LIMIT = 400

@@ -8,6 +8,7 @@
 #include "photons/kernel_support.h"
 #include "photons/view_importance.h"
 #include "photons/view_thinning.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 #include <utility>
@@ -16,32 +17,13 @@ namespace vdbeam {
 
 namespace {
 
-/// Where the camera sees nothing of a cell, collisions there are stored with at least this share of
-/// the probability of those that it sees best.
-constexpr float least_importance = 1.0f / 1024;
-/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than these;
-/// where passes are small, of twice the share up to this number.
-constexpr double trial_share = 0.125;
-constexpr double few_trial_paths = 5000, most_trial_paths = 40000;
-constexpr int trial_maps = 6;
-/// Paths that measure how many photons guided paths store, and where.
-constexpr std::uint64_t guided_pilot_paths = 1024;
-/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie
-/// about what is chosen in the end, so that little is extrapolated (research-log/decisions.md).
-constexpr double trial_neighbours = 600;
-constexpr double wide_over_narrow = 4;
-/// A narrow kernel holds at most this share of a map, so that a wide one fits.
-constexpr double most_in_kernel = 1.0 / 16;
-/// Below this many photons per pass the trial is too noisy, and the default is used.
-constexpr double fewest_for_trial = 500;
-
-/// The nearest of 640, twice and half of that and so on: what the trial finds scatters, and kernels
-/// that changed with that from frame to frame would flicker. Most clouds need 500 to 800, in the
-/// middle of a step. One step is a factor of 1.26 in the radius. More than 1280 gained little in
-/// any cloud, and kernels many mean free paths wide have a bias that the trial does not show.
+/// The nearest of a number, twice and half of that and so on: what the trial finds scatters, and
+/// kernels that changed with that from frame to frame would flicker. One step is a factor of 1.26
+/// in the radius.
 double in_kernel_steps(double neighbours) {
-  constexpr double middle = 640, most = 1280;
-  return std::min(most, middle * std::exp2(std::round(std::log2(neighbours / middle))));
+  return std::min(tuning::most_neighbours,
+                  tuning::middle_neighbours *
+                      std::exp2(std::round(std::log2(neighbours / tuning::middle_neighbours))));
 }
 
 /// About the radius that kernels would have without regard to the view.
@@ -63,7 +45,7 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
 /// All collisions of a sample of the paths that the plan has so far.
 TracedPhotons trace_guided_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   PhotonPassSettings pass = pass_settings(input, plan, guided_pilot_pass);
-  pass.paths = guided_pilot_paths;
+  pass.paths = tuning::guided_pilot_paths;
   pass.store_probability = 1;
   plan.pilot_paths += pass.paths;
   return trace_photons(input.world, pass);
@@ -74,12 +56,13 @@ void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedP
                  PhotonPlan& plan) {
   const auto wanted_per_path = [&] {
     const double collisions = pilot.mean_collisions;
-    return std::min(collisions, std::max(stored_per_path_aim, std::sqrt(collisions)));
+    return std::min(collisions, std::max(tuning::stored_per_path, std::sqrt(collisions)));
   };
   plan.stored_per_path = wanted_per_path();
   plan.view_reach = typical_radius(input, plan, pilot.photons);
-  CellTables importance = view_importance(input.world, input.camera, plan.view_reach,
-                                          least_importance, plan.importance_rays, input.stop);
+  CellTables importance =
+      view_importance(input.world, input.camera, plan.view_reach, tuning::least_importance,
+                      plan.importance_rays, input.stop);
   if (is_possible(path_guide_feature, {input, kind}))
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
@@ -121,8 +104,8 @@ void follow_scene(const EstimatorInput& input, const SceneChoices& scene, Choice
   }
   if (plan.store_probability_by_cell)
     plan.store_probability_by_cell = std::make_shared<const CellTables>(
-        store_by_view(view_importance(input.world, input.camera, plan.view_reach, least_importance,
-                                      plan.importance_rays, input.stop),
+        store_by_view(view_importance(input.world, input.camera, plan.view_reach,
+                                      tuning::least_importance, plan.importance_rays, input.stop),
                       plan.view_factor));
 }
 
@@ -133,19 +116,21 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
   const World& world = input.world;
   const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
-  const double trial_paths = std::ceil(std::clamp(
-      trial_share * paths, std::min(few_trial_paths, 2 * trial_share * paths), most_trial_paths));
+  const double trial_paths =
+      std::ceil(std::clamp(tuning::trial_share * paths,
+                           std::min(tuning::few_trial_paths, 2 * tuning::trial_share * paths),
+                           tuning::most_trial_paths));
   KernelTrial narrow, wide;
-  narrow.neighbours = std::min(trial_neighbours, most_in_kernel * photons);
-  wide.neighbours = wide_over_narrow * narrow.neighbours;
+  narrow.neighbours = std::min(tuning::trial_neighbours, tuning::most_in_kernel * photons);
+  wide.neighbours = tuning::wide_over_narrow * narrow.neighbours;
   RngKey key;
-  for (std::uint64_t i = 1; i <= trial_maps; ++i) {
+  for (std::uint64_t i = 1; i <= tuning::trial_maps; ++i) {
     PhotonPassSettings settings = pass_settings(input, plan, pilot_pass - i);
     settings.paths = static_cast<std::uint64_t>(trial_paths);
     key = settings.key;
     const TracedPhotons traced = trace_photons(world, settings);
     plan.pilot_paths += settings.paths;
-    plan.collisions_per_path += traced.mean_collisions / trial_maps;
+    plan.collisions_per_path += traced.mean_collisions / tuning::trial_maps;
     if (input.stopped())
       return;
     for (KernelTrial* trial : {&narrow, &wide}) {
@@ -179,7 +164,7 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
     follow_view(input, kind, std::move(pilot), plan);
   plan.paths = choose_paths(input, plan.stored_per_path);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
-  if (input.plan.needs(Stage::kernel_pilot) && photons >= fewest_for_trial)
+  if (input.plan.needs(Stage::kernel_pilot) && photons >= tuning::fewest_for_trial)
     try_kernels(input, kind, choices);
   const FeatureFacts facts(input, kind, plan.sampled_lights);
   if (!choices.gather && forces_final_gather(kind, input.settings) &&

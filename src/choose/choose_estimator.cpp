@@ -7,6 +7,7 @@
 #include "estimators/path/path.h"
 #include "estimators/tile_shading.h"
 #include "transport/similar_medium.h"
+#include "tuning/constants.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -17,30 +18,13 @@ namespace vdbeam {
 
 namespace {
 
-/// Passes of `beam` after which the two are compared: its lead shrinks as passes are added, since
-/// the bias of kernels falls more slowly than noise.
-constexpr int compared_passes = 16;
 /// Names random numbers that neither passes nor other pilots draw.
 constexpr int first_trial_pass = -200;
-/// Renders of each pixel: at least this many, and more in small images, so that their noise is
-/// measured by the same number of rays, within a limit.
-constexpr int fewest_trial_passes = 2, most_trial_passes = 16;
-constexpr std::size_t wanted_trial_rays = 1000;
-/// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths. Forecasts
-/// are right to a factor of about two, but in thin media under a sky, where `path` may be ahead,
-/// those of `beam` are too small rather than too large.
-constexpr double safe_lead = 1.25;
-
-// Processor time [ns] of what a pass of photons consists of beside (path_effort.h), fitted to 39
-// scenes, in which the ratio of the two estimators came out right within 30 %
-// (research-log/decisions.md). Only ratios count.
-constexpr double time_of_query = 8000, time_of_light_collision = 150, time_of_photon = 2000;
-/// Correction of the sum of these, which overestimates a pass of `beam` relative to one of `path`.
-constexpr double beam_share = 0.56;
 
 int trial_passes_of(std::size_t pixels) {
-  return static_cast<int>(std::clamp(wanted_trial_rays / pixels, std::size_t{fewest_trial_passes},
-                                     std::size_t{most_trial_passes}));
+  return static_cast<int>(std::clamp(tuning::wanted_trial_rays / pixels,
+                                     std::size_t{tuning::fewest_trial_passes},
+                                     std::size_t{tuning::most_trial_passes}));
 }
 
 /// Weighted variance of independent images of the same scene: mean over the pixels.
@@ -119,22 +103,25 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
       path_spread, spread_beside_photons(photon_input, passes.photons(), pixels, beam_counts));
   const double of_shadow_ray = time_of_shadow_ray(photon_input.world.medium);
   const double path_time =
-      time_of_camera_ray +
+      tuning::time_of_camera_ray +
       (of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
-       time_of_walk * static_cast<double>(path_counts.camera_walks) +
-       time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
+       tuning::time_of_walk * static_cast<double>(path_counts.camera_walks) +
+       tuning::time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
           rays;
   const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(photon_input);
   const double beam_time =
-      beam_share * (time_of_camera_ray + time_of_query +
-                    of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
-                    paths_per_ray * (time_of_light_collision * plan.collisions_per_path +
-                                     time_of_photon * plan.stored_per_path));
-  const double of_photons = choices.gathers_finally(0)
-                                ? choices.gather->error_after(compared_passes)
-                                : choices.trial->model.error(plan.neighbours, compared_passes);
-  const double beam_error = of_photons + beside / compared_passes;
-  const double path_error = path_spread * path_time / (compared_passes * beam_time);
+      tuning::time_of_photon_pass *
+      (tuning::time_of_camera_ray + tuning::time_of_query +
+       of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
+       paths_per_ray * (tuning::time_of_light_collision * plan.collisions_per_path +
+                        tuning::time_of_photon * plan.stored_per_path));
+  const double of_photons =
+      choices.gathers_finally(0)
+          ? choices.gather->error_after(tuning::passes_compared_for_auto)
+          : choices.trial->model.error(plan.neighbours, tuning::passes_compared_for_auto);
+  const double beam_error = of_photons + beside / tuning::passes_compared_for_auto;
+  const double path_error =
+      path_spread * path_time / (tuning::passes_compared_for_auto * beam_time);
   return beam_error > 0 ? path_error / beam_error : 1;
 }
 
@@ -160,9 +147,8 @@ double collisions_of_light_paths(const EstimatorInput& input) {
 
 std::optional<std::string> why_photons_are_rare(const EstimatorInput& input) {
   // In such a medium the photons that are seen lie in a thin skin, and most paths end by chance.
-  constexpr double most_collisions = 4096;
   const double collisions = collisions_of_light_paths(input);
-  if (!(collisions > most_collisions) || input.stopped())
+  if (!(collisions > tuning::most_collisions_per_path) || input.stopped())
     return std::nullopt;
   return fmt::format("a light path has about {:.1g} collisions, too many to trace photons",
                      collisions);
@@ -178,7 +164,8 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
       choices.gathers_finally(0) ? EstimatorType::gather : EstimatorType::beam;
   // Most light passes the medium by, as where it hangs over a wide ground. A kernel pilot, which
   // needs thousands of photons, shows what they are worth.
-  const double fewest_per_path = choices.trial ? 1.0 / 100 : 1.0 / 20;
+  const double fewest_per_path =
+      choices.trial ? tuning::rarest_photons : tuning::rarest_photons_without_pilot;
   const double stored = choices.photons.stored_per_path;
   if (photon_input.plan.needs(Stage::photons) && photon_input.world.surfaces &&
       stored < fewest_per_path && !photon_input.stopped())
@@ -191,7 +178,7 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
   if (!sees_directly(photon_input.world))
     return {type, "path may miss caustics", 0, std::move(passes)};
   const double lead = lead_of_photons(photon_input, *passes, path_input);
-  if (lead < 1 / safe_lead && !photon_input.stopped())
+  if (lead < 1 / tuning::safe_lead && !photon_input.stopped())
     return {
         EstimatorType::path,
         fmt::format("at equal time {} has {:.2g} times its predicted error", type.name, 1 / lead),

@@ -4,6 +4,7 @@
 #include "choose/schedule.h"
 #include "estimators/gather/final_gather.h"
 #include "rays/tile_rays.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,12 +13,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Least and greatest number of passes before the first of final gathering, unless it is the first.
-constexpr int fewest_passes_before = 4, most_passes_before = 512;
-/// Forecasts are compared at this multiple of the passes before the switch, and at a minimum
-/// number.
-constexpr int compared_passes = 8;
 
 /// Variance of the final gather of a camera ray, weighted as in MRSE: means over the pixels.
 struct GatherNoise {
@@ -82,15 +77,16 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
     return std::nullopt;
   const GatherNoise noise = measure_noise(input, choices, trial);
   const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
-  const double of_photons = in_trial * trial.neighbours / (neighbours_of_gather * plan.neighbours);
+  const double of_photons =
+      in_trial * trial.neighbours / (tuning::neighbours_of_gather * plan.neighbours);
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
   if (input.world.surfaces)
-    gather.time_of_walks = GatherPlan::time_among_surfaces;
+    gather.time_of_walks = tuning::time_of_walks_among_surfaces;
   if (forces_final_gather(kind, input.settings))
     return gather;
-  for (int first = 0; first <= most_passes_before;
-       first = std::max(fewest_passes_before, 2 * first)) {
-    const int passes = compared_passes * std::max(1, first);
+  for (int first = 0; first <= tuning::most_passes_before_gather;
+       first = std::max(tuning::fewest_passes_before_gather, 2 * first)) {
+    const int passes = tuning::passes_compared_for_gather * std::max(1, first);
     const double error = gather.error_after(passes);
     gather.first = first;
     if (error > 0 && error < choices.trial->model.error(plan.neighbours, passes))

@@ -1,4 +1,5 @@
 #pragma once
+#include "tuning/constants.h"
 
 #include <array>
 #include <cstddef>
@@ -24,11 +25,7 @@ struct GatherPlan {
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
   RegressionTrial regression;
   /// Time that `most_walks` take over that of a pass that gathers along camera rays.
-  double time_of_walks = time_in_the_open;
-
-  /// Measured on clouds of all depths, and where walks meet surfaces, from which paths go on
-  /// (research-log/decisions.md).
-  static constexpr double time_in_the_open = 0.7, time_among_surfaces = 1.5;
+  double time_of_walks = tuning::time_of_walks_in_the_open;
 
   /// Mean square error of the photons' light after the time of `passes_along` passes that gather
   /// along camera rays; with the best radius, or with one of the trial's.

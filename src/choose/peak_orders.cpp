@@ -2,6 +2,7 @@
 
 #include "phase/truncated_phase.h"
 #include "transport/similar_medium.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +11,8 @@ namespace vdbeam {
 
 namespace {
 
-/// Largest fraction of the scattering that the first order may remove. With more, light that is
-/// scattered twice by small angles, towards which one looks at a sun through the medium, is too
-/// dark.
-constexpr float largest_first_peak = 0.6f;
-/// The same for final gathering.
-constexpr float largest_peak_of_gather = 0.55f;
-
-/// In media of this typical depth without the peak or more, the first order is the lowest; in
-/// thinner ones it is one higher whenever the depth halves, up to 8. There light is scattered but a
-/// few times, and the truncation of each scattering shows (research-log/decisions.md).
-constexpr double depth_of_lowest_order = 24;
+/// In thin media the first order is one higher whenever the depth halves, up to this one. There
+/// light is scattered but a few times, and the truncation of each scattering shows.
 constexpr int most_order_for_thinness = 8;
 
 /// The lowest order that removes at most this fraction of the scattering of any phase function.
@@ -36,7 +28,7 @@ int lowest_order(const Medium& medium, float largest_peak) {
 
 /// The order of the first passes that gather along rays.
 double first_order(const Medium& medium) {
-  const int lowest = lowest_order(medium, largest_first_peak);
+  const int lowest = lowest_order(medium, tuning::largest_first_peak);
   int highest = most_order_for_thinness;
   // Not so high that there is no peak to take out.
   while (highest > lowest &&
@@ -47,7 +39,7 @@ double first_order(const Medium& medium) {
   const auto similar = highest > lowest ? similar_medium(medium, lowest) : nullptr;
   if (!similar)
     return lowest;
-  const double more = std::log2(depth_of_lowest_order / typical_depth(*similar));
+  const double more = std::log2(tuning::depth_of_lowest_order / typical_depth(*similar));
   return std::clamp<double>(lowest + more, lowest, highest);
 }
 
@@ -56,7 +48,7 @@ double first_order(const Medium& medium) {
 PeakOrders choose_peak_orders(const Medium& medium) {
   const double along_rays = first_order(medium);
   return {true, along_rays,
-          std::max<double>(along_rays, lowest_order(medium, largest_peak_of_gather))};
+          std::max<double>(along_rays, lowest_order(medium, tuning::largest_peak_of_gather))};
 }
 
 } // namespace vdbeam

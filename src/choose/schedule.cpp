@@ -1,6 +1,7 @@
 #include "choose/schedule.h"
 
 #include "phase/truncated_phase.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <bit>
@@ -62,7 +63,7 @@ PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pa
   if (!gathers)
     return spec;
   if (settings.neighbours == 0)
-    spec.neighbours *= neighbours_of_gather;
+    spec.neighbours *= tuning::neighbours_of_gather;
   spec.regression_radius = choices.gather->regression_radius(pass);
   spec.gather_walks = choices.gather->walks(pass);
   return spec;

@@ -19,10 +19,6 @@ std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& 
 /// the difference shows the bias that is left.
 int peak_order(const PeakOrders& first, int pass, bool gathers_finally);
 
-/// Photons in a kernel that walks gather in, over those of one along camera rays: the walks even
-/// out some of its noise (research-log/decisions.md).
-inline constexpr double neighbours_of_gather = 0.5;
-
 /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
 float radius_scale(int pass, double alpha);
 

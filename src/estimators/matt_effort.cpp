@@ -1,6 +1,7 @@
 #include "estimators/matt_effort.h"
 
 #include "estimators/surface_fit.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +10,6 @@ namespace vdbeam {
 
 namespace {
 
-/// Squared relative error of a pixel at which it takes one shadow ray of each kind, or one path.
-/// Best of 0.0003 to 0.003 and of 0.01 to 0.1 in seven scenes (research-log/surface-fit.md).
-constexpr float error_of_ray = 5e-4f, error_of_path = 0.015f;
-constexpr int most_samples = 16;
-/// Variance that a plane leaves of the noise of the pixels it is fitted to.
-constexpr float left_by_plane = 0.1f;
 /// Pixels to each side that decide, and how many of them there must be.
 constexpr int around = 2, fewest_around = 4;
 constexpr int width = PassImage::tile_width;
@@ -78,8 +73,8 @@ private:
 
 /// Samples in all, where one has this squared relative error.
 int samples_for(float error, float error_of_one) {
-  return static_cast<int>(std::lround(
-      std::clamp(std::sqrt(error / error_of_one), 0.0f, static_cast<float>(most_samples))));
+  return static_cast<int>(std::lround(std::clamp(std::sqrt(error / error_of_one), 0.0f,
+                                                 static_cast<float>(tuning::most_matt_samples))));
 }
 
 /// Samples of a pixel with this light around, `tr` of which reaches the camera.
@@ -92,10 +87,10 @@ MattSamples wanted_samples(const Around& near, int rays_so_far, float tr, int pa
   const float plane =
       SurfaceFit::best_weight(variance / static_cast<float>(rays_so_far),
                               near.spread(near.straight, near.straight_squares), pass);
-  const float left = (1 - plane) * (1 - plane) + plane * plane * left_by_plane;
-  const float of_path = near.spread(near.smooth, near.smooth_squares) * left_by_plane;
-  return {samples_for(of_path * relative, error_of_path),
-          samples_for(variance * left * relative, error_of_ray)};
+  const float left = (1 - plane) * (1 - plane) + plane * plane * tuning::left_by_plane;
+  const float of_path = near.spread(near.smooth, near.smooth_squares) * tuning::left_by_plane;
+  return {samples_for(of_path * relative, tuning::error_of_matt_path),
+          samples_for(variance * left * relative, tuning::error_of_matt_ray)};
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "rays/caught_shadow.h"
 #include "rays/direct_light.h"
 #include "rays/profile_shading.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +17,6 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
-/// Additional rays that look for lamps behind rough glass and gather nothing else, by this factor.
-constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
 constexpr int most_splits = 1;
 /// A smaller share of the light is not worth a path of its own.
@@ -89,7 +88,9 @@ struct SurfaceShading::Chain {
     leave(vertex, way);
     scale *= way.refraction;
   }
-  bool survives_roulette() { return survive_roulette(roulette_below * scale, throughput, rng); }
+  bool survives_roulette() {
+    return survive_roulette(tuning::roulette_below * scale, throughput, rng);
+  }
 
 private:
   void leave(const SurfaceVertex& vertex, const MaterialSample& way) {
@@ -185,7 +186,7 @@ GroupedLight SurfaceShading::shown_by_frosted(const SurfaceVertex& vertex, const
 /// lobes, few rays are on their way to a lamp, and those are bright.
 GroupedLight SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng) const {
   GroupedLight sum;
-  for (int i = 0; i < lamp_rays; ++i) {
+  for (int i = 0; i < tuning::lamp_rays; ++i) {
     const MaterialSample way = vertex.both_ways(Carried::radiance, rng).refracted;
     if (!(max_component(way.weight) > 0))
       continue;
@@ -197,7 +198,7 @@ GroupedLight SurfaceShading::lamps_behind(const SurfaceVertex& vertex, Rng& rng)
       sum += surfaces_.tracer().lights_at_surface(next, rng) * next.absorbed() * way.weight *
              exact_transmittance(world_.medium, ray.segment);
   }
-  return sum / static_cast<float>(lamp_rays);
+  return sum / static_cast<float>(tuning::lamp_rays);
 }
 
 /// Sends the chain on from a surface; returns the light of lights that the surface reflects to it,

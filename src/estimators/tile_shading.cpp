@@ -9,6 +9,7 @@
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
 #include "rays/uneven_pixels.h"
+#include "tuning/constants.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -132,8 +133,6 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
 
 /// Shadow rays of a pixel: more where its ray crosses shafts of light.
 int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, const RngKey& key) {
-  // The best of 1, 2, 4 and 8 (research-log/surface-fit.md).
-  constexpr int in_shafts = 2;
   if (ray.profile.empty())
     return 1;
   const PhotonPlan& plan = photons.plan();
@@ -141,7 +140,7 @@ int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, con
   Rng rng(key, RngStage::crossed_shadows, ray.stream);
   return plan.chooses_direct_samples && crosses_shadows(photons.world(), ray.camera.ray(),
                                                         ray.profile, plan.sampled_lights, rng)
-             ? samples * in_shafts
+             ? samples * tuning::samples_in_shafts
              : samples;
 }
 

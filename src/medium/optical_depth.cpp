@@ -1,5 +1,7 @@
 #include "medium/optical_depth.h"
 
+#include "tuning/constants.h"
+
 namespace vdbeam {
 
 LayeredSegment::LayeredSegment(const Volume& volume, const Segment& segment)
@@ -66,25 +68,23 @@ Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken
 }
 
 Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u, Rgb* taken_out) {
-  constexpr float certain = 3; // optical depth that no ray ends before (research-log/decisions.md)
-  const float limit = std::min(certain - std::log1p(-u), opaque_optical_depth);
+  const float limit = std::min(tuning::certain_depth - std::log1p(-u), opaque_optical_depth);
   float weakest = 0;
   const Rgb tau = optical_depth(medium, segment, limit, weakest, taken_out);
   if (weakest >= limit)
     return Rgb(0);
-  // exp(-tau) over the chance exp(certain - weakest) to get here.
-  const float given = std::max(0.0f, weakest - certain);
+  // exp(-tau) over the chance exp(tuning::certain_depth - weakest) to get here.
+  const float given = std::max(0.0f, weakest - tuning::certain_depth);
   return transmittance_of(tau - Rgb(given));
 }
 
 bool RatioTracking::attenuate(Rng& rng) {
-  constexpr float roulette_below = 0.1f;
   const Collision hit = tracker_.collision();
   weight_ *= Rgb(1) - hit.volume->channel_scale * (hit.sigma_t / hit.majorant);
   const float largest = max_component(weight_);
-  if (largest < roulette_below) {
-    const bool survives = rng.uniform() * roulette_below < largest;
-    weight_ = survives ? weight_ * (roulette_below / largest) : Rgb(0);
+  if (largest < tuning::roulette_below) {
+    const bool survives = rng.uniform() * tuning::roulette_below < largest;
+    weight_ = survives ? weight_ * (tuning::roulette_below / largest) : Rgb(0);
     if (!survives)
       return false;
   }

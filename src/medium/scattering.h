@@ -39,9 +39,6 @@ inline bool absorption_roulette(const Rgb& albedo, Rgb& weight, Rng& rng) {
   return true;
 }
 
-/// Weight under which Russian roulette begins.
-inline constexpr float roulette_below = 0.1f;
-
 /// Russian roulette once the weight falls under `threshold`, which survivors carry. False where the
 /// path ends.
 inline bool survive_roulette(float threshold, Rgb& weight, Rng& rng) {

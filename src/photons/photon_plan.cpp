@@ -4,37 +4,13 @@
 #include "photons/hidden_lights.h"
 #include "transport/camera_ray.h"
 #include "transport/photon_targets.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-/// Where no trial chooses them.
-constexpr double default_neighbours = 500;
-/// Light paths per camera ray that meets the medium: where tracing and gathering balance, measured
-/// on thin and on thick media (research-log/decisions.md). A count, not a clock, so that every
-/// machine chooses the same.
-constexpr double paths_per_hit = 4;
-constexpr double fewest_paths = 10000;
-constexpr double most_photons = 4e6;
-/// For lights that shadow rays do not reach there are more light paths: at most this factor, until
-/// there is one photon per camera ray that meets the medium.
-constexpr double most_for_hidden_lights = 8;
-constexpr double photons_per_hit = 1;
-/// Light paths per photon asked for: in a medium so thin that more would be needed, photons are
-/// few.
-constexpr double most_paths_per_photon = 16;
-/// Shadow rays per camera ray: where the medium is thin, single scattering is most of the light and
-/// its noise most of the error; where it is thick, the photons' noise hides it
-/// (research-log/decisions.md).
-constexpr double direct_per_collision = 12;
-constexpr int fewest_samples = 2, most_samples = 6;
-constexpr std::uint64_t pilot_paths = 1024;
-/// Photons in a kernel on a surface, and its greatest radius as a share of the surfaces' size.
-constexpr double surface_neighbours = 64;
-constexpr double widest_surface_kernel = 0.05;
 
 /// The nearest power of the fourth root of two: the same number, and so the same photons, for
 /// frames that differ a little.
@@ -60,8 +36,9 @@ bool samples_extended_light(const World& world, const PhotonPlan& plan) {
 
 /// Shadow rays of a camera ray by the number of scattering events.
 int samples_for(double collisions) {
-  const double samples = std::round(direct_per_collision / (1 + collisions));
-  return static_cast<int>(std::clamp<double>(samples, fewest_samples, most_samples));
+  const double samples = std::round(tuning::direct_per_collision / (1 + collisions));
+  return static_cast<int>(
+      std::clamp<double>(samples, tuning::fewest_direct_samples, tuning::most_direct_samples));
 }
 
 } // namespace
@@ -94,10 +71,11 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
   plan.sampled_lights = input.shadow_ray_lights();
   plan.albedo_in_power =
       settings.store == PhotonStore::scatter || common_albedo(input.world.medium);
-  plan.direct_samples = settings.direct_samples > 0 ? settings.direct_samples : most_samples;
+  plan.direct_samples =
+      settings.direct_samples > 0 ? settings.direct_samples : tuning::most_direct_samples;
   plan.most_direct_samples = plan.direct_samples;
   plan.chooses_direct_samples = settings.direct_samples == 0;
-  plan.neighbours = settings.neighbours > 0 ? settings.neighbours : default_neighbours;
+  plan.neighbours = settings.neighbours > 0 ? settings.neighbours : tuning::default_neighbours;
   return plan;
 }
 
@@ -105,17 +83,18 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   const RenderSettings& settings = input.settings;
   plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
-  pass.paths = pilot_paths;
+  pass.paths = tuning::pilot_paths;
   TracedPhotons pilot = trace_photons(input.world, pass);
   plan.pilot_paths += pass.paths;
   const double collisions = std::max(1e-3, pilot.mean_collisions);
   if (settings.direct_samples == 0) {
     plan.direct_samples = samples_for(collisions);
     // Light of one direction has little noise where the ray is thin.
-    plan.most_direct_samples =
-        samples_extended_light(input.world, plan) ? most_samples : plan.direct_samples;
+    plan.most_direct_samples = samples_extended_light(input.world, plan)
+                                   ? tuning::most_direct_samples
+                                   : plan.direct_samples;
   }
-  plan.store_probability = std::min(1.0, stored_per_path_aim / collisions);
+  plan.store_probability = std::min(1.0, tuning::stored_per_path / collisions);
   plan.stored_per_path = collisions * plan.store_probability;
   return pilot;
 }
@@ -128,20 +107,22 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) 
 }
 
 double automatic_paths(double hits, double stored_per_path) {
-  return std::min(std::max(fewest_paths, in_steps(paths_per_hit * hits)),
-                  most_photons / stored_per_path);
+  return std::min(std::max(tuning::fewest_paths, in_steps(tuning::paths_per_hit * hits)),
+                  tuning::most_photons / stored_per_path);
 }
 
 double paths_for_photons(double photons, double stored_per_path) {
-  return photons * std::min(1 / stored_per_path, most_paths_per_photon);
+  return photons * std::min(1 / stored_per_path, tuning::most_paths_per_photon);
 }
 
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {
   if (!(plan.stored_per_path > 0))
     return plan.paths;
   const double paths = static_cast<double>(plan.paths);
-  const double wanted = std::ceil(photons_per_hit * count_hits(input) / plan.stored_per_path);
-  return static_cast<std::uint64_t>(std::clamp(wanted, paths, most_for_hidden_lights * paths));
+  const double wanted =
+      std::ceil(tuning::photons_per_hidden_hit * count_hits(input) / plan.stored_per_path);
+  return static_cast<std::uint64_t>(
+      std::clamp(wanted, paths, tuning::most_for_hidden_lights * paths));
 }
 
 bool reach_bounce_limit(const EstimatorInput& input) {
@@ -209,9 +190,10 @@ RadiusSettings radius_settings(const EstimatorInput& input, double neighbours, f
 }
 
 RadiusSettings surface_radii(const EstimatorInput& input, float scale) {
-  RadiusSettings radii = radius_settings(input, surface_neighbours, scale);
+  RadiusSettings radii = radius_settings(input, tuning::surface_neighbours, scale);
   if (input.settings.kernel == KernelRadius::adaptive && !(input.settings.max_radius > 0))
-    radii.max_radius = static_cast<float>(widest_surface_kernel * surface_extent(input.world));
+    radii.max_radius =
+        static_cast<float>(tuning::widest_surface_kernel * surface_extent(input.world));
   return radii;
 }
 

@@ -69,8 +69,6 @@ double paths_for_photons(double photons, double stored_per_path);
 /// all that the medium shows of them comes from photons, and few photons leave a lamp's housing.
 std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
 
-/// Mean number of photons stored per path; more are nearly redundant.
-inline constexpr double stored_per_path_aim = 4;
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,

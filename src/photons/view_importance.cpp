@@ -2,6 +2,7 @@
 
 #include "medium/depth_profile.h"
 #include "transport/camera_ray.h"
+#include "tuning/constants.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -11,9 +12,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Rays along the picture's longer side. Cells between them are reached by the fall-off.
-constexpr int rays_across = 96;
 
 /// Raises a value that other threads may raise too; the result does not depend on their order.
 void raise(float& value, float to) {
@@ -162,7 +160,7 @@ CellTables view_importance(const World& world, const Camera& camera, float reach
     tables.emplace_back(static_cast<std::size_t>(n.x) * n.y * n.z, 0.0f);
   }
   const int longer = std::max(camera.width(), camera.height());
-  const double spacing = static_cast<double>(longer) / rays_across;
+  const double spacing = static_cast<double>(longer) / tuning::importance_rays_across;
   const int columns = static_cast<int>(std::ceil(camera.width() / spacing));
   const int rows = static_cast<int>(std::ceil(camera.height() / spacing));
   const ViewMarker marker(world, floor, tables);

@@ -1,15 +1,13 @@
 #include "photons/view_thinning.h"
 
 #include "camera/towards_camera.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-/// Photons of less importance than 1 / most_factor are thinned even where there are too few.
-constexpr double most_factor = 4;
 
 /// Importance of a photon for the image: the importance of its place times what is scattered
 /// towards the camera, of the volume for which that is most.
@@ -56,7 +54,8 @@ ViewThinning thin_by_view(const World& world, const Camera& camera, CellTables i
   // With the lower factor no probability exceeds the share that is wanted, nor does their mean.
   const double most =
       std::max(1.0, static_cast<double>(*std::max_element(values.begin(), values.end())));
-  double low = std::min(most_factor, wanted_per_path / per_path / most), high = most_factor;
+  double low = std::min(tuning::most_view_factor, wanted_per_path / per_path / most),
+         high = tuning::most_view_factor;
   for (int step = 0; step < 40; ++step) {
     const double middle = std::sqrt(low * high);
     (mean_share(values, middle) * per_path < wanted_per_path ? low : high) = middle;

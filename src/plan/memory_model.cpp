@@ -145,9 +145,9 @@ private:
   double photons() const {
     if (!plan_.needs(Stage::photons) && !plan_.needs(Stage::surface_photons))
       return 0;
-    const double stored = volumes_.depth < 0 ? stored_per_path_aim
+    const double stored = volumes_.depth < 0 ? tuning::stored_per_path
                                              : std::clamp(stored_per_depth * volumes_.depth,
-                                                          fewest_stored, stored_per_path_aim);
+                                                          fewest_stored, tuning::stored_per_path);
     const auto& asked = scene_.render.photons;
     const double hits = share_of_hits(scene_, volumes_, false) * static_cast<double>(pixels_);
     return stored * (asked ? paths_for_photons(static_cast<double>(*asked), stored)

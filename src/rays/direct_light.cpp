@@ -3,6 +3,7 @@
 #include "medium/distance_sampling.h"
 #include "medium/equi_angular.h"
 #include "transport/next_event.h"
+#include "tuning/constants.h"
 
 #include <optional>
 
@@ -186,7 +187,6 @@ private:
   /// Distances by nearness, where they are of use: to a light that is near, or that shines on a
   /// part of the ray only.
   std::optional<EquiAngular> near_light(const Light& light) const {
-    constexpr float small_part = 0.5f;
     const Segment all{ray_, profile_.front(), profile_.back()};
     if (light.position() == nullptr || all.empty())
       return {};
@@ -194,20 +194,19 @@ private:
     if (lit.empty())
       return {};
     const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end);
-    const bool small = lit.t_end - lit.t_begin < small_part * (all.t_end - all.t_begin);
+    const bool small = lit.t_end - lit.t_begin < tuning::small_lit_part * (all.t_end - all.t_begin);
     return small || near.useful() ? std::optional(near) : std::nullopt;
   }
 
   /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
   void weigh_pieces(const ShadowLattice& shadow, SampledLight& light) {
-    constexpr float fewest = 32;            // pieces of equal opacity at least
-    constexpr float lit_everywhere = 0.05f; // of the mean light: what the lattice may have missed
     const float opacity = distances_.opacity(0);
     const std::size_t last = profile_.knots() - 1;
     float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
     for (std::size_t k = 1; k <= last; ++k) {
       const float now = opacity_of(profile_.total(k));
-      const bool small = now - seen < opacity / fewest && profile_.t(k) - t < shadow.step();
+      const bool small =
+          now - seen < opacity / tuning::shadow_pieces && profile_.t(k) - t < shadow.step();
       if (k < last && (now == seen || small))
         continue;
       t = profile_.t(k);
@@ -217,7 +216,7 @@ private:
       before = after;
       seen = now;
     }
-    const float least = opacity > 0 ? lit_everywhere * sum / opacity + 1e-6f : 0;
+    const float least = opacity > 0 ? tuning::lit_everywhere * sum / opacity + 1e-6f : 0;
     for (Piece& piece : light.pieces)
       piece.weight += least * piece.opacity;
   }

@@ -1,5 +1,7 @@
 #include "rays/uneven_pixels.h"
 
+#include "tuning/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,15 +9,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Differences among the pixels around: of opacity; of the depth of those that are at least so
-/// opaque, in widths of a pixel there.
-constexpr float uneven_opacity = 0.3f;
-constexpr float uneven_widths = 8;
-/// An edge of light has at least this step, in parts of the brightest pixel, and differs from a
-/// plane by less than this part of the step. Shadows and outlines are noticed, the noise of area
-/// lamps is not (research-log/decisions.md).
-constexpr float least_step = 0.4f, most_noise = 0.3f;
 
 struct Range {
   float least = std::numeric_limits<float>::max(), most = std::numeric_limits<float>::lowest();
@@ -47,17 +40,17 @@ bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale,
   for_each_around(seen, x, y, [&](std::size_t pixel, int, int) {
     const float opacity = seen.opacity[pixel];
     opacities.add(opacity);
-    if (opacity > uneven_opacity)
+    if (opacity > tuning::uneven_opacity)
       depths.add(seen.depth[pixel] / opacity);
   });
-  if (opacities.width() > uneven_opacity)
+  if (opacities.width() > tuning::uneven_opacity)
     return true;
   if (!(depths.width() > 0))
     return false;
   const double pixel =
       camera.pixel_width(x + 0.5, y + 0.5, static_cast<double>(depths.least) * world_scale) /
       world_scale;
-  return depths.width() > uneven_widths * static_cast<float>(pixel);
+  return depths.width() > tuning::uneven_widths * static_cast<float>(pixel);
 }
 
 bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
@@ -84,7 +77,7 @@ bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
     return false;
   const float slope_x = products.x / squares.x, slope_y = products.y / squares.y;
   const float step = 2 * std::hypot(slope_x, slope_y);
-  if (!(step > least_step * most))
+  if (!(step > tuning::least_step_of_light * most))
     return false;
   float residual = 0;
   for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
@@ -92,7 +85,7 @@ bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
     const float rest = d.z - slope_x * d.x - slope_y * d.y;
     residual += rest * rest / count;
   });
-  return std::sqrt(residual) < most_noise * step;
+  return std::sqrt(residual) < tuning::most_noise_of_step * step;
 }
 
 } // namespace vdbeam

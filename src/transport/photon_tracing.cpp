@@ -3,6 +3,7 @@
 #include "camera/towards_camera.h"
 #include "medium/flight.h"
 #include "transport/photon_targets.h"
+#include "tuning/constants.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -32,11 +33,6 @@ struct LightPath : Flight {
   float fair_flux = 0;
   SurfaceRoulette surfaces;
 };
-
-// Weight windows (Booth and Hendricks 1984): a path that is worth less than `lowest_value` of the
-// mean is ended with a chance that brings survivors to the mean, but is no less than
-// `least_chance`; one that is worth more than `highest_value` is split in two.
-constexpr float lowest_value = 0.5f, highest_value = 4, least_chance = 0.25f;
 
 /// Rate of tentative collisions: the majorants of overlapping volumes add.
 float total_majorant(const Medium& medium, const Ray& ray, const Collision& hit) {
@@ -129,12 +125,12 @@ private:
   int hold_in_window(LightPath& path, const Vec3f& point) const {
     const float value =
         settings_.guide->relative_value(max_component(path.throughput), point, settings_.paths);
-    if (value < lowest_value) {
-      const float chance = std::max(value, least_chance);
+    if (value < tuning::lowest_window) {
+      const float chance = std::max(value, tuning::least_window_chance);
       if (path.rng.uniform() >= chance)
         return 0;
       path.throughput *= 1 / chance;
-    } else if (value > highest_value && !path.length.begun()) {
+    } else if (value > tuning::highest_window && !path.length.begun()) {
       path.throughput *= 0.5f;
       return 2;
     }

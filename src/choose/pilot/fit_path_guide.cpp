@@ -2,6 +2,7 @@
 
 #include "choose/pilot/trial_tile.h"
 #include "photons/view_thinning.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,19 +11,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Paths of the pilot: this share of a pass, within limits, and at most this many photons.
-constexpr double pilot_share = 0.25;
-constexpr double fewest_paths = 512, most_paths = 8192, most_photons = 1e6;
-/// With fewer photons no guide is fitted.
-constexpr std::size_t fewest_photons = 256;
-/// Cells with fewer visits than this take most of their value from those around them.
-constexpr double prior_visits = 8;
-/// Steps of a light with fewer paths than this take most of their value from all of them.
-constexpr double prior_paths = 32;
-/// Shares of paths that begin as if nothing were known: what the pilot missed is found all the
-/// same.
-constexpr double uniform_share = 0.1, power_share = 0.2;
 
 /// Sums over the blocks of a volume: of what is measured, and of what it is measured by.
 struct BlockSums {
@@ -64,7 +52,7 @@ std::vector<double> ratios(const BlockSums& sums) {
     measure += sums.measure[block];
     visits += sums.visits[block];
   });
-  const double prior = visits > 0 ? prior_visits * measure / visits : 0;
+  const double prior = visits > 0 ? tuning::guide_prior_visits * measure / visits : 0;
   const std::vector<double> around = ratios(coarse);
   std::vector<double> result(sums.value.size());
   for_each_block([&](std::size_t block, std::size_t parent) {
@@ -145,7 +133,7 @@ private:
       light += values_[i];
       space += around[block_of_[i]] > 0 ? values_[i] / around[block_of_[i]] : 0;
     }
-    const double dark = space > 0 ? dark_offset * light / space : 0;
+    const double dark = space > 0 ? tuning::dark_offset * light / space : 0;
     for (std::size_t i = 0; i < photons_.size(); ++i)
       values_[i] = values_[i] > 0 ? values_[i] / (around[block_of_[i]] + dark) : 0;
   }
@@ -171,12 +159,14 @@ std::vector<double> emission_distribution(const double* brought, std::size_t pat
   const double mean = paths > 0 ? all / static_cast<double>(paths) : 0;
   double total = 0;
   for (std::size_t s = 0; s < sum.size(); ++s)
-    total += sum[s] = (sum[s] + prior_paths * mean) / (count[s] + prior_paths);
+    total += sum[s] =
+        (sum[s] + tuning::guide_prior_paths * mean) / (count[s] + tuning::guide_prior_paths);
   std::vector<double> cumulative{0};
   for (const double value : sum)
     cumulative.push_back(cumulative.back() +
-                         (total > 0 ? (1 - uniform_share) * value / total : 1 - uniform_share) +
-                         uniform_share / PathGuide::steps);
+                         (total > 0 ? (1 - tuning::guide_uniform_share) * value / total
+                                    : 1 - tuning::guide_uniform_share) +
+                         tuning::guide_uniform_share / PathGuide::steps);
   for (double& value : cumulative)
     value /= cumulative.back();
   return cumulative;
@@ -198,8 +188,8 @@ void fit_lights(const World& world, const std::vector<std::uint64_t>& first,
     power += powers.back();
   }
   for (std::size_t l = 0; l < sums.size(); ++l)
-    guide.light_shares.push_back((1 - power_share) * sums[l] / guide.total +
-                                 power_share * powers[l] / power);
+    guide.light_shares.push_back((1 - tuning::guide_power_share) * sums[l] / guide.total +
+                                 tuning::guide_power_share * powers[l] / power);
 }
 
 } // namespace
@@ -208,18 +198,18 @@ std::shared_ptr<const PathGuide> fit_path_guide(const EstimatorInput& input, Pho
                                                 const CellTables& view, double mean_collisions) {
   const World& world = input.world;
   PhotonPassSettings pass = pass_settings(input, plan, guide_pass);
-  const double wanted =
-      std::clamp(pilot_share * static_cast<double>(choose_paths(input, plan.stored_per_path)),
-                 fewest_paths, most_paths);
+  const double wanted = std::clamp(
+      tuning::guide_share * static_cast<double>(choose_paths(input, plan.stored_per_path)),
+      tuning::fewest_guide_paths, tuning::most_guide_paths);
   pass.paths = static_cast<std::uint64_t>(
-      std::ceil(std::min(wanted, most_photons / std::max(1.0, mean_collisions))));
+      std::ceil(std::min(wanted, tuning::most_guide_photons / std::max(1.0, mean_collisions))));
   pass.store_probability = 1;
   pass.store_probability_by_cell = nullptr;
   pass.directions = false;
   pass.path_numbers = true;
   const TracedPhotons traced = trace_photons(world, pass);
   plan.pilot_paths += pass.paths;
-  if (traced.photons.size() < fewest_photons)
+  if (traced.photons.size() < tuning::fewest_guide_photons)
     return nullptr;
   const std::vector<std::uint64_t> first = share_paths(world.lights, pass.paths, nullptr);
   const Pilot pilot(world, traced, view);

@@ -2,6 +2,7 @@
 
 #include "choose/pilot/regression_trial.h"
 #include "choose/pilot/trial_tile.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,21 +13,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Every 48th pixel of a tile becomes a sample; the step shrinks until enough samples remain, since
-/// a dark pixel among few could outweigh the others.
-constexpr std::size_t pixels_between_samples = 48, fewest_samples = 64;
-/// Bias grows with the neighbours to this power between the trials: 2 / 3 where kernels are small
-/// against all that they blur, less where they are as wide (measured, research-log/decisions.md).
-constexpr double bias_power = 0.5;
-/// Best value for the clouds that were measured, and by how many factors of two it differs among
-/// them (standard deviation): prior of a scene, before the trial.
-constexpr double usual_neighbours = 512, usual_octaves = 1;
-/// Passes for which noise and bias are balanced. Both fall alike as radii shrink, so that it
-/// matters little (research-log/decisions.md).
-constexpr int balanced_passes = 32;
-/// Adaptive radii are accurate from 32 neighbours on (docs/performance.md); fewer are never chosen.
-constexpr double fewest_neighbours = 32;
 
 /// Sums over a tile's pixels.
 struct TileSums {
@@ -91,7 +77,7 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
   KernelErrors errors;
   if (!(brightness > 0))
     return errors;
-  const double dark = dark_offset * brightness / pixels;
+  const double dark = tuning::dark_offset * brightness / pixels;
   std::vector<TileSums> sums;
   sums.reserve(views.size());
   for (const TrialTile& view : views)
@@ -111,8 +97,8 @@ KernelErrors measure_kernels(const EstimatorInput& input, const PhotonPlan& plan
   std::size_t hits = 0;
   for (const TrialTile& view : views)
     hits += view.pixels.size();
-  const std::size_t step =
-      std::clamp(hits / fewest_samples, std::size_t{1}, pixels_between_samples);
+  const std::size_t step = std::clamp(hits / tuning::fewest_trial_pixels, std::size_t{1},
+                                      tuning::pixels_between_samples);
   for (const TrialTile& view : views)
     add_pixels(view, step, dark, errors.pixels);
   errors.regression = measure_regression(input, views, dark);
@@ -129,7 +115,7 @@ KernelModel::KernelModel(const KernelTrial& narrow, const KernelTrial& wide,
         std::clamp(std::log(errors.noise_narrow / errors.noise_wide) / std::log(ratio), 0.3, 1.0);
   else
     noise_ = 0;
-  const double per_change = std::pow(std::pow(ratio, bias_power) - 1, -2);
+  const double per_change = std::pow(std::pow(ratio, tuning::bias_power) - 1, -2);
   bias_ = expected_bias(errors.change * per_change, errors.change_error * per_change);
 }
 
@@ -137,10 +123,10 @@ double KernelModel::expected_bias(double measured, double error) const {
   if (!(noise_ > 0) || !(error > 0))
     return std::max(0.0, measured);
   // The bias at which the usual kernels are best; the best number goes as its -1 / power.
-  const double power = noise_power_ + 2 * bias_power;
-  const Balance at = balance(balanced_passes);
-  const double usual = noise_power_ * at.noise / (2 * bias_power * at.bias_factor) *
-                       std::pow(usual_neighbours / narrow_, -power);
+  const double power = noise_power_ + 2 * tuning::bias_power;
+  const Balance at = balance(tuning::balanced_passes);
+  const double usual = noise_power_ * at.noise / (2 * tuning::bias_power * at.bias_factor) *
+                       std::pow(tuning::usual_neighbours / narrow_, -power);
   // Bayes' theorem, in small steps of the best number of photons from 2^-8 to 2^8 times the usual
   // one. The largest logarithm of a weight is taken off, or all might vanish.
   constexpr int steps = 256;
@@ -148,7 +134,7 @@ double KernelModel::expected_bias(double measured, double error) const {
   for (int i = 0; i <= 2 * steps; ++i) {
     const double octaves = 8.0 / steps * (i - steps);
     bias[i] = usual * std::exp2(-power * octaves);
-    const double off = (measured - bias[i]) / error, unusual = octaves / usual_octaves;
+    const double off = (measured - bias[i]) / error, unusual = octaves / tuning::usual_octaves;
     logarithm[i] = -0.5 * (off * off + unusual * unusual);
   }
   const double largest = *std::max_element(logarithm.begin(), logarithm.end());
@@ -167,7 +153,7 @@ KernelModel::Balance KernelModel::balance(int passes) const {
   double shrink = 1;
   for (int pass = 1; pass <= passes; ++pass) {
     noise += std::pow(shrink, -1.5 * noise_power_);
-    bias_factor += std::pow(shrink, 1.5 * bias_power);
+    bias_factor += std::pow(shrink, 1.5 * tuning::bias_power);
     shrink *= (pass + alpha_) / (pass + 1);
   }
   noise *= noise_ / (static_cast<double>(passes) * passes);
@@ -179,18 +165,19 @@ double KernelModel::best_neighbours() const {
   // Where narrow kernels reach no camera ray, photons are too few for any but wide ones.
   if (!(noise_ > 0) || !(bias_ > 0))
     return wide_;
-  const Balance at = balance(balanced_passes);
-  // noise x^-power + bias x^(2 bias_power) is least where its derivative is 0.
-  const double x = std::pow(noise_power_ * at.noise / (2 * bias_power * bias_ * at.bias_factor),
-                            1 / (noise_power_ + 2 * bias_power));
-  return std::max(fewest_neighbours, narrow_ * std::clamp(x, 0.05, wide_ / narrow_));
+  const Balance at = balance(tuning::balanced_passes);
+  // noise x^-power + bias x^(2 tuning::bias_power) is least where its derivative is 0.
+  const double x =
+      std::pow(noise_power_ * at.noise / (2 * tuning::bias_power * bias_ * at.bias_factor),
+               1 / (noise_power_ + 2 * tuning::bias_power));
+  return std::max(tuning::fewest_neighbours, narrow_ * std::clamp(x, 0.05, wide_ / narrow_));
 }
 
 double KernelModel::error(double neighbours, int passes) const {
   const Balance at = balance(passes);
   const double x = neighbours / narrow_;
   return at.noise * std::pow(x, -noise_power_) +
-         bias_ * at.bias_factor * std::pow(x, 2 * bias_power);
+         bias_ * at.bias_factor * std::pow(x, 2 * tuning::bias_power);
 }
 
 } // namespace vdbeam

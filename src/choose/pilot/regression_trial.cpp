@@ -1,6 +1,7 @@
 #include "choose/pilot/regression_trial.h"
 
 #include "rays/pixel_tiles.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,10 +11,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Kernels have blurred already what the tiles gather. Squared bias of the pictures of walks is so
-/// many times as large (research-log/decisions.md).
-constexpr double blur_of_walks = 1.5;
 
 /// Sums over a tile's pixels that are fitted to others of the tile only.
 struct RegressionSums {
@@ -97,7 +94,7 @@ RegressionTrial measure_regression(const EstimatorInput& input, const std::vecto
     error += std::pow(tile->blur - blur * tile->values / values, 2);
   for (std::size_t r = 0; r < noise.size(); ++r)
     trial.noise[r] = noise[r] / light;
-  trial.blur = blur_of_walks * (std::max(0.0, blur) + std::sqrt(error)) / values;
+  trial.blur = tuning::blur_of_walks * (std::max(0.0, blur) + std::sqrt(error)) / values;
   return trial;
 }
 

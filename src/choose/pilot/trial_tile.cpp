@@ -5,14 +5,13 @@
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-constexpr int most_tiles = 120;
 
 /// Gathers the tile's rays from each map.
 std::vector<std::vector<float>> gather(const EstimatorInput& input,
@@ -33,7 +32,7 @@ std::vector<TilePlace> choose_trial_tiles(const Camera& camera) {
   const int columns = (camera.width() + tile_width - 1) / tile_width;
   const int rows = (camera.height() + tile_width - 1) / tile_width;
   const std::int64_t all = static_cast<std::int64_t>(columns) * rows;
-  const std::int64_t count = std::min<std::int64_t>(all, most_tiles);
+  const std::int64_t count = std::min<std::int64_t>(all, tuning::trial_tiles);
   // Steps along the rows of tiles; the additive recurrence keeps them from lining up in columns.
   std::vector<TilePlace> tiles;
   for (std::int64_t i = 0; i < count; ++i) {

@@ -9,10 +9,6 @@
 
 namespace vdbeam {
 
-/// Added to the brightness in the weights of trials, as 0.01 is in MRSE, but relative to the
-/// picture's mean: dimming a light must not change the plan.
-inline constexpr double dark_offset = 0.03;
-
 /// Upper left pixel of a tile.
 struct TilePlace {
   int x0 = 0, y0 = 0;

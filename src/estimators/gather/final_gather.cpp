@@ -6,19 +6,13 @@
 #include "medium/flight.h"
 #include "medium/optical_depth.h"
 #include "transport/next_event.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 
 namespace vdbeam {
 
 namespace {
-
-/// Greatest number of scatterings of a walk: in very dense media
-/// kernels are far wider than walks could go in reasonable time.
-constexpr int most_scatterings = 8;
-/// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth
-/// rest by which the camera sees may be negative, where the table of directions has next to none.
-constexpr float evenly_drawn = 0.25f;
 
 /// The way light takes to the camera from a direction of travel `ahead`, away from the camera: the
 /// direction of the walk's first flight, and in `weight` phase function over density, which may be
@@ -31,10 +25,11 @@ Vec3f draw_first_direction(const Medium& medium, int phase_index, const Vec3f& a
   weight = 1;
   if (!medium.peak)
     return drawn.sample(ahead, u_lobe, u, v);
-  const Vec3f direction =
-      rng.uniform() < evenly_drawn ? sample_sphere(u, v) : drawn.sample(ahead, u_lobe, u, v);
+  const Vec3f direction = rng.uniform() < tuning::evenly_drawn ? sample_sphere(u, v)
+                                                               : drawn.sample(ahead, u_lobe, u, v);
   const float cosine = dot(ahead, direction);
-  const float pdf = (1 - evenly_drawn) * drawn.evaluate(cosine) + evenly_drawn / (4 * pi);
+  const float pdf =
+      (1 - tuning::evenly_drawn) * drawn.evaluate(cosine) + tuning::evenly_drawn / (4 * pi);
   weight = medium.gathered_phases()[i].evaluate(cosine) / pdf;
   return direction;
 }
@@ -133,13 +128,13 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   const Vec3f point = walk.segment.ray.at(hit.t);
   walk.segment.ray.origin = point;
   ++walk.scatterings;
-  const bool last =
-      walk.scatterings > most_scatterings || length(point - walk.beginning) >= far_enough_;
+  const bool last = walk.scatterings > tuning::most_scatterings_of_walk ||
+                    length(point - walk.beginning) >= far_enough_;
   if (last)
     gather_photons(walk, volume);
   walk.throughput *= volume.albedo_at(point);
   send_shadow_rays(walk, medium.gathered_phases()[phase]);
-  if (last || !survive_roulette(roulette_below, walk.throughput, walk.rng))
+  if (last || !survive_roulette(tuning::roulette_below, walk.throughput, walk.rng))
     return false;
   set_out(walk, point, walk.sample_direction(medium.phases[phase]));
   return advance_flight(walk, *this);

@@ -1,6 +1,7 @@
 #include "estimators/gather/regression.h"
 
 #include "math/plane_fit.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +10,6 @@ namespace vdbeam {
 
 namespace {
 
-/// Difference in depth at which a neighbour does not count, over half the width of what is shared.
-constexpr float deepest_over_width = 8;
 int reach_of(float radius) {
   return radius > 0 ? static_cast<int>(std::ceil(radius)) : 0;
 }
@@ -45,7 +44,7 @@ float PixelRegression::blur_over_difference(float radius) {
 float PixelRegression::deepest(const SeenMedium& seen, int x, int y, float distance) const {
   const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
                                            static_cast<double>(distance) * world_scale_);
-  return deepest_over_width * (radius_ + 0.5f) * static_cast<float>(pixel / world_scale_);
+  return tuning::deepest_over_width * (radius_ + 0.5f) * static_cast<float>(pixel / world_scale_);
 }
 
 std::span<const PixelRegression::Share> PixelRegression::shares(const SeenMedium& seen, int x,

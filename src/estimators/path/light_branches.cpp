@@ -1,22 +1,16 @@
 #include "estimators/path/light_branches.h"
 
+#include "tuning/constants.h"
+
 #include <algorithm>
 
 namespace vdbeam {
 
 namespace {
 
-// Numbers: measured on a cumulus of droplets in low sun (research-log/decisions.md).
-
-/// Branches per scattering, before those that go elsewhere than about the light are left out.
-constexpr float branches = 0.25f;
-/// A phase function that scatters this much more straight on than it does on average is worth them.
-constexpr float sharp_peak = 200;
 /// Branches go where the phase function about the light is above its mean: in other directions
 /// they would only be copies of the walk.
 constexpr float least_about_light = 1 / (4 * pi);
-/// Importance of a direction per value of the phase function about the light [sr].
-constexpr float importance_of_peak = 10;
 
 /// q of one light.
 float about_light(const PhaseFunction& phase, const Vec3f& towards, const Vec3f& direction) {
@@ -25,7 +19,7 @@ float about_light(const PhaseFunction& phase, const Vec3f& towards, const Vec3f&
 }
 
 bool is_peaked(const PhaseFunction& phase) {
-  return 4 * pi * phase.evaluate(1) > sharp_peak;
+  return 4 * pi * phase.evaluate(1) > tuning::sharp_peak;
 }
 
 } // namespace
@@ -48,7 +42,7 @@ LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow
 /// c at a scattering by this phase function.
 float LightBranches::chance(const PhaseFunction& phase) const {
   const bool worth = any() && std::find(peaked_.begin(), peaked_.end(), &phase) != peaked_.end();
-  return worth ? branches : 0;
+  return worth ? tuning::branches_per_scattering : 0;
 }
 
 std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, Rng& rng) const {
@@ -78,7 +72,7 @@ float LightBranches::importance(const Vec3f& direction) const {
   for (const Vec3f& towards : towards_)
     for (const PhaseFunction* phase : peaked_)
       most = std::max(most, phase->evaluate(dot(towards, direction)));
-  return 1 + importance_of_peak * most;
+  return 1 + tuning::importance_of_peak * most;
 }
 
 } // namespace vdbeam

@@ -1,5 +1,7 @@
 #include "estimators/path/path_effort.h"
 
+#include "tuning/constants.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,11 +31,10 @@ PathTrial& PathTrial::operator+=(const PathTrial& other) {
 
 PathEffort PathTrial::best_effort(double least_time) const {
   // A few rays do not show how little the variance is that draws do not change.
-  constexpr double least_share_of_rays = 0.05;
   double of_draws = 0;
   for (const Part& part : parts)
     of_draws += part.variance;
-  const double of_rays = std::max(ray_variance, least_share_of_rays * of_draws);
+  const double of_rays = std::max(ray_variance, tuning::least_share_of_rays * of_draws);
   PathEffort effort;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!(parts[i].time > 0)) {
@@ -49,10 +50,9 @@ PathEffort PathTrial::best_effort(double least_time) const {
 }
 
 double time_of_shadow_ray(const Medium& medium) {
-  constexpr double through_voxels = 5000, through_layers = 500;
   const bool has_voxels = std::any_of(medium.volumes.begin(), medium.volumes.end(),
                                       [](const Volume& volume) { return !volume.field.layers(); });
-  return has_voxels ? through_voxels : through_layers;
+  return has_voxels ? tuning::time_of_ray_in_voxels : tuning::time_of_ray_in_layers;
 }
 
 } // namespace vdbeam

@@ -47,9 +47,6 @@ struct PathTrial {
   PathEffort best_effort(double least_time = 1) const;
 };
 
-// Processor time [ns] of what `path` does; only ratios count (research-log/decisions.md).
-inline constexpr double time_of_camera_ray = 10000, time_of_walk = 1000,
-                        time_of_walk_collision = 80, time_of_surface_path = 2000;
 /// The time of a shadow ray [ns]: layers, whose optical depth has a closed form, take less than
 /// voxels.
 double time_of_shadow_ray(const Medium& medium);

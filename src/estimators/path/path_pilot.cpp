@@ -1,5 +1,7 @@
 #include "estimators/path/ray_task.h"
 
+#include "tuning/constants.h"
+
 #include <tbb/parallel_for.h>
 
 // The pilot of PathEstimator: a few rays, with independent draws of each part of their light.
@@ -13,10 +15,6 @@ constexpr std::uint64_t first_effort_pass = ~std::uint64_t(0) - 300;
 constexpr std::size_t rays_per_pixel = 2, draws_per_ray = 2;
 constexpr std::size_t fewest_pixels = 64, most_pixels = 1024, pixels_per_trial = 32;
 constexpr std::uint32_t most_rounds = 1024;
-/// The part of the mean brightness that is added to a pixel's in the weight of its squared error:
-/// the brightness of a few draws is too small where they found little, and such pixels would
-/// outweigh the others.
-constexpr double dark_offset = 0.05;
 
 /// One pixel from each stratum of the whole picture, whatever part of it is rendered.
 std::vector<std::size_t> trial_pixels(const EstimatorInput& input) {
@@ -62,8 +60,8 @@ void PathEstimator::try_draw(RayTask task, std::size_t draw, Scratch& scratch,
   const auto time = [&] {
     const RenderStatistics& counts = scratch.counts;
     return time_of_shadow_ray(input_.world.medium) * static_cast<double>(counts.shadow_rays) +
-           time_of_walk * static_cast<double>(counts.camera_walks) +
-           time_of_walk_collision * static_cast<double>(counts.walk_collisions);
+           tuning::time_of_walk * static_cast<double>(counts.camera_walks) +
+           tuning::time_of_walk_collision * static_cast<double>(counts.walk_collisions);
   };
   const auto part = [&](PathPart which, double least_time, const auto& render) {
     const auto i = static_cast<std::size_t>(which);
@@ -79,7 +77,7 @@ void PathEstimator::try_draw(RayTask task, std::size_t draw, Scratch& scratch,
     result.time[i] += (time() - before + least_time) / draws_per_ray;
   };
   Rng rng(task.key, RngStage::path, task.pixel);
-  part(PathPart::surface, time_of_surface_path, [&](PassImage& image) {
+  part(PathPart::surface, tuning::time_of_surface_path, [&](PassImage& image) {
     image.background[target] = seen_surface(task, scratch).radiance.sum() * task.transmitted;
   });
   if (!scatters_ || task.profile.empty())
@@ -121,7 +119,7 @@ PathEstimator::TrialRay PathEstimator::try_ray(std::size_t pixel, std::uint64_t 
 /// What a pixel's rays show, its squared error weighted by `weight`.
 PathTrial PathEstimator::trial_of(const std::array<TrialRay, rays_per_pixel>& rays, double weight) {
   PathTrial trial;
-  trial.ray_time = time_of_camera_ray;
+  trial.ray_time = tuning::time_of_camera_ray;
   for (const TrialRay& ray : rays)
     for (std::size_t i = 0; i < path_part_count; ++i) {
       const double share{ray.share[i]};
@@ -159,7 +157,7 @@ PathTrial PathEstimator::try_pixels() const {
   }
   PathTrial sum;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double known = std::max(0.0, brightness[i]) + dark_offset * mean;
+    const double known = std::max(0.0, brightness[i]) + tuning::dark_offset_of_path * mean;
     if (known > 0)
       sum += trial_of(rays[i], 1 / (known * known));
   }

@@ -2,20 +2,13 @@
 
 #include "medium/emission.h"
 #include "transport/next_event.h"
+#include "tuning/constants.h"
 
 namespace vdbeam {
 
-namespace {
-
-/// Weight under which Russian roulette begins where walks branch, in parts of the weight with which
-/// they began. They become many where they matter; with 0.1 they would be many elsewhere too.
-constexpr float roulette_of_branches_below = 0.6f;
-
-} // namespace
-
 float WalkTracer::roulette_from(const Rgb& throughput) const {
-  return light_branches_.any() ? roulette_of_branches_below * max_component(throughput)
-                               : roulette_below;
+  return light_branches_.any() ? tuning::roulette_of_branches_below * max_component(throughput)
+                               : tuning::roulette_below;
 }
 
 PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,

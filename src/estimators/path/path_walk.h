@@ -5,6 +5,7 @@
 #include "medium/flight.h"
 #include "medium/optical_depth.h"
 #include "transport/world.h"
+#include "tuning/constants.h"
 
 #include <optional>
 
@@ -20,9 +21,9 @@ struct PathWalk : Flight {
   std::size_t volume = 0; ///< of the scene, that scatters its light to the camera
   float share = 1;        ///< what its light counts in the pixel
 
-  float least_weight = roulette_below;  ///< under which Russian roulette begins
-  const PhaseFunction* phase = nullptr; ///< at the last real collision
-  bool scatters = false;                ///< there, in the next step
+  float least_weight = tuning::roulette_below; ///< under which Russian roulette begins
+  const PhaseFunction* phase = nullptr;        ///< at the last real collision
+  bool scatters = false;                       ///< there, in the next step
   /// Density of flights in this one's direction, branches among them [1/sr]; 0: nothing else draws
   /// it.
   float density = 0;

@@ -1,0 +1,241 @@
+#pragma once
+
+#include "tuning/tuned.h"
+
+#include <cstdint>
+
+/// Every number of the method that was fitted, none of which changes what a render converges to:
+/// each trades error against time. A comment gives its unit and what it trades;
+/// docs/developer/tuning.md, which tools/sensitivity.py writes, how error times work changes where
+/// it is halved and doubled. A new one needs a row there; one whose row shows nothing is deleted.
+namespace vdbeam::tuning {
+
+// Costs: processor time [ns] of what renders count. Only ratios matter: they decide how work is
+// shared out. Fitted to 39 scenes, where the ratio of two estimators came out right within 30 %.
+
+/// A camera ray with its depth profile.
+VDBEAM_TUNED(double, time_of_camera_ray, 10000);
+/// A walk of `path` from a camera ray, and each tentative collision of a walk.
+VDBEAM_TUNED(double, time_of_walk, 1000);
+VDBEAM_TUNED(double, time_of_walk_collision, 80);
+/// A path from a surface.
+VDBEAM_TUNED(double, time_of_surface_path, 2000);
+/// A shadow ray through voxels; through layers, whose optical depth has a closed form.
+VDBEAM_TUNED(double, time_of_ray_in_voxels, 5000);
+VDBEAM_TUNED(double, time_of_ray_in_layers, 500);
+/// A camera ray's query of the photon map.
+VDBEAM_TUNED(double, time_of_query, 8000);
+/// A tentative collision of a light path, and a photon stored.
+VDBEAM_TUNED(double, time_of_light_collision, 150);
+VDBEAM_TUNED(double, time_of_photon, 2000);
+/// Factor of a pass of photons by these, which overestimate it against a pass of `path`.
+VDBEAM_TUNED(double, time_of_photon_pass, 0.56);
+/// Time of the most walks of final gathering over that of a pass that gathers along camera rays: in
+/// the open, and where walks meet surfaces, from which paths go on.
+VDBEAM_TUNED(double, time_of_walks_in_the_open, 0.7);
+VDBEAM_TUNED(double, time_of_walks_among_surfaces, 1.5);
+
+// Light paths and photons.
+
+/// Light paths per camera ray that shows photons' light: their noise against the time to trace
+/// them. The fewest of a pass, and the most photons, which bounds memory.
+VDBEAM_TUNED(double, paths_per_hit, 4);
+VDBEAM_TUNED(double, fewest_paths, 10000);
+VDBEAM_TUNED(double, most_photons, 4e6);
+/// Photons stored per path, mean; more are nearly redundant.
+VDBEAM_TUNED(double, stored_per_path, 4);
+/// For lights that shadow rays do not reach there are more light paths: at most this factor, until
+/// there are these photons per camera ray that meets the medium.
+VDBEAM_TUNED(double, most_for_hidden_lights, 8);
+VDBEAM_TUNED(double, photons_per_hidden_hit, 1);
+/// Light paths per photon that a scene asks for: in a medium so thin that more would be needed,
+/// photons are few.
+VDBEAM_TUNED(double, most_paths_per_photon, 16);
+/// Where the camera sees nothing of a cell, collisions there are stored with at least this share of
+/// the probability of those that it sees best: photons that bring nothing against rare bright ones.
+VDBEAM_TUNED(float, least_importance, 1.0f / 1024);
+/// Photons of less importance than the inverse are thinned even where there are too few.
+VDBEAM_TUNED(double, most_view_factor, 4);
+/// Camera rays along the picture's longer side that find the importance of cells.
+VDBEAM_TUNED(int, importance_rays_across, 96);
+/// Weight windows (Booth and Hendricks 1984): a path that is worth less than the lowest value of
+/// the mean is ended with a chance that brings survivors to the mean, but is no less than the least
+/// one; a path that is worth more than the highest value is split in two.
+VDBEAM_TUNED(float, lowest_window, 0.5f);
+VDBEAM_TUNED(float, highest_window, 4);
+VDBEAM_TUNED(float, least_window_chance, 0.25f);
+/// Weight under which Russian roulette begins.
+VDBEAM_TUNED(float, roulette_below, 0.1f);
+
+// Kernels: photons in the sphere of an adaptive kernel's radius. Few have noise, many have bias.
+
+/// Where no pilot chooses them; those on surfaces, and their greatest radius as a share of the
+/// surfaces' size.
+VDBEAM_TUNED(double, default_neighbours, 500);
+VDBEAM_TUNED(double, surface_neighbours, 64);
+VDBEAM_TUNED(double, widest_surface_kernel, 0.05);
+/// Those of a kernel that walks gather in, over those of one along camera rays: the walks even out
+/// some of the noise.
+VDBEAM_TUNED(double, neighbours_of_gather, 0.5);
+/// What a pilot may choose: this, twice and half of it and so on, up to the most, beyond which
+/// kernels are many mean free paths wide and have a bias that the pilot does not show, and down to
+/// the fewest, at which adaptive radii are still accurate.
+VDBEAM_TUNED(double, middle_neighbours, 640);
+VDBEAM_TUNED(double, most_neighbours, 1280);
+VDBEAM_TUNED(double, fewest_neighbours, 32);
+/// Bias grows with the neighbours to this power: 2 / 3 where kernels are small against all that
+/// they blur, less where they are as wide.
+VDBEAM_TUNED(double, bias_power, 0.5);
+/// Prior of a scene, before the pilot: the best number of the clouds that were measured, and by how
+/// many factors of two it differs among them (standard deviation).
+VDBEAM_TUNED(double, usual_neighbours, 512);
+VDBEAM_TUNED(double, usual_octaves, 1);
+/// Passes for which noise and bias are balanced. Both fall alike as radii shrink.
+VDBEAM_TUNED(int, balanced_passes, 32);
+
+// Pilots: what is measured before the first pass, against the time that this takes.
+
+/// Light paths of the first pilot, and of the one that is guided.
+VDBEAM_TUNED(std::uint64_t, pilot_paths, 1024);
+VDBEAM_TUNED(std::uint64_t, guided_pilot_paths, 1024);
+/// Kernels are tried on maps of this share of a pass's light paths, but no more paths than the
+/// most; where passes are small, of twice the share up to a few.
+VDBEAM_TUNED(double, trial_share, 0.125);
+VDBEAM_TUNED(double, few_trial_paths, 5000);
+VDBEAM_TUNED(double, most_trial_paths, 40000);
+VDBEAM_TUNED(int, trial_maps, 6);
+/// Photons in the narrow kernels of the trial, for a whole pass; the wide ones hold more. They lie
+/// about what is chosen in the end, so that little is extrapolated.
+VDBEAM_TUNED(double, trial_neighbours, 600);
+VDBEAM_TUNED(double, wide_over_narrow, 4);
+/// A narrow kernel holds at most this share of a map, so that a wide one fits.
+VDBEAM_TUNED(double, most_in_kernel, 1.0 / 16);
+/// Below this many photons per pass the trial is too noisy, and defaults are used.
+VDBEAM_TUNED(double, fewest_for_trial, 500);
+/// Tiles of 16 x 16 pixels at which trials look, and the pixels of them that other pilots use:
+/// every 48th, or more where fewer than the fewest would remain, since a dark pixel among few could
+/// outweigh the others.
+VDBEAM_TUNED(int, trial_tiles, 120);
+VDBEAM_TUNED(std::size_t, pixels_between_samples, 48);
+VDBEAM_TUNED(std::size_t, fewest_trial_pixels, 64);
+/// Part of the picture's mean brightness that is added to a pixel's in the weights of trials, as
+/// 0.01 is in MRSE; more for `path`, whose few draws often find little.
+VDBEAM_TUNED(double, dark_offset, 0.03);
+VDBEAM_TUNED(double, dark_offset_of_path, 0.05);
+/// Light paths that fit the path guide: a share of a pass, within limits; photons at most, and
+/// those without which no guide is fitted.
+VDBEAM_TUNED(double, guide_share, 0.25);
+VDBEAM_TUNED(double, fewest_guide_paths, 512);
+VDBEAM_TUNED(double, most_guide_paths, 8192);
+VDBEAM_TUNED(double, most_guide_photons, 1e6);
+VDBEAM_TUNED(std::size_t, fewest_guide_photons, 256);
+/// Cells with fewer visits take most of their value from those around them, steps of a light with
+/// fewer paths from the others.
+VDBEAM_TUNED(double, guide_prior_visits, 8);
+VDBEAM_TUNED(double, guide_prior_paths, 32);
+/// Shares of paths that begin as if nothing were known, evenly and by power: what the pilot missed
+/// is found all the same.
+VDBEAM_TUNED(double, guide_uniform_share, 0.1);
+VDBEAM_TUNED(double, guide_power_share, 0.2);
+
+// Final gathering.
+
+/// Scatterings of a walk at most: in very dense media kernels are far wider than walks could go.
+VDBEAM_TUNED(int, most_scatterings_of_walk, 8);
+/// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth
+/// rest by which the camera sees may be negative, where the table of directions has next to none.
+VDBEAM_TUNED(float, evenly_drawn, 0.25f);
+/// Difference in depth at which a neighbouring pixel does not count in the regression, over half
+/// the width of what is shared.
+VDBEAM_TUNED(float, deepest_over_width, 8);
+/// Kernels have blurred already what the pilot sees: factor of the regression's squared bias.
+VDBEAM_TUNED(double, blur_of_walks, 1.5);
+/// Passes before the first of final gathering, unless it is the first.
+VDBEAM_TUNED(int, fewest_passes_before_gather, 4);
+VDBEAM_TUNED(int, most_passes_before_gather, 512);
+/// Forecasts are compared at this multiple of the passes before the switch.
+VDBEAM_TUNED(int, passes_compared_for_gather, 8);
+
+// Forward peaks (delta-M): bias against noise.
+
+/// Largest fraction of the scattering that the first order may remove, along rays and in final
+/// gathering. With more, light that is scattered twice by small angles is too dark.
+VDBEAM_TUNED(float, largest_first_peak, 0.6f);
+VDBEAM_TUNED(float, largest_peak_of_gather, 0.55f);
+/// Optical depth from which on the first order is the lowest.
+VDBEAM_TUNED(double, depth_of_lowest_order, 24);
+
+// Direct light.
+
+/// Sets of shadow rays per camera ray: this number over 1 plus the scattering events, within
+/// limits. Where the medium is thin, single scattering is most of the light.
+VDBEAM_TUNED(double, direct_per_collision, 12);
+VDBEAM_TUNED(int, fewest_direct_samples, 2);
+VDBEAM_TUNED(int, most_direct_samples, 6);
+/// Factor of these where rays cross shafts of light.
+VDBEAM_TUNED(int, samples_in_shafts, 2);
+/// Optical depth before which no shadow ray ends at random.
+VDBEAM_TUNED(float, certain_depth, 3);
+/// Pieces of a ray that a shadow lattice weighs, and the part of the mean light that each gets:
+/// what the lattice may have missed.
+VDBEAM_TUNED(float, shadow_pieces, 32);
+VDBEAM_TUNED(float, lit_everywhere, 0.05f);
+/// A light that shines on less than this part of a ray is sampled by its nearness.
+VDBEAM_TUNED(float, small_lit_part, 0.5f);
+
+// Edges, which several rays see.
+
+/// Differences among the pixels around: of opacity; of the depth of those that are at least so
+/// opaque, in widths of a pixel there.
+VDBEAM_TUNED(float, uneven_opacity, 0.3f);
+VDBEAM_TUNED(float, uneven_widths, 8);
+/// An edge of light has at least this step, in parts of the brightest pixel, and differs from a
+/// plane by less than this part of the step: shadows and outlines are noticed, noise is not.
+VDBEAM_TUNED(float, least_step_of_light, 0.4f);
+VDBEAM_TUNED(float, most_noise_of_step, 0.3f);
+
+// Surfaces.
+
+/// Squared relative error of a pixel at which one set of shadow rays, or one path, is enough, and
+/// the most of them.
+VDBEAM_TUNED(float, error_of_matt_ray, 5e-4f);
+VDBEAM_TUNED(float, error_of_matt_path, 0.015f);
+VDBEAM_TUNED(int, most_matt_samples, 16);
+/// Variance that a plane leaves of the noise of the pixels to which it is fitted.
+VDBEAM_TUNED(float, left_by_plane, 0.1f);
+/// Rays that look for lamps behind rough glass and gather nothing else.
+VDBEAM_TUNED(int, lamp_rays, 12);
+
+// Path tracing.
+
+/// Branches towards narrow lights per scattering, before those that go elsewhere are left out; how
+/// much more than on average a phase function must scatter straight on to be worth them; the
+/// importance of a direction per value of the phase function about the light [sr]; the weight, in
+/// parts of that with which a walk began, under which roulette begins where walks branch.
+VDBEAM_TUNED(float, branches_per_scattering, 0.25f);
+VDBEAM_TUNED(float, sharp_peak, 200);
+VDBEAM_TUNED(float, importance_of_peak, 10);
+VDBEAM_TUNED(float, roulette_of_branches_below, 0.6f);
+/// Share of the draws' variance that camera rays have at least: a few rays do not show less.
+VDBEAM_TUNED(double, least_share_of_rays, 0.05);
+
+// The choice of `auto`.
+
+/// Passes after which estimators are compared: the lead of photons shrinks as passes are added,
+/// since the bias of kernels falls more slowly than noise.
+VDBEAM_TUNED(int, passes_compared_for_auto, 16);
+/// Renders of each trial pixel, more in small images, so that their noise is measured by these
+/// rays.
+VDBEAM_TUNED(int, fewest_trial_passes, 2);
+VDBEAM_TUNED(int, most_trial_passes, 16);
+VDBEAM_TUNED(std::size_t, wanted_trial_rays, 1000);
+/// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths.
+VDBEAM_TUNED(double, safe_lead, 1.25);
+/// Collisions of a light path beyond which `path` is taken without a trial.
+VDBEAM_TUNED(double, most_collisions_per_path, 4096);
+/// Photons stored per light path below which `path` is taken: where a kernel pilot showed what they
+/// are worth, and where none did.
+VDBEAM_TUNED(double, rarest_photons, 1.0 / 100);
+VDBEAM_TUNED(double, rarest_photons_without_pilot, 1.0 / 20);
+
+} // namespace vdbeam::tuning
