@@ -73,8 +73,16 @@ class Suite:
             np.save(path, image)
         return image
 
+    def _references(self, keys):
+        return [self._reference(keys, 1001), self._reference(keys, 1002)]
+
+    def error(self, keys, estimator, passes, seed):
+        """MRSE of one render."""
+        settings = {"render.passes": passes, "render.estimator": estimator, "render.seed": seed}
+        return self._vdbeam.compare(self._render(keys, settings), *self._references(keys))["mrse"]
+
     def measure(self, name, keys, passes, path_passes, seed=1):
-        references = [self._reference(keys, 1001), self._reference(keys, 1002)]
+        references = self._references(keys)
         frame = self._render(keys, {"render.passes": passes, "render.seed": seed}, references)
         path = self._render(keys, {"render.passes": path_passes, "render.estimator": "path", "render.seed": seed},
                             references)

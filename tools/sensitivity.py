@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""Measures what the fitted numbers of the method (src/tuning/constants.h) do: each is halved and doubled in turn, and
+error (MRSE) times processor time of the default estimator and of `path` is compared with that of the number as it is.
+
+It needs the Python module of a build with the CMake option VDBEAM_TUNING, which reads the numbers from the environment,
+and an otherwise idle machine. Prints a line per number; --page writes the table of docs/developer/tuning.md anew.
+
+Example:
+  cmake -S . -B build/tuning -G Ninja -DCMAKE_BUILD_TYPE=Release -DVDBEAM_TUNING=ON && ninja -C build/tuning vdbeam_python
+  PYTHONPATH=build/tuning/python tools/sensitivity.py --references out/references --page docs/developer/tuning.md
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+CONSTANTS = pathlib.Path(__file__).resolve().parents[1] / "src" / "tuning" / "constants.h"
+SCENES = "cumulus,wisps,cloud_over_ground,lamp_in_smoke,droplets_over_ground,fire_over_floor"
+FACTORS = (0.5, 2.0)
+# What is written before the table, and what the table begins with.
+MARK = "<!-- The table below is written by tools/sensitivity.py. -->"
+
+
+def read_constants(text):
+    """[(name, type, value)] of a header's VDBEAM_TUNED lines."""
+    found = re.findall(r"VDBEAM_TUNED\(\s*([\w:]+),\s*(\w+),\s*([^)]+)\)", text)
+    return [(name, kind, float(eval(value.replace("f", ""), {"__builtins__": {}}))) for kind, name, value in found]
+
+
+def changed(kind, value, factor):
+    """The number times the factor, as its type holds it."""
+    return value * factor if kind in ("float", "double") else max(1, round(value * factor))
+
+
+def measure_here(names, options):
+    """{scene: [e of the default estimator, e of path]} with the numbers of this process's environment."""
+    import vdbeam
+
+    from scene_suite import measure, scenes
+    suite = measure.Suite(vdbeam, options.width, options.reference_passes, options.references)
+    known = scenes.all_scenes(vdbeam)
+    result = {}
+    for name in names:
+        result[name] = []
+        for estimator, passes in (("auto", options.passes), ("path", options.path_passes)):
+            errors, seconds = 0, math.inf
+            for seed in range(1, options.seeds + 1):
+                start = time.process_time()
+                errors += suite.error(known[name], estimator, passes, seed)
+                seconds = min(seconds, time.process_time() - start)
+            result[name].append(errors / options.seeds * seconds)
+    return result
+
+
+def measure_with(change, options):
+    """The same in a process of its own."""
+    environment = {**os.environ, "VDBEAM_TUNE": change}
+    result = subprocess.run([sys.executable, "-B", __file__, *sys.argv[1:], "--here"], env=environment, text=True,
+                            capture_output=True, check=False)
+    if result.returncode:
+        sys.exit(f"sensitivity.py: {change}: {result.stderr.strip().splitlines()[-1]}")
+    return json.loads(result.stdout)
+
+
+def ratios(measured, base, estimator):
+    """Geometric mean over the scenes, and the worst of them with its name."""
+    each = {name: measured[name][estimator] / base[name][estimator] for name in base}
+    mean = math.exp(sum(math.log(max(1e-6, value)) for value in each.values()) / len(each))
+    worst = max(each, key=lambda name: each[name])
+    return mean, worst, each[worst]
+
+
+def row(name, value, by_factor, base):
+    cells = []
+    for measured in by_factor:
+        mean, worst, most = ratios(measured, base, 0)
+        cells += [f"{mean:.2f}", f"{most:.2f} ({worst})", f"{ratios(measured, base, 1)[0]:.2f}"]
+    return f"| `{name}` | {value:g} | " + " | ".join(cells) + " |"
+
+
+def table(rows):
+    head = ("| number | value | half: mean | worst scene | `path` | twice: mean | worst scene | `path` |\n"
+            "|---|---|---|---|---|---|---|---|\n")
+    return head + "\n".join(rows) + "\n"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--numbers", help="names, separated by commas; default: all")
+    parser.add_argument("--scenes", default=SCENES, help="of tools/scene_suite, separated by commas")
+    parser.add_argument("--width", type=int, default=128, help="of the images [pixels] (128)")
+    parser.add_argument("--passes", type=int, default=4, help="of the default estimator (4)")
+    parser.add_argument("--path-passes", type=int, default=2, help="of path (2)")
+    parser.add_argument("--seeds", type=int, default=2, help="renders of each, whose errors are averaged (2)")
+    parser.add_argument("--reference-passes", type=int, default=64, help="of each reference (64)")
+    parser.add_argument("--references", help="folder in which references are kept; default: nowhere")
+    parser.add_argument("--page", help="page whose table is written anew")
+    parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    scenes = options.scenes.split(",")
+    if options.here:
+        print(json.dumps(measure_here(scenes, options)))
+        return
+    constants = read_constants(CONSTANTS.read_text())
+    chosen = options.numbers.split(",") if options.numbers else [name for name, _, _ in constants]
+    base = measure_with("", options)
+    rows = []
+    for name, kind, value in constants:
+        if name not in chosen:
+            continue
+        by_factor = [measure_with(f"{name}={changed(kind, value, factor)}", options) for factor in FACTORS]
+        rows.append(row(name, value, by_factor, base))
+        print(rows[-1], flush=True)
+    if options.page:
+        page = pathlib.Path(options.page)
+        page.write_text(page.read_text().split(MARK)[0] + MARK + "\n\n" + table(rows))
+
+
+if __name__ == "__main__":
+    main()
