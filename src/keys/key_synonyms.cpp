@@ -153,6 +153,12 @@ constexpr std::array synonyms{
     KeySynonym{S::material, "image", "texture", ""},
     KeySynonym{S::material, "index", "ior", ""},
 
+    KeySynonym{S::instance, "name", "volume", ""},
+    KeySynonym{S::instance, "points", "file", ""},
+    KeySynonym{S::instance, "path", "file", ""},
+    KeySynonym{S::instance, "transform", "columns", ""},
+    KeySynonym{S::instance, "translate", "columns", ""},
+
     KeySynonym{S::layer, "type", "name", ""},
     KeySynonym{S::layer, "aov", "name", ""},
 };

@@ -339,6 +339,7 @@ std::vector<SceneKey> make_table() {
   add_camera_keys(table);
   add_volume(table);
   add_emission(table);
+  add_instance_keys(table);
   add_mesh(table);
   add_light_keys(table);
   add_layer(table);
