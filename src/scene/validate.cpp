@@ -91,8 +91,12 @@ public:
 
   void check_fog(std::size_t index) const {
     const VolumeSettings& volume = scene_.volumes[index];
-    if (volume.emission.glows())
-      fail(fmt::format("volume.{}.emission", index), "needs a file: a shape does not glow");
+    for (const auto& [key, grid] : {std::pair("intensity", volume.emission.intensity),
+                                    std::pair("temperature", volume.emission.temperature)})
+      if (!grid.empty() && grid != "density")
+        fail(fmt::format("volume.{}.emission.{}", index, key),
+             fmt::format("must be \"density\" for a shape, which has no other grid, got \"{}\"",
+                         grid));
     if (volume.noise.amplitude > 0)
       check_noise(index);
   }

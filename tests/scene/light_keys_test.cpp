@@ -116,7 +116,8 @@ TEST_F(FogKeys, Complaints) {
   EXPECT_NE(error_of("[[volume]]\nshape = 'ball'\n").find("did you mean sphere?"),
             std::string::npos);
   EXPECT_NE(error_of("[[volume]]\nshape = 'box'\nemission = { intensity = 'flame' }\n")
-                .find("volume.0.emission needs a file: a shape does not glow"),
+                .find("volume.0.emission.intensity must be \"density\" for a shape, which has no "
+                      "other grid, got \"flame\""),
             std::string::npos);
   EXPECT_NE(
       error_of("[[volume]]\nshape = 'box'\nnoise_amplitude = 0.1\nnoise_size = 0.001\n")
