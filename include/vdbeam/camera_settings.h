@@ -17,7 +17,7 @@ enum class Projection {
 };
 
 /// Axis conversion from the world of a camera file to the scene's.
-enum class CameraAxes { same, y_up_to_z_up, z_up_to_y_up };
+enum class FileAxes { same, y_up_to_z_up, z_up_to_y_up };
 
 /// Order of the rotations of a camera file: zxy rotates about Z first, then X, then Y.
 enum class RotationOrder { zxy, xyz, xzy, yxz, yzx, zyx };
@@ -74,7 +74,7 @@ struct CameraSettings {
   std::string file;                   ///< file with position, direction and roll; empty: none
   std::string name;                   ///< of the camera in a glTF file; empty: the first
   double file_fps = 24;               ///< frames per second of a glTF file
-  CameraAxes file_axes = CameraAxes::same;
+  FileAxes file_axes = FileAxes::same;
   RotationOrder file_rotation = RotationOrder::zxy;
   /// Up direction of the image from a camera file; otherwise `up`.
   std::optional<Vec3d> picture_up;

@@ -30,14 +30,14 @@ inline constexpr PhaseType PhaseType::isotropic{"isotropic"},
 /// is in docs/theory/surfaces.md. The name is not copied: a literal, or the table's own.
 struct MaterialType {
   std::string_view name;
-  static const MaterialType diffuse, mirror, conductor, dielectric, emissive, holdout,
+  static const MaterialType diffuse, standard, mirror, conductor, dielectric, emissive, holdout,
       shadow_catcher;
   bool operator==(const MaterialType&) const = default;
 };
-inline constexpr MaterialType MaterialType::diffuse{"diffuse"}, MaterialType::mirror{"mirror"},
-    MaterialType::conductor{"conductor"}, MaterialType::dielectric{"dielectric"},
-    MaterialType::emissive{"emissive"}, MaterialType::holdout{"holdout"},
-    MaterialType::shadow_catcher{"shadow_catcher"};
+inline constexpr MaterialType MaterialType::diffuse{"diffuse"}, MaterialType::standard{"standard"},
+    MaterialType::mirror{"mirror"}, MaterialType::conductor{"conductor"},
+    MaterialType::dielectric{"dielectric"}, MaterialType::emissive{"emissive"},
+    MaterialType::holdout{"holdout"}, MaterialType::shadow_catcher{"shadow_catcher"};
 
 /// An estimator, by its name in the table of estimators (src/estimators/estimator_table.cpp). The
 /// name is not copied: a literal, or the table's own.

@@ -32,8 +32,11 @@ struct LightSettings {
   Rgb ground{0.15f, 0.15f, 0.145f}; ///< sky: radiance from below the horizon
   double aerosol = 0.1;             ///< atmosphere, sun: optical depth of haze straight up, 550 nm
   double ground_albedo = 0.2;       ///< atmosphere, sun: share of light that the ground reflects
-  double altitude = 0;              ///< atmosphere, sun: of the eye above the ground [m]
-  bool sun = true;                  ///< atmosphere: a scene file's has a light `sun` with it
+  double altitude = 0;              ///< atmosphere, sun: of the camera above the ground [m]
+  /// atmosphere: length of a world unit [m], for the air between camera and scene; none: no air.
+  /// `altitude` is then that of the world's origin.
+  std::optional<double> metres_per_unit;
+  bool sun = true;   ///< atmosphere: a scene file's has a light `sun` with it
   std::string image; ///< environment: lat-long EXR or HDR, empty: constant; spot: projected
   /// Colour space of the colours above, to which images are converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;

@@ -54,6 +54,14 @@ struct VolumeSettings {
   bool needs_density() const { return present && (absorbs_or_scatters() || !glows()); }
 };
 
+/// Places of a volume that is repeated (docs/reference/scene.md, [[instance]]). A scene that was
+/// read has a volume for each of them already.
+struct InstanceSettings {
+  std::string volume;            ///< its name
+  std::string file;              ///< path of the rows, frame pattern already substituted; or empty
+  std::string columns = "x y z"; ///< what the numbers of a row are
+};
+
 enum class PhotonStore { fluence, scatter };
 /// Which collisions of a light path become photons: by importance for the camera, or all with the
 /// same probability; automatic: by view, unless only the camera moves in the scene file.
@@ -110,6 +118,7 @@ struct Scene {
   ImageSettings image;
   CameraSettings camera;
   std::vector<VolumeSettings> volumes;
+  std::vector<InstanceSettings> instances;
   std::vector<SurfaceSettings> surfaces;
   std::vector<LightSettings> lights;
   RenderSettings render;

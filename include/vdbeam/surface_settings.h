@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vdbeam/camera_settings.h"
 #include "vdbeam/color_space.h"
 #include "vdbeam/kinds.h"
 #include "vdbeam/vec.h"
@@ -15,17 +16,21 @@ enum class TextureWrap { repeat, mirror, clamp };
 
 struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
-  /// diffuse, shadow_catcher: share of the light that is reflected, per channel; none: 0.8,
-  /// or 1 where there is a texture.
+  /// diffuse, standard, shadow_catcher: share of the light that is reflected, per channel; none:
+  /// 0.8, or 1 where there is a texture.
   std::optional<Rgb> albedo;
-  /// diffuse, shadow_catcher, emissive: image that multiplies albedo or radiance; "": none
+  /// diffuse, standard, shadow_catcher, emissive: image that multiplies albedo or radiance; "":
+  /// none
   std::string texture;
   TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
-  /// conductor, dielectric: alpha of GGX is its square, in [0, 1]; none: 0.2, 0.
+  /// conductor, dielectric, standard: alpha of GGX is its square, in [0, 1]; none: 0.2, 0, 0.5.
   std::optional<double> roughness;
-  double ior = 1.5;        ///< dielectric: index of refraction inside over that outside
-  Rgb absorption{0, 0, 0}; ///< dielectric: absorption coefficient inside [1/world]
+  double ior = 1.5; ///< dielectric, standard: index of refraction inside over that outside
+  double metal = 0; ///< standard: share of the base that is a metal, whose reflectance is albedo
+  double coat = 0;  ///< standard: weight of a clear layer on top
+  double coat_roughness = 0.05; ///< standard: roughness of that layer
+  Rgb absorption{0, 0, 0};      ///< dielectric: absorption coefficient inside [1/world]
   /// dielectric: volumes end at its surface. What absorbs is solid in any case.
   bool solid = false;
   Rgb radiance{1, 1, 1};        ///< emissive [W m^-2 sr^-1]
@@ -51,6 +56,11 @@ struct SurfaceSettings {
   /// file, without normals: triangles that meet at this angle or less [degrees] share a normal;
   /// 0: flat.
   double smooth_angle = 0;
+  FileAxes file_axes = FileAxes::same; ///< file: turns it before the transform
+  /// file: with the materials of a glTF. A scene that was read has a surface for each of them,
+  /// which shows the triangles of one; -1: all.
+  bool file_materials = false;
+  int part = -1;
   MaterialSettings material;
   std::string group;   ///< of a surface that shines, as LightSettings::group
   bool visible = true; ///< to the camera; a hidden surface still stops and scatters light

@@ -66,7 +66,7 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
           TileRays::pixel_ray(in, key, static_cast<int>(pixels[i].pixel % width),
                               static_cast<int>(pixels[i].pixel / width));
       ray.profile.build(in.world.medium, ray.camera.segment,
-                        static_cast<float>(input.settings.cutoff));
+                        static_cast<float>(input.settings.cutoff), ray.camera.air);
       shade_ray(in, photons, ray, key, {i, image, counts_by_pixel[i]});
     });
   }

@@ -33,7 +33,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
     TileRays::PixelRay ray = TileRays::pixel_ray(input, key, static_cast<int>(pixel % width),
                                                  static_cast<int>(pixel / width));
     ray.profile.build(input.world.medium, ray.camera.segment,
-                      static_cast<float>(input.settings.cutoff));
+                      static_cast<float>(input.settings.cutoff), ray.camera.air);
     if (ray.profile.empty() || input.stopped())
       return;
     Rng rng(key, RngStage::final_gather, pixel);

@@ -56,6 +56,26 @@ void add_light_of_the_peak(const World& world, const DepthProfile& profile, cons
   }
 }
 
+/// What the air lets through of light that the peak scatters for the last time: mean over the ray.
+Rgb air_before_peak(const World& world, const DepthProfile& profile) {
+  Rgb before, sum, left;
+  for (std::size_t knot = 1; profile.air() && knot < profile.knots(); ++knot) {
+    Rgb after;
+    for (std::size_t v = 0; v < profile.volume_count(); ++v)
+      after += world.medium.peak->excess[profile.volume(v)] * profile.tau(knot, v);
+    const Rgb air = profile.air().left(0.5f * (profile.t(knot - 1) + profile.t(knot)));
+    for (int c = 0; c < 3; ++c) {
+      const float light = std::exp(-before[c]) * opacity_of(after[c] - before[c]);
+      sum[c] += light;
+      left[c] += air[c] * light;
+    }
+    before = after;
+  }
+  for (int c = 0; c < 3; ++c)
+    left[c] = sum[c] > 0 ? left[c] / sum[c] : 1;
+  return left;
+}
+
 /// Light of surfaces and of surrounding lights that only the peak of the phase function scattered
 /// on its way along the ray: what the medium without its peak lets through beyond what the scene's
 /// own does. Lights with shadow rays have theirs from these.
@@ -66,9 +86,11 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
   if (!world.medium.peak || ray.profile.empty())
     return radiance;
   radiance = surface.radiance - surface.lamp;
+  radiance *= air_to_end(ray.camera).left;
+  const Rgb air = air_before_peak(world, ray.profile);
   for (std::size_t i = 0; i < world.lights.size(); ++i)
     if (!sampled_lights[i])
-      radiance.add(world.lights[i].emitted_radiance(ray.camera.whole()).radiance,
+      radiance.add(world.lights[i].emitted_radiance(ray.camera.whole()).radiance * air,
                    world.lights.group(i));
   const std::size_t last = ray.profile.knots() - 1;
   const Rgb tau = ray.profile.channels(world.medium, last);
@@ -202,7 +224,8 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
           surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
                    : SeenSurface();
       if (fit)
-        fit->add(pixel, surface, transmittance(world.medium, ray.profile), rays++);
+        fit->add(pixel, surface,
+                 transmittance(world.medium, ray.profile) * air_to_end(ray.camera).left, rays++);
       shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
                 TileRays::rays_if_refined);
     }
@@ -279,7 +302,7 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
         const SeenSurface& surface = scratch.seen[static_cast<std::size_t>(i)];
         if (fit) {
           const Rgb tr = transmittance(world.medium, ray.profile);
-          fit->set(ray.pixel, surface, tr);
+          fit->set(ray.pixel, surface, ray.camera.air ? tr * air_to_end(ray.camera).left : tr);
           scratch.ends[static_cast<std::size_t>(i)] =
               mean_component(light_of_end(world, ray, surface, tr));
         }

@@ -3,6 +3,7 @@
 #include "geometry/gltf_camera.h"
 #include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
+#include "geometry/gltf_parts.h"
 #include "geometry/obj_normals.h"
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
@@ -126,13 +127,17 @@ void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
   }
 }
 
-void append_node(const aiScene& scene, const aiNode& node, const Affine& parent, RawMesh& raw) {
+/// `taken`: per material of the scene, whether its triangles are; empty: all are.
+void append_node(const aiScene& scene, const aiNode& node, const Affine& parent,
+                 const std::vector<bool>& taken, RawMesh& raw) {
   const Affine map = parent.after(to_affine(node.mTransformation));
   for (unsigned i = 0; i < node.mNumMeshes; ++i)
     if (node.mMeshes[i] < scene.mNumMeshes)
-      append_mesh(*scene.mMeshes[node.mMeshes[i]], map, raw);
+      if (const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+          taken.empty() || (mesh.mMaterialIndex < taken.size() && taken[mesh.mMaterialIndex]))
+        append_mesh(mesh, map, raw);
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    append_node(scene, *node.mChildren[i], map, raw);
+    append_node(scene, *node.mChildren[i], map, taken, raw);
 }
 
 struct Counts {
@@ -170,8 +175,12 @@ void parse(const std::string& path, const MeshParts& parts, int output) {
   if (!scene)
     throw std::runtime_error(importer.GetErrorString());
   RawMesh raw;
+  std::vector<bool> taken;
+  if (parts.material >= 0)
+    for (const int index : gltf_material_indices(path, *scene))
+      taken.push_back(index == parts.material);
   if (scene->mRootNode)
-    append_node(*scene, *scene->mRootNode, {}, raw);
+    append_node(*scene, *scene->mRootNode, {}, taken, raw);
   if (raw.uvs.size() != raw.positions.size())
     raw.uvs.clear();
   if (!raw.normals.empty())

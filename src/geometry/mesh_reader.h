@@ -18,6 +18,7 @@ struct MeshLimits {
 struct MeshParts {
   bool uvs = false;     ///< the first texture coordinates, if all of its parts have them
   bool normals = false; ///< if some of its parts have them
+  int material = -1;    ///< only triangles with this material of a glTF; -1: all
 };
 
 /// Whether the name of a file says that it is one that read_mesh reads.

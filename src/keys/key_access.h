@@ -27,6 +27,8 @@ auto& settings_of(SceneRef& scene, [[maybe_unused]] std::size_t index) {
     return scene.volumes[index].phase;
   else if constexpr (std::is_same_v<S, EmissionSettings>)
     return scene.volumes[index].emission;
+  else if constexpr (std::is_same_v<S, InstanceSettings>)
+    return scene.instances[index];
   else if constexpr (std::is_same_v<S, SurfaceSettings>)
     return scene.surfaces[index];
   else if constexpr (std::is_same_v<S, MaterialSettings>)

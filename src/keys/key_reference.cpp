@@ -92,9 +92,9 @@ std::string key_table_markdown(SceneSection section) {
 
 const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections{
-      SceneSection::image,    SceneSection::camera, SceneSection::volume,   SceneSection::phase,
-      SceneSection::emission, SceneSection::mesh,   SceneSection::material, SceneSection::light,
-      SceneSection::layer,    SceneSection::render};
+      SceneSection::image,    SceneSection::camera,   SceneSection::volume, SceneSection::phase,
+      SceneSection::emission, SceneSection::instance, SceneSection::mesh,   SceneSection::material,
+      SceneSection::light,    SceneSection::layer,    SceneSection::render};
   return sections;
 }
 

@@ -61,9 +61,17 @@ void add_light_keys(KeyTable& table) {
       .add("ground_albedo", &L::ground_albedo,
            "fraction of light that the ground reflects, which brightens the sky too")
       .within(0, 1);
-  table.add("altitude", &L::altitude, "altitude of the camera above the ground")
+  table
+      .add("altitude", &L::altitude,
+           "altitude above the ground: of the camera, with metres_per_unit of the world's origin")
       .unit("metres")
       .within(0, 50000);
+  table
+      .add("metres_per_unit", &L::metres_per_unit,
+           "length of a world unit, which adds the air between camera and scene; none: no air")
+      .unit("metres")
+      .above(0)
+      .absent("none");
   table.add("sun", &L::sun, "add the sun's disc, as a light of its own");
   table
       .add("image", &L::image,

@@ -22,11 +22,11 @@ struct EnumNames<Projection> {
        {Projection::panorama, "panorama"}}};
 };
 template <>
-struct EnumNames<CameraAxes> {
-  static constexpr std::array<std::pair<CameraAxes, std::string_view>, 3> table{
-      {{CameraAxes::same, "same"},
-       {CameraAxes::y_up_to_z_up, "y_up_to_z_up"},
-       {CameraAxes::z_up_to_y_up, "z_up_to_y_up"}}};
+struct EnumNames<FileAxes> {
+  static constexpr std::array<std::pair<FileAxes, std::string_view>, 3> table{
+      {{FileAxes::same, "same"},
+       {FileAxes::y_up_to_z_up, "y_up_to_z_up"},
+       {FileAxes::z_up_to_y_up, "z_up_to_y_up"}}};
 };
 template <>
 struct EnumNames<RotationOrder> {

@@ -115,6 +115,7 @@ private:
 
 void add_image_keys(KeyTable& table);
 void add_camera_keys(KeyTable& table);
+void add_instance_keys(KeyTable& table);
 void add_light_keys(KeyTable& table);
 
 } // namespace vdbeam

@@ -173,6 +173,12 @@ void add_mesh(KeyTable& table) {
       .unit("degrees")
       .within(0, 180)
       .types({"file"});
+  table.add("file_axes", &S::file_axes, "axis conversion from the file's world to the scene's")
+      .types({"file"});
+  table
+      .add("file_materials", &S::file_materials,
+           "use the materials of a glTF (metallic-roughness), instead of material")
+      .types({"file"});
   table.add("visible", &S::visible, "visible to the camera; an invisible mesh still blocks light");
   table.add("name", &S::name, R"(name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
   table.add("group", &S::group,
@@ -194,11 +200,16 @@ void add_mesh(KeyTable& table) {
   table
       .add("roughness", &M::roughness,
            "GGX roughness, the square root of the lobe's width alpha; 0: smooth; auto: 0.2 for a "
-           "conductor, 0 for a "
-           "dielectric")
+           "conductor, 0 for a dielectric, 0.5 for standard")
       .within(0, 1)
       .absent("auto");
   table.add("ior", &M::ior, "relative index of refraction, inside over outside").within(0.1, 10);
+  table
+      .add("metal", &M::metal,
+           "share of the base that is metal, with albedo as its reflectance at normal incidence")
+      .within(0, 1);
+  table.add("coat", &M::coat, "weight of a clear glossy layer on top").within(0, 1);
+  table.add("coat_roughness", &M::coat_roughness, "GGX roughness of the coat").within(0, 1);
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")
       .at_least(0);
@@ -339,6 +350,7 @@ std::vector<SceneKey> make_table() {
   add_camera_keys(table);
   add_volume(table);
   add_emission(table);
+  add_instance_keys(table);
   add_mesh(table);
   add_light_keys(table);
   add_layer(table);

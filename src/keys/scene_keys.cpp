@@ -118,6 +118,7 @@ std::string SceneKey::default_text() const {
   scene.surfaces.emplace_back();
   scene.lights.emplace_back();
   scene.layers.emplace_back();
+  scene.instances.emplace_back();
   const KeyValue value = get(scene, 0);
   if (std::holds_alternative<std::monostate>(value) && absent_word.empty())
     return "as render." + name;
@@ -164,6 +165,8 @@ std::vector<std::string> key_names(SceneSection section) {
       names.push_back(key.name);
   if (section == SceneSection::volume)
     names.insert(names.end(), {"phase", "emission", "time"});
+  if (section == SceneSection::instance)
+    names.emplace_back("rows");
   if (section == SceneSection::mesh)
     names.emplace_back("material");
   return names;
@@ -181,6 +184,8 @@ std::string section_name(SceneSection section) {
     return "volume.phase";
   case SceneSection::emission:
     return "volume.emission";
+  case SceneSection::instance:
+    return "instance";
   case SceneSection::mesh:
     return "mesh";
   case SceneSection::material:
@@ -203,6 +208,8 @@ std::string key_path(const SceneKey& key, std::size_t index) {
     return fmt::format("volume.{}.phase.{}", index, key.name);
   case SceneSection::emission:
     return fmt::format("volume.{}.emission.{}", index, key.name);
+  case SceneSection::instance:
+    return fmt::format("instance.{}.{}", index, key.name);
   case SceneSection::mesh:
     return fmt::format("mesh.{}.{}", index, key.name);
   case SceneSection::material:
@@ -233,6 +240,8 @@ std::size_t section_count(const Scene& scene, SceneSection section) {
     return scene.volumes.size();
   if (section == SceneSection::mesh || section == SceneSection::material)
     return scene.surfaces.size();
+  if (section == SceneSection::instance)
+    return scene.instances.size();
   if (section == SceneSection::layer)
     return scene.layers.size();
   return section == SceneSection::light ? scene.lights.size() : 1;

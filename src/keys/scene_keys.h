@@ -18,6 +18,7 @@ enum class SceneSection {
   volume,
   phase,
   emission,
+  instance,
   mesh,
   material,
   light,
@@ -40,7 +41,7 @@ enum class KeyKind {
 };
 
 /// Kind of file that a key of the kind `file` names.
-enum class InputKind { none, volume, picture, mesh, camera, profile };
+enum class InputKind { none, volume, picture, mesh, camera, profile, instances };
 
 /// A value between the file and the settings: absent ("auto", "none"), a whole number (also for a
 /// boolean), a number, a text or choice, or a list of numbers.
@@ -90,9 +91,9 @@ struct SceneKey {
 
   bool is_list_item() const {
     return section == SceneSection::volume || section == SceneSection::phase ||
-           section == SceneSection::emission || section == SceneSection::mesh ||
-           section == SceneSection::material || section == SceneSection::light ||
-           section == SceneSection::layer;
+           section == SceneSection::emission || section == SceneSection::instance ||
+           section == SceneSection::mesh || section == SceneSection::material ||
+           section == SceneSection::light || section == SceneSection::layer;
   }
   /// What is wrong with a value ("must lie in (-1, 1), got 1.2"), or nothing.
   std::optional<std::string> complaint(const KeyValue& value) const;
@@ -112,8 +113,8 @@ const SceneKey* find_key(SceneSection section, const std::string& name);
 /// Names of the keys of a section.
 std::vector<std::string> key_names(SceneSection section);
 
-/// "image", "camera", "volume", "volume.phase", "volume.emission", "mesh", "mesh.material",
-/// "light", "layer", "render".
+/// "image", "camera", "volume", "volume.phase", "volume.emission", "instance", "mesh",
+/// "mesh.material", "light", "layer", "render".
 std::string section_name(SceneSection section);
 /// The path of one key in a scene, e.g. "volume.0.phase.g".
 std::string key_path(const SceneKey& key, std::size_t index);

@@ -195,7 +195,7 @@ void RayLayers::record_features_of_surface(const World& world, const CameraRay& 
   if (vertex.light() >= 0)
     albedo = min(vertex.emitted(), Rgb(1));
   else if (!vertex.material().is_shadow_catcher())
-    albedo = vertex.material().shows_surroundings() ? Rgb(1) : vertex.matt_albedo();
+    albedo = vertex.material().shows_surroundings() ? Rgb(1) : vertex.guide_albedo();
   planes.add_color(albedo_, Vec3d(albedo) * static_cast<double>(behind));
   const Vec3f normal = vertex.hit().shading_normal * (vertex.front() ? behind : -behind);
   planes.add(normal_, Vec3d(normal));

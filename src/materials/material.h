@@ -17,6 +17,7 @@ struct MaterialSample {
   float pdf = 0; ///< per solid angle; 0: a direction that only `sample` can find
   /// Factor of the weight that refraction will take back where the path leaves again.
   float refraction = 1;
+  Rgb untextured = {}; ///< the part of the weight that a texture does not multiply
 };
 
 /// The ways on from a surface that reflects and refracts, each with its own weight; 0: there is no
@@ -33,6 +34,11 @@ public:
 
   /// f(wo, wi) |cos(wi)|, without what only `sample` finds; the same for both kinds of paths.
   virtual Rgb evaluate(const Vec3f& wo, const Vec3f& wi) const = 0;
+  /// The part of `evaluate` that a texture does not multiply.
+  virtual Rgb untextured(const Vec3f& wo, const Vec3f& wi) const {
+    static_cast<void>(wo), static_cast<void>(wi);
+    return {};
+  }
   /// The density with which `sample` draws wi.
   virtual float pdf(const Vec3f& wo, const Vec3f& wi) const = 0;
   virtual MaterialSample sample(const Vec3f& wo, Carried carried, Rng& rng) const = 0;
@@ -62,6 +68,8 @@ public:
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
   /// Albedo of a purely Lambertian surface; 0 for others.
   virtual Rgb matt_albedo() const { return {}; }
+  /// Its colour, as denoisers want it.
+  virtual Rgb guide_albedo() const { return matt_albedo(); }
   /// Reflects nothing.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back; to the back the same or nothing.

@@ -28,7 +28,7 @@ std::span<const MaterialKind* const> material_table();
 /// The kind of a material. Throws InputError for one that is not in the table.
 const MaterialKind& material_kind(const MaterialType& type);
 
-extern const MaterialKind diffuse_material, mirror_material, conductor_material,
+extern const MaterialKind diffuse_material, mirror_material, conductor_material, standard_material,
     dielectric_material, emissive_material, holdout_material, shadow_catcher_material;
 
 /// `scale`: render units per world unit. Throws InputError for a kind that is not in the table.

@@ -2,7 +2,9 @@
 
 namespace vdbeam {
 
-void DepthProfile::build(const Medium& medium, const Segment& segment, float cutoff) {
+void DepthProfile::build(const Medium& medium, const Segment& segment, float cutoff,
+                         const RayAir& air) {
+  air_ = air;
   t_.clear();
   tau_.clear();
   met_.clear();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/sky/ray_air.h"
 #include "math/opacity.h"
 #include "medium/optical_depth.h"
 
@@ -14,8 +15,10 @@ class DepthProfile {
 public:
   /// Integrates to the segment's end or until less than `cutoff` of the light is left in every
   /// channel. Storage is reused from ray to ray.
-  void build(const Medium& medium, const Segment& segment, float cutoff);
+  /// `air`: between the camera and places on the ray, by which what they send out is dimmed.
+  void build(const Medium& medium, const Segment& segment, float cutoff, const RayAir& air = {});
 
+  const RayAir& air() const { return air_; }
   bool empty() const { return t_.size() < 2; }
   std::size_t knots() const { return t_.size(); }
   float t(std::size_t knot) const { return t_[knot]; }
@@ -66,6 +69,7 @@ private:
   std::size_t volumes_ = 1;
   std::vector<std::uint32_t> met_;
   std::vector<float> t_, tau_;
+  RayAir air_;
 };
 
 /// Where in a piece of optical depth `tau`, from 0 to 1, its collisions lie on average: the mean of

@@ -40,10 +40,10 @@ ScatterPoint DistanceSampler::at(float t) {
   return weigh(low, t);
 }
 
-/// weight_v = sigma_s,v(t) Tr(t) / pdf(t). Between two knots every volume's density is a cubic in
-/// t, so the optical depth from the knot to t is known exactly. The density of the
-/// draw is sigma' exp(-tau') / opacity with the profile's own piecewise linear tau', averaged over
-/// the channels (balance heuristic).
+/// weight_v = sigma_s,v(t) Tr(t) / pdf(t), Tr with the air before. Between two knots every volume's
+/// density is a cubic in t, so the optical depth from the knot to t is known exactly. The density
+/// of the draw is sigma' exp(-tau') / opacity with the profile's own piecewise linear tau',
+/// averaged over the channels (balance heuristic).
 ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   const float t_a = profile_.t(knot), length = profile_.t(knot + 1) - t_a;
   Rgb tau, linear_tau, linear_sigma;
@@ -68,6 +68,8 @@ ScatterPoint DistanceSampler::weigh(std::size_t knot, float t) {
   }
   if (!medium_.chromatic)
     transmittance = Rgb(transmittance.x);
+  if (profile_.air())
+    transmittance *= profile_.air().left(t);
   for (Rgb& weight : weights_)
     weight *= pdf > 0 ? transmittance / pdf : Rgb(0);
   return {t, pdf, ray_.at(t), &weights_, &profile_.met()};

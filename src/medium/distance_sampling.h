@@ -11,8 +11,8 @@ struct ScatterPoint {
   float t = 0;
   float pdf = 0; ///< density of t, over the channels' choice too
   Vec3f position;
-  /// Per volume of the profile: sigma_s(t) Tr(0, t) / pdf(t), unbiased. Their sum's mean over draws
-  /// is the integral of sigma_s Tr along the ray.
+  /// Per volume of the profile: sigma_s(t) Tr(0, t) / pdf(t), unbiased, Tr with the profile's air.
+  /// Their sum's mean over draws is the integral of sigma_s Tr along the ray.
   const std::vector<Rgb>* weights = nullptr;
   const std::vector<std::uint32_t>* volumes = nullptr; ///< their numbers in the medium
 };

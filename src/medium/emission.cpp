@@ -80,7 +80,7 @@ Rgb transmittance(const Rgb& tau) {
 class EmissionIntegral {
 public:
   EmissionIntegral(const Medium& medium, const Ray& ray, const DepthProfile& profile, float limit)
-      : depth_(medium, ray, profile), limit_(limit) {}
+      : depth_(medium, ray, profile), air_(profile.air()), limit_(limit) {}
 
   /// From t_a to t_b, `value(t)` being j. False where nothing that follows can be seen.
   template <class Value>
@@ -132,12 +132,13 @@ private:
         const float piece = after[c] - before[c];
         mean[c] = std::exp(-before[c]) * (piece > 0 ? opacity_of(piece) / piece : 1);
       }
-      sum_ += value(middle) * mean * (b - a);
+      sum_ += value(middle) * mean * air_.left(middle) * (b - a);
       return;
     }
     const bool clear = after == before;
     const auto point = [&](float t, float weight) {
-      sum_ += value(t) * transmittance(clear ? before : depth_.at(t)) * (weight * half);
+      sum_ +=
+          value(t) * transmittance(clear ? before : depth_.at(t)) * air_.left(t) * (weight * half);
     };
     if (depth > thin) {
       constexpr float offset = 0.77459667f; // Abramowitz and Stegun 25.4.30
@@ -152,6 +153,7 @@ private:
   }
 
   DepthReader depth_;
+  const RayAir& air_;
   float limit_;
   Rgb sum_;
 };

@@ -2,6 +2,7 @@
 
 #include "geometry/gltf_files.h"
 #include "keys/scene_keys.h"
+#include "lights/sky/aerial_perspective.h"
 #include "machine/memory.h"
 #include "machine/stop_reading.h"
 #include "machine/stopwatch.h"
@@ -37,11 +38,14 @@ std::string settings_text(const Scene& scene, const Wanted& wanted) {
 }
 
 /// Every value that a world is made from. Sizes and cameras are not among them, but for the way up,
-/// about which skies turn.
+/// about which skies turn, and the altitude where it decides about the air.
 std::string world_settings(const Scene& scene) {
   std::string text = settings_text(scene, [](const SceneKey& key) { return key.changes_world; });
   for (const VolumeSettings& volume : scene.volumes)
     text += volume.present ? "+" : "-";
+  if (light_with_air(scene.lights) >= 0)
+    for (const LightSettings& light : lights_at_camera(scene))
+      text += fmt::format("{};", light.altitude);
   return text;
 }
 

@@ -101,8 +101,8 @@ DensityGrid read_density_source(const VolumeSettings& volume,
 }
 
 std::string emission_source_identity(const VolumeSettings& volume, const std::string& grid) {
-  return fmt::format("emission|{}|{}|{}{}", file_identity(volume.file), grid,
-                     static_cast<int>(volume.interpolation), noise_text(volume));
+  return fog_text(volume) + fmt::format("emission|{}|{}|{}{}", file_identity(volume.file), grid,
+                                        static_cast<int>(volume.interpolation), noise_text(volume));
 }
 
 DensityGrid read_emission_source(const VolumeSettings& volume, const std::string& name,
@@ -110,6 +110,8 @@ DensityGrid read_emission_source(const VolumeSettings& volume, const std::string
                                  std::uint64_t& grids_read) {
   if (name.empty())
     return {};
+  if (volume.fog.made()) // its density, by which it may glow too
+    return fog_grid(volume, {granted_memory(), &stop});
   DensityGrid grid =
       read_density_grid(volume.file, name, {.stop = &stop}, Background::ignored, wanted);
   ++grids_read;

@@ -3,6 +3,7 @@
 #include "layers/deep_ray.h"
 #include "layers/opacity_pieces.h"
 #include "medium/emission.h"
+#include "rays/light_of_air.h"
 
 namespace vdbeam {
 
@@ -53,6 +54,23 @@ void add_coverage(const EstimatorInput& input, const CameraRay& camera, const De
     image.coverage[objects.of_mesh[static_cast<std::size_t>(camera.hit->surface)]][pixel] += left;
 }
 
+/// What the camera would see of the surface at which its ray ends, without medium: its light, and
+/// that of the air in front as far as the surface hides what is behind. A holdout stands for
+/// something else, and of a shadow catcher the plate shows all but the shadow.
+GroupedLight surface_through_air(const World& world, const CameraRay& camera,
+                                 const SeenSurface& surface) {
+  if (!camera.air)
+    return surface.radiance;
+  const RayAir::Seen air = air_to_end(camera);
+  const Material& material = world.surfaces->material(*camera.hit);
+  const float hidden = material.is_holdout()          ? 0.0f
+                       : material.is_shadow_catcher() ? surface.caught.mean
+                                                      : 1.0f;
+  GroupedLight seen = surface.radiance * air.left;
+  seen.add(air.light * hidden, world.lights.group(world.air_light));
+  return seen;
+}
+
 } // namespace
 
 GroupedLight lights_through(const World& world, const Segment& segment, const DepthProfile& profile,
@@ -68,7 +86,8 @@ GroupedLight lights_through(const World& world, const Segment& segment, const De
     if (hit.distance == infinity)
       beyond.add(hit.radiance, world.lights.group(i));
     else
-      sum.add(hit.radiance * transmittance_to(world.medium, profile, hit.distance),
+      sum.add(hit.radiance * transmittance_to(world.medium, profile, hit.distance) *
+                  profile.air().left(hit.distance),
               world.lights.group(i));
   }
   return sum + beyond * tr;
@@ -101,7 +120,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   OpacityAndDepth seen = opacity_and_depth(world, camera, profile);
   GroupedLight background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
-    background += surface.radiance * tr;
+    background += surface_through_air(world, camera, surface) * tr;
     end_at_surface(world, camera, surface.caught.mean, seen);
   }
   image.add(&PassImage::background, pixel, background);
@@ -111,10 +130,12 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
     add_coverage(input, camera, profile, mean_component(tr), pixel, image);
   if (!image.planes.empty())
     input.layers->record(world, camera, profile,
-                         {tr, seen.depth, surface.caught.mean, surface.caught.left, surface.added},
+                         {tr, seen.depth, surface.caught.mean, surface.caught.left,
+                          camera.air ? surface.added * air_to_end(camera).left : surface.added},
                          pixel, image);
   if (const DeepRay deep(world, camera, pixel, image); deep)
     deep.add_opacity(world.medium, profile);
+  add_light_of_air(input, camera, profile, pixel, image);
 }
 
 void shade_emission(const EstimatorInput& input, const World& world, const CameraRay& camera,

@@ -40,7 +40,8 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
     Segment segment = out.camera.segment;
     if (!out.inside || input.stopped())
       segment.t_end = segment.t_begin;
-    out.profile.build(input.world.medium, segment, static_cast<float>(input.settings.cutoff));
+    out.profile.build(input.world.medium, segment, static_cast<float>(input.settings.cutoff),
+                      out.camera.air);
   }
 }
 
@@ -57,7 +58,7 @@ void TileRays::refine(const EstimatorInput& input, const RngKey& key, int ray) {
     out = pixel_ray(input, key, x, y, number);
     out.profile = std::move(profile);
     out.profile.build(input.world.medium, out.camera.segment,
-                      static_cast<float>(input.settings.cutoff));
+                      static_cast<float>(input.settings.cutoff), out.camera.air);
   }
 }
 

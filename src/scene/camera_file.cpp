@@ -159,10 +159,10 @@ CameraPose matrix_pose(const CameraKey& key, bool rows, const std::string& path)
   return {column(3), -normalize(column(2)), normalize(column(1)), {}};
 }
 
-Vec3d turned_world(const Vec3d& v, CameraAxes axes) {
-  if (axes == CameraAxes::y_up_to_z_up)
+Vec3d turned_world(const Vec3d& v, FileAxes axes) {
+  if (axes == FileAxes::y_up_to_z_up)
     return {v.x, -v.z, v.y};
-  if (axes == CameraAxes::z_up_to_y_up)
+  if (axes == FileAxes::z_up_to_y_up)
     return {v.x, v.z, -v.y};
   return v;
 }

@@ -88,8 +88,9 @@ toml::node& find_parent(toml::table& root, const std::vector<std::string>& parts
   for (std::size_t i = 0; i + 1 < parts.size();) {
     bool used = true;
     if (auto* table = node->as_table()) {
-      const bool is_list = i == 0 && (parts[0] == "volume" || parts[0] == "mesh" ||
-                                      parts[0] == "light" || parts[0] == "layer");
+      const bool is_list =
+          i == 0 && (parts[0] == "volume" || parts[0] == "instance" || parts[0] == "mesh" ||
+                     parts[0] == "light" || parts[0] == "layer");
       expand_shorthand(*table, parts[i]);
       if (!table->contains(parts[i])) {
         const std::string child = path + (path.empty() ? "" : ".") + parts[i];

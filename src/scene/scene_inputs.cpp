@@ -26,6 +26,7 @@ constexpr InputRule rules[] = {
     {InputKind::mesh, "mesh files", 16 * gib},
     {InputKind::camera, "camera files", 16 * gib},
     {InputKind::profile, "photometric files", 16 << 20},
+    {InputKind::instances, "files of instances", 256 << 20},
 };
 
 /// Calls visit(table, index) for each table of a section.

@@ -32,9 +32,9 @@ std::vector<Child> children_of(const toml::table& table) {
 const std::vector<std::pair<std::string, SceneSection>>& root_sections() {
   static const std::vector<std::pair<std::string, SceneSection>> sections{
       {"image", SceneSection::image},   {"camera", SceneSection::camera},
-      {"volume", SceneSection::volume}, {"mesh", SceneSection::mesh},
-      {"light", SceneSection::light},   {"layer", SceneSection::layer},
-      {"render", SceneSection::render},
+      {"volume", SceneSection::volume}, {"instance", SceneSection::instance},
+      {"mesh", SceneSection::mesh},     {"light", SceneSection::light},
+      {"layer", SceneSection::layer},   {"render", SceneSection::render},
   };
   return sections;
 }
@@ -46,6 +46,8 @@ std::string item_name(SceneSection section, std::size_t index) {
     return fmt::format("volume.{}.phase", index);
   if (section == SceneSection::emission)
     return fmt::format("volume.{}.emission", index);
+  if (section == SceneSection::instance)
+    return fmt::format("instance.{}", index);
   if (section == SceneSection::mesh)
     return fmt::format("mesh.{}", index);
   if (section == SceneSection::material)
@@ -97,6 +99,8 @@ Scene SceneReader::read(const toml::table& root) {
     throw InputError(
         one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
   }
+  place_instances();
+  use_file_materials();
   add_suns();
   validate_consistency(scene_, [this](const std::string& key) { return locate(key); });
   note_idle_keys();
@@ -157,8 +161,9 @@ void SceneReader::note_units() {
 }
 
 void SceneReader::read_section(SceneSection section, const toml::node& node) {
-  if (section == SceneSection::volume || section == SceneSection::mesh ||
-      section == SceneSection::light || section == SceneSection::layer)
+  if (section == SceneSection::volume || section == SceneSection::instance ||
+      section == SceneSection::mesh || section == SceneSection::light ||
+      section == SceneSection::layer)
     return read_list(section, node);
   if (const auto* table = node.as_table()) {
     read_table(section, 0, *table);
@@ -183,6 +188,8 @@ void SceneReader::read_list(SceneSection section, const toml::node& node) {
                                    name, i, node_text((*list)[i])));
     if (section == SceneSection::volume)
       scene_.volumes.emplace_back();
+    else if (section == SceneSection::instance)
+      scene_.instances.emplace_back();
     else if (section == SceneSection::mesh)
       scene_.surfaces.emplace_back();
     else if (section == SceneSection::layer)
@@ -212,6 +219,8 @@ void SceneReader::read_table(SceneSection section, std::size_t index, const toml
                       R"({ type = "diffuse", albedo = 0.8 })");
     else if (section == SceneSection::volume && child.name == "emission")
       read_emission(index, *child.node);
+    else if (section == SceneSection::instance && child.name == "rows")
+      read_rows(index, *child.node);
     else if (section == SceneSection::volume && child.name == "time")
       continue; // read before, since the file depends on it
     else
@@ -335,27 +344,11 @@ void SceneReader::place(SceneSection section, std::size_t index) {
     throw InputError(fmt::format("{}: {} must not be 0 in any direction, got [{}, {}, {}]",
                                  locate(key), key, factors.x, factors.y, factors.z));
   }
-  const Vec3d translate = get("translate", 0), angles = get("rotate", 0), scale = factors;
-  const auto rotate = [](double& a, double& b, double degrees) {
-    const double radians = degrees * 3.14159265358979323846 / 180;
-    const double c = std::cos(radians), s = std::sin(radians);
-    const double old_a = a;
-    a = c * old_a - s * b;
-    b = s * old_a + c * b;
-  };
+  const Vec3d translate = get("translate", 0), angles = get("rotate", 0);
   std::array<double, 12>& m = section == SceneSection::volume ? scene_.volumes[index].transform
                                                               : scene_.surfaces[index].transform;
-  for (int column = 0; column < 3; ++column) {
-    Vec3d axis;
-    axis[column] = scale[column];
-    rotate(axis.y, axis.z, angles.x);
-    rotate(axis.z, axis.x, angles.y);
-    rotate(axis.x, axis.y, angles.z);
-    for (int row = 0; row < 3; ++row)
-      m[4 * row + column] = axis[row];
-  }
-  for (int row = 0; row < 3; ++row)
-    m[4 * row + 3] = translate[row];
+  m = placement_matrix({translate.x, translate.y, translate.z}, {angles.x, angles.y, angles.z},
+                       {factors.x, factors.y, factors.z});
   for (const char* name : {"scale", "rotate", "translate"})
     if (const auto key = locations_.find(item + "." + name); key != locations_.end()) {
       locations_[path] = key->second;

@@ -2,6 +2,7 @@
 
 #include "keys/scene_keys.h"
 #include "scene/camera_file.h"
+#include "scene/instances/instance_table.h"
 #include "scene/validate.h"
 #include "scene/volume_time.h"
 
@@ -32,6 +33,11 @@ public:
 
 private:
   void add_suns();
+  void read_rows(std::size_t index, const toml::node& node);
+  std::vector<InstanceRow> rows_of(std::size_t index) const;
+  void place_instances();
+  void use_file_materials();
+  [[noreturn]] void fail_unnamed(std::size_t index) const;
   void note_idle_keys();
   void note_units();
   void read_section(SceneSection section, const toml::node& node);
@@ -64,6 +70,7 @@ private:
   Scene scene_;
   std::map<std::string, std::string> locations_;         ///< of the keys that were read
   std::map<std::string, std::vector<double>> placement_; ///< translate, rotate, scale
+  std::vector<const toml::node*> rows_; ///< of tables of instances; null: they are in a file
 };
 
 } // namespace vdbeam

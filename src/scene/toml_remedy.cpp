@@ -44,7 +44,8 @@ std::string quoted_name(const std::string& reason) {
 
 /// The tables that a scene may have several of.
 bool is_list_table(const std::string& name) {
-  return name == "volume" || name == "mesh" || name == "light" || name == "layer";
+  return name == "volume" || name == "instance" || name == "mesh" || name == "light" ||
+         name == "layer";
 }
 
 /// The text between the = of a line and its comment or end, trimmed.

@@ -7,6 +7,7 @@
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
 #include "lights/light_table.h"
+#include "lights/sky/aerial_perspective.h"
 #include "materials/material_table.h"
 #include "phase/phase_table.h"
 #include "text/attributes.h"
@@ -90,8 +91,12 @@ public:
 
   void check_fog(std::size_t index) const {
     const VolumeSettings& volume = scene_.volumes[index];
-    if (volume.emission.glows())
-      fail(fmt::format("volume.{}.emission", index), "needs a file: a shape does not glow");
+    for (const auto& [key, grid] : {std::pair("intensity", volume.emission.intensity),
+                                    std::pair("temperature", volume.emission.temperature)})
+      if (!grid.empty() && grid != "density")
+        fail(fmt::format("volume.{}.emission.{}", index, key),
+             fmt::format("must be \"density\" for a shape, which has no other grid, got \"{}\"",
+                         grid));
     if (volume.noise.amplitude > 0)
       check_noise(index);
   }
@@ -133,6 +138,12 @@ public:
     const LightSettings& light = scene_.lights[index];
     if (const auto complaint = light_kind(light.type).complaint(light))
       fail(fmt::format("light.{}.{}", index, complaint->key), complaint->text);
+    const int with_air = light_with_air(scene_.lights);
+    if (light.type == LightType::atmosphere && light.metres_per_unit &&
+        with_air < static_cast<int>(index))
+      fail(fmt::format("light.{}.metres_per_unit", index),
+           fmt::format("must be there once: light.{} has the air between camera and scene",
+                       with_air));
   }
 
   void check_mesh(std::size_t index) const {

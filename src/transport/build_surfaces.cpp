@@ -18,6 +18,16 @@ Affine moved(const Vec3d& by) {
   return map;
 }
 
+/// From the axes of a file to those of the scene.
+Affine turned(FileAxes axes) {
+  Affine map;
+  if (axes == FileAxes::y_up_to_z_up)
+    map.rows = {Vec3d{1, 0, 0}, Vec3d{0, 0, -1}, Vec3d{0, 1, 0}};
+  if (axes == FileAxes::z_up_to_y_up)
+    map.rows = {Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}};
+  return map;
+}
+
 /// Throws InputError where single precision, in which Embree works, cannot hold both a surface and
 /// the rest of the scene; the medium is about 1 wide.
 void check_sizes(const std::vector<PlacedShape>& surfaces) {
@@ -69,8 +79,9 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
                                    "mesh.{}.material.texture needs: export it with them, or leave "
                                    "out the texture",
                                    settings[i].file, i));
-    shapes.push_back(
-        {known.shape, Affine::from_matrix(settings[i].transform).after(moved(known.center))});
+    shapes.push_back({known.shape, Affine::from_matrix(settings[i].transform)
+                                       .after(turned(settings[i].file_axes))
+                                       .after(moved(known.center))});
   }
   return shapes;
 }

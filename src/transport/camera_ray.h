@@ -10,6 +10,7 @@ struct CameraRay {
   Segment segment;  ///< the part inside the medium's bounds; empty where the ray misses them
   double shift = 0; ///< distance from the camera to segment.ray.origin
   std::optional<SurfaceHit> hit; ///< the surface at which it ends; t from the camera
+  RayAir air;                    ///< between the camera and what it sees; none beyond mirrors
 
   const Ray& ray() const { return segment.ray; }
   /// From the camera to where the ray meets a surface or leaves the scene.
@@ -18,6 +19,11 @@ struct CameraRay {
             hit ? static_cast<float>(hit->t - shift) : infinity};
   }
 };
+
+/// What the air does to light from the end of a ray.
+inline RayAir::Seen air_to_end(const CameraRay& camera) {
+  return camera.air ? camera.air.at(camera.whole().t_end) : RayAir::Seen();
+}
 
 inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeRay& eye) {
   CameraRay result;
@@ -28,6 +34,8 @@ inline CameraRay camera_ray(const World& world, const Camera& camera, const EyeR
     result.segment = world.medium.clip(result.segment);
   else
     result.segment.t_end = 0;
+  if (world.air)
+    result.air = world.air->along(eye.direction, result.shift);
   double nearest = 0, farthest = static_cast<double>(infinity);
   if (camera.clips()) {
     nearest = camera.nearest(eye.direction);

@@ -31,16 +31,18 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
                                                     std::vector<std::string>& notes) {
   const bool from_file = surface.shape == SurfaceShape::file, uvs = textured_[surface.file];
   const std::string name =
-      from_file ? fmt::format("{}|{}|{}|{}", model_identity(surface.file), uvs ? "uv" : "",
-                              surface.file_normals ? "normals" : "", surface.smooth_angle)
-                : fmt::format("{}", static_cast<int>(surface.shape));
+      from_file
+          ? fmt::format("{}|{}|{}|{}|{}", model_identity(surface.file), uvs ? "uv" : "",
+                        surface.file_normals ? "normals" : "", surface.smooth_angle, surface.part)
+          : fmt::format("{}", static_cast<int>(surface.shape));
   if (const KnownShape* known = find(shapes_, name))
     return *known;
   KnownShape made;
   if (const KnownShape* known = previous_ ? find(previous_->shapes_, name) : nullptr) {
     made = *known;
   } else if (from_file) {
-    Mesh mesh = read_mesh(surface.file, {.uvs = uvs, .normals = surface.file_normals});
+    Mesh mesh = read_mesh(surface.file,
+                          {.uvs = uvs, .normals = surface.file_normals, .material = surface.part});
     ++meshes_read_;
     made.center = mesh.center;
     made.notes = std::move(mesh.notes);

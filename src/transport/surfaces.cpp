@@ -39,8 +39,10 @@ SurfaceVertex::SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit,
                              const Vec3f& direction)
     : hit_(hit), material_(surfaces.material(hit)),
       light_(surfaces.lights[static_cast<std::size_t>(hit.surface)]) {
-  if (const auto& texture = surfaces.textures[static_cast<std::size_t>(hit.surface)])
+  if (const auto& texture = surfaces.textures[static_cast<std::size_t>(hit.surface)]) {
+    textured_ = true;
     shown_ = texture->at(hit.uv);
+  }
   orthonormal_frame(hit_.shading_normal, tangent_, bitangent_);
   wo_ = to_local(-direction);
   // A curved surface is seen from the side from which its triangles are.
@@ -70,6 +72,8 @@ float SurfaceVertex::power_factor(const Vec3f& local, const Vec3f& wi) const {
 /// The same in render space, with the texture.
 MaterialSample SurfaceVertex::shown(MaterialSample local, Carried carried) const {
   local.weight *= shown_;
+  if (textured_)
+    local.weight += local.untextured * (Rgb(1) - shown_);
   Vec3f wi = from_local(local.wi);
   if (hit_.smooth) {
     if (changes_side(local.wi, wi))

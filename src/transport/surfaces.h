@@ -70,18 +70,19 @@ public:
   /// Index of the light that the surface is, or -1.
   int light() const { return light_; }
   Rgb matt_albedo() const { return material_.matt_albedo() * shown_; }
+  Rgb guide_albedo() const { return material_.guide_albedo() * shown_; }
   Rgb emitted() const { return material_.emitted(front()) * shown_; }
   /// Transmittance of absorption inside from the path's last event to here.
   Rgb absorbed() const;
   /// f(wo, wi) |cos(wi)| and the density with which `sample` draws wi, in render space.
   Rgb evaluate(const Vec3f& wi, Carried carried = Carried::radiance) const {
     const bool corrected = hit_.smooth && carried == Carried::power;
-    return sum_of<Rgb>(wi,
-                       [&](const Vec3f& local) {
-                         return material_.evaluate(wo_, local) *
-                                (corrected ? power_factor(local, wi) : 1);
-                       }) *
-           shown_;
+    return sum_of<Rgb>(wi, [&](const Vec3f& local) {
+      Rgb value = material_.evaluate(wo_, local) * shown_;
+      if (textured_)
+        value += material_.untextured(wo_, local) * (Rgb(1) - shown_);
+      return value * (corrected ? power_factor(local, wi) : 1);
+    });
   }
   float pdf(const Vec3f& wi) const {
     return sum_of<float>(wi, [&](const Vec3f& local) { return material_.pdf(wo_, local); });
@@ -126,6 +127,7 @@ private:
   SurfaceHit hit_;
   const Material& material_;
   int light_;
+  bool textured_ = false;
   Rgb shown_{1, 1, 1}; ///< by the texture: factor of what is reflected and emitted
   Vec3f tangent_, bitangent_;
   Vec3f wo_; ///< back along the path, in the surface's frame

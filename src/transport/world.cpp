@@ -1,6 +1,7 @@
 #include "transport/world.h"
 
 #include "lights/light_groups.h"
+#include "lights/light_table.h"
 #include "lights/surface_light.h"
 #include "lights/volume_light.h"
 #include "math/color.h"
@@ -228,6 +229,15 @@ void sort_lights_into_groups(const Scene& scene, World& world) {
   world.lights.sort_into_groups(groups.count(), of_light, groups.number(""));
 }
 
+void add_air(const std::vector<LightSettings>& lights, const Vec3d& up, World& world) {
+  const int light = light_with_air(lights);
+  if (light < 0)
+    return;
+  world.air_light = static_cast<std::size_t>(light);
+  world.air =
+      std::make_shared<const AerialPerspective>(tinted(lights[world.air_light]), up, world.space);
+}
+
 void bound_region(World& world, const Boxd& bounds) {
   world.medium.bounds = {Vec3f(world.space.point(bounds.lower)),
                          Vec3f(world.space.point(bounds.upper))};
@@ -311,11 +321,13 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
   if (world.surfaces)
     found.surfaces = {store->meshes_read(), store->textures_read(),
                       world.surfaces->set->trees_built()};
+  const std::vector<LightSettings> lights = lights_at_camera(scene);
+  add_air(lights, scene.camera.up, world);
   if (world.surfaces) { // what stands about the medium throws light into it
     world.targets = photon_targets(world.region, *world.surfaces->set);
-    add_aimed_lights(scene.lights, scene.camera.up, found.notes, world);
+    add_aimed_lights(lights, scene.camera.up, found.notes, world);
   } else {
-    world.lights = LightSet(scene.lights, scene.camera.up, world.space, world.region, &found.notes);
+    world.lights = LightSet(lights, scene.camera.up, world.space, world.region, &found.notes);
   }
   check_lights(scene, world);
   if (world.surfaces)

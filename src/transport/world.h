@@ -3,6 +3,7 @@
 #include "camera/camera.h"
 #include "grids/emission_grid.h"
 #include "lights/light_set.h"
+#include "lights/sky/aerial_perspective.h"
 #include "medium/emission_directions.h"
 #include "medium/medium.h"
 #include "transport/surfaces.h"
@@ -22,6 +23,9 @@ struct World {
   std::vector<OccupiedRegion> targets;      ///< of photons, in a scene with surfaces
   /// Towards what glows in the medium, where surfaces may see it; else null.
   std::shared_ptr<const EmissionDirections> emission;
+  /// The air between the camera and what it sees first; null: none.
+  std::shared_ptr<const AerialPerspective> air;
+  std::size_t air_light = 0; ///< the light with whose group the air's light counts
 };
 
 /// Whether the camera sees all of what it sees of the medium by its rays, and nothing by way of

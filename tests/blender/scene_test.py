@@ -122,7 +122,8 @@ class Surfaces(unittest.TestCase):
 
     def test_principled_takes_the_strongest_part(self):
         self.assertEqual(self.keys(self.principled()), {"type": "diffuse", "albedo": [0.8] * 3})
-        self.assertEqual(self.keys(self.principled(Metallic=1.0, Roughness=0.2))["type"], "conductor")
+        metal = self.keys(self.principled(Metallic=1.0, Roughness=0.2))
+        self.assertEqual((metal["type"], metal["metal"], metal["roughness"]), ("standard", 1.0, 0.2))
         self.assertEqual(self.keys(self.principled(Transmission=1.0, Base_Color=(1, 1, 1, 1))),
                          {"type": "dielectric", "ior": 1.45, "roughness": 0.5})
         self.assertEqual(self.keys(self.principled(Emission=(1, 0.5, 0, 1), Emission_Strength=4.0)),
@@ -134,9 +135,18 @@ class Surfaces(unittest.TestCase):
                                           "Emission Color": (1, 1, 1, 1), "Emission Strength": 0.0})
         self.assertEqual(self.keys(shader), {"type": "dielectric", "ior": 1.33, "roughness": 0.0})
 
-    def test_gloss_is_noted_and_transparent_is_not_there(self):
-        self.keys(self.principled(Specular=0.5))
-        self.assertIn("gloss", self.notes.lines[0])
+    def test_gloss_and_coat(self):
+        self.assertEqual(self.keys(self.principled(Specular=0.5)),
+                         {"type": "standard", "metal": 0.0, "ior": 1.5, "roughness": 0.5, "albedo": [0.8] * 3})
+        coated = self.keys(self.principled(Clearcoat=0.7, Clearcoat_Roughness=0.1))
+        self.assertEqual((coated["ior"], coated["coat"], coated["coat_roughness"]), (1, 0.7, 0.1))
+        self.assertEqual(self.notes.lines, [])
+        newer = node("BSDF_PRINCIPLED", {"Base Color": (1, 1, 1, 1), "Metallic": 0.3, "Specular IOR Level": 0.5,
+                                         "Roughness": 0.2, "IOR": 1.33, "Emission Strength": 0.0, "Coat Weight": 0.0})
+        self.assertEqual(self.keys(newer), {"type": "standard", "metal": 0.3, "ior": 1.33, "roughness": 0.2,
+                                            "albedo": [1.0] * 3})
+
+    def test_transparent_is_not_there(self):
         self.assertIsNone(self.keys(node("BSDF_TRANSPARENT")))
 
     def test_texture(self):

@@ -89,7 +89,15 @@ INSTANTIATE_TEST_SUITE_P(
                     FlatCase{"Fire", "fire.toml", {"render.estimator=beam"}},
                     FlatCase{"FireWithoutSmoke", "fire.toml", {"volume.0.extinction=0"}},
                     FlatCase{"FireByPaths", "fire.toml", {"render.estimator=path"}},
-                    FlatCase{"Overscan", "sunlit_cloud.toml", {"image.overscan=3"}}),
+                    FlatCase{"Overscan", "sunlit_cloud.toml", {"image.overscan=3"}},
+                    FlatCase{"Air",
+                             "sunlit_cloud.toml",
+                             {"light.2.type=atmosphere", "light.2.metres_per_unit=4000",
+                              "light.2.altitude=9000", "light.2.group=sky"}},
+                    FlatCase{"AirByPaths",
+                             "fire.toml",
+                             {"light.2.type=atmosphere", "light.2.metres_per_unit=4000",
+                              "light.2.altitude=9000", "render.estimator=path"}}),
     [](const auto& test) { return test.param.name; });
 
 /// What lies before a plane; samples that it cuts give their homogeneous share, as OpenEXR

@@ -68,6 +68,40 @@ TEST_F(FogPicture, HasEveryLayer) {
     }
 }
 
+/// A shape that glows by its density, seen along an axis: closed forms, with and without
+/// absorption.
+TEST_F(FogPicture, GlowsByItsDensity) {
+  struct Case {
+    const char* keys;
+    double integral; ///< of the density along the line of sight
+    bool uniform;    ///< the same density everywhere
+  };
+  for (const Case& one : {Case{"shape = 'box'\n", 2, true}, Case{"shape = 'sphere'\n", 2, true},
+                          Case{"shape = 'height'\nscale_height = 0.5\nrotate = [90, 0, 0]\n",
+                               0.5 * (1 - std::exp(-4.0)), false}})
+    for (const double sigma : {0.0, 1.5})
+      for (const char* estimator : {"path", "beam", "gather", "march"}) {
+        if (sigma > 0 && !one.uniform)
+          continue;
+        SCOPED_TRACE(std::string(one.keys) + estimator);
+        const std::string volume =
+            std::string("[[volume]]\n") + one.keys +
+            "albedo = 0\nextinction = " + std::to_string(sigma) +
+            "\nemission = { intensity = 'density', color = [1, 0.5, 0], scale = 3 }\n";
+        const RenderResult result = render(
+            load(volume, {std::string("render.estimator=") + estimator,
+                          "camera.position=[0, 0, 400]", "camera.look_at=[0, 0, 0]",
+                          "camera.fov=0.001", "light.0.irradiance=0", "light.1.radiance=0"}));
+        const double light =
+            sigma > 0 ? 3 / sigma * (1 - std::exp(-sigma * one.integral)) : 3 * one.integral;
+        // A sphere's faces rise over a voxel.
+        for (const float value : plane(result.image, "R"))
+          EXPECT_NEAR(value, light, 0.01 * light);
+        for (const float value : plane(result.image, "G"))
+          EXPECT_NEAR(value, light / 2, 0.005 * light);
+      }
+}
+
 /// A frame that takes over from the one before is that of a render by itself.
 TEST_F(FogPicture, OfASequenceIsThatOfAFrame) {
   const std::string fog = "[[volume]]\nshape = 'height'\nextinction = 2\nscale_height = { keys = "

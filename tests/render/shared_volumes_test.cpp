@@ -62,6 +62,34 @@ TEST_F(SharedVolumes, DifferWhereTheirEditsDo) {
   EXPECT_NE(volumes[0].field.brick(0), volumes[1].field.brick(0));
 }
 
+/// A thousand rows of a table: one reading, one set of bricks, and the image of a thousand volumes.
+TEST_F(SharedVolumes, InstancesOfATable) {
+  std::string text = "[image]\nwidth = 16\nheight = 9\n[camera]\nposition = [0, 4, 30]\n"
+                     "[[light]]\ntype = 'distant'\n[render]\npasses = 1\nestimator = 'path'\n";
+  std::string volumes, rows;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string place = std::to_string(i % 10 * 3 - 15) + ", " +
+                              std::to_string(i / 10 % 10 * 2 - 10) + ", " +
+                              std::to_string(i / -100 * 5);
+    volumes += "[[volume]]\nfile = '" + cloud_ + "'\nextinction = 9\ntranslate = [" + place + "]\n";
+    rows += "[" + place + "],\n";
+  }
+  const std::string table = "[[volume]]\nfile = '" + cloud_ +
+                            "'\nname = 'a'\nextinction = 9\n[[instance]]\nvolume = 'a'\nrows = [" +
+                            rows + "]\n";
+  const Scene scene = parse_scene(text + table, folder_.file("s.toml"));
+  const PreparedScenePtr prepared = prepare_scene(scene);
+  const std::vector<Volume>& found = prepared->world->medium.volumes;
+  ASSERT_EQ(found.size(), 1000u);
+  EXPECT_EQ(found.front().field.brick(0), found.back().field.brick(0));
+  const RenderResult instances = render(scene, prepared);
+  EXPECT_EQ(instances.statistics.grids_read, 1u);
+  const RenderResult apart = render(parse_scene(text + volumes, folder_.file("t.toml")));
+  ASSERT_EQ(instances.image.channels.size(), apart.image.channels.size());
+  for (std::size_t c = 0; c < apart.image.channels.size(); ++c)
+    EXPECT_EQ(instances.image.channels[c].data, apart.image.channels[c].data);
+}
+
 TEST_F(SharedVolumes, AreKeptForTheNextFrame) {
   const Scene scene = pair_of(cloud_, cloud_);
   const PreparedScenePtr first = prepare_scene(scene);

@@ -74,6 +74,21 @@ TEST_F(LightKeys, AnAtmosphereHasItsSun) {
             "s.toml:8: light.0.altitude must lie in [0, 50000], got -3");
 }
 
+TEST_F(LightKeys, AirIsThereOnce) {
+  const std::string sky = "[[light]]\ntype = 'atmosphere'\nmetres_per_unit = 1000\n";
+  const Scene scene = load(sky + "[[light]]\ntype = 'atmosphere'\n");
+  EXPECT_EQ(scene.lights[0].metres_per_unit, 1000);
+  EXPECT_FALSE(scene.lights[1].metres_per_unit);
+  EXPECT_FALSE(load(sky + "\n", {"light.0.metres_per_unit=none"}).lights[0].metres_per_unit);
+  EXPECT_EQ(error_of(sky + sky),
+            "s.toml:6: light.1.metres_per_unit must be there once: light.0 has "
+            "the air between camera and scene");
+  EXPECT_EQ(error_of("[[light]]\ntype = 'atmosphere'\nmetres_per_unit = 0\n"),
+            "s.toml:3: light.0.metres_per_unit must be greater than 0, got 0");
+  EXPECT_NE(error_of("[[light]]\ntype = 'sky'\nmetres_per_unit = 1\n").find("only to atmosphere"),
+            std::string::npos);
+}
+
 class FogKeys : public test::SceneTest {};
 
 TEST_F(FogKeys, AVolumeNeedsNoFile) {
@@ -101,7 +116,8 @@ TEST_F(FogKeys, Complaints) {
   EXPECT_NE(error_of("[[volume]]\nshape = 'ball'\n").find("did you mean sphere?"),
             std::string::npos);
   EXPECT_NE(error_of("[[volume]]\nshape = 'box'\nemission = { intensity = 'flame' }\n")
-                .find("volume.0.emission needs a file: a shape does not glow"),
+                .find("volume.0.emission.intensity must be \"density\" for a shape, which has no "
+                      "other grid, got \"flame\""),
             std::string::npos);
   EXPECT_NE(
       error_of("[[volume]]\nshape = 'box'\nnoise_amplitude = 0.1\nnoise_size = 0.001\n")

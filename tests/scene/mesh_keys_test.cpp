@@ -24,13 +24,44 @@ TEST_F(MeshKeys, Complaints) {
   EXPECT_NE(error_of(path + "[[mesh]]\n").find("mesh.0 needs a file, or a type that needs none"),
             std::string::npos);
   EXPECT_NE(error_of(path + "[[mesh]]\ntype = 'quad'\nmaterial = { type = 'mirror', ior = 2 }\n")
-                .find("mesh.0.material.ior does not belong to type \"mirror\", only to dielectric"),
+                .find("mesh.0.material.ior does not belong to type \"mirror\", only to standard "
+                      "and dielectric"),
             std::string::npos);
   EXPECT_NE(error_of(path + "[[mesh]]\ntype = 'quad'\nscale = [1, 0, 1]\n")
                 .find("mesh.0.scale must not be 0"),
             std::string::npos);
   EXPECT_NE(error_of(path + "[[mesh]]\nfile = 'gone.obj'\n").find("there is no file"),
             std::string::npos);
+}
+
+/// A surface for each material of the file; the first has the mesh's number.
+TEST_F(MeshKeys, MaterialsOfTheFile) {
+  write("a.gltf", R"({"meshes": [{"primitives": [{"material": 1}, {"material": 0}, {}]}],
+    "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}},
+                  {"emissiveFactor": [1, 1, 1]}]})");
+  const std::string mesh = "[[mesh]]\nfile = 'a.gltf'\nfile_materials = true\ngroup = 'lamp'\n"
+                           "file_axes = 'y_up_to_z_up'\n";
+  const Scene scene = load(mesh + "[[mesh]]\ntype = 'sphere'\n");
+  ASSERT_EQ(scene.surfaces.size(), 4u);
+  EXPECT_EQ(scene.surfaces[0].part, 0);
+  EXPECT_EQ(scene.surfaces[0].material.albedo, Rgb(1, 0, 0));
+  EXPECT_EQ(scene.surfaces[0].file_axes, FileAxes::y_up_to_z_up);
+  EXPECT_EQ(scene.surfaces[0].group, "");
+  EXPECT_EQ(scene.surfaces[1].shape, SurfaceShape::sphere);
+  EXPECT_EQ(scene.surfaces[1].part, -1);
+  EXPECT_EQ(scene.surfaces[2].material.type, MaterialType::emissive);
+  EXPECT_EQ(scene.surfaces[2].group, "lamp");
+  EXPECT_EQ(scene.surfaces[3].part, 2);
+  for (const std::size_t i : {0, 2, 3})
+    EXPECT_EQ(scene.surfaces[i].name, "mesh0");
+  EXPECT_EQ(error_of(mesh + "material = 'mirror'\n"),
+            "s.toml:3: mesh.0.file_materials excludes mesh.0.material: write one or the other");
+  write("a.obj", "v 0 0 0\n");
+  EXPECT_EQ(error_of("[[mesh]]\nfile = 'a.obj'\nfile_materials = true\n"),
+            "s.toml:3: mesh.0.file_materials needs a .gltf or .glb file, got a.obj");
+  write("b.gltf", "nothing");
+  EXPECT_EQ(error_of("[[mesh]]\nfile = 'b.gltf'\nfile_materials = true\n"),
+            "s.toml:2: mesh.0.file: b.gltf: is no readable glTF");
 }
 
 } // namespace

@@ -82,6 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:3: unknown key light.0.elevation; direction = [x, y, z] is the way that a "
                  "distant or spot light travels"},
         BadScene{"zzz = 1\n", "s.toml:1: unknown key zzz; the tables are image, camera, volume, "
+                              "instance, "
                               "mesh, light, layer and render"}));
 
 INSTANTIATE_TEST_SUITE_P(

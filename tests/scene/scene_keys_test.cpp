@@ -24,6 +24,7 @@ TEST(SceneKeys, DefaultsAreValid) {
   scene.surfaces.emplace_back();
   scene.lights.emplace_back();
   scene.layers.emplace_back();
+  scene.instances.emplace_back();
   for (const SceneKey& key : scene_keys())
     if (key.get && !key.required) {
       EXPECT_FALSE(key.complaint(key.get(scene, 0)).has_value()) << key.name;
@@ -36,8 +37,8 @@ TEST(SceneKeys, ReferenceHasTheTableOfEverySection) {
   text << stream.rdbuf();
   for (const SceneSection section :
        {SceneSection::image, SceneSection::camera, SceneSection::volume, SceneSection::phase,
-        SceneSection::emission, SceneSection::mesh, SceneSection::material, SceneSection::light,
-        SceneSection::layer, SceneSection::render})
+        SceneSection::emission, SceneSection::instance, SceneSection::mesh, SceneSection::material,
+        SceneSection::light, SceneSection::layer, SceneSection::render})
     EXPECT_NE(text.str().find(key_table_markdown(section)), std::string::npos)
         << "docs/reference/scene.md lacks this table of " << section_name(section) << ":\n"
         << key_table_markdown(section);

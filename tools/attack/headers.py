@@ -175,7 +175,7 @@ def tiff(data, rng):
 BY_ENDING = {".png": png, ".hdr": hdr, ".exr": exr, ".ply": ply, ".gltf": gltf, ".glb": glb, ".jpg": jpeg,
              ".jpeg": jpeg, ".tif": tiff, ".tiff": tiff, ".tx": tiff, ".vdb": vdb_fields.vdb,
              ".obj": damage.text_of, ".mtl": damage.text_of, ".chan": damage.text_of, ".txt": damage.text_of,
-             ".toml": damage.text_of, ".ies": damage.text_of}
+             ".toml": damage.text_of, ".ies": damage.text_of, ".csv": damage.text_of}
 
 
 def damaged(name, data, rng):

@@ -104,6 +104,12 @@ def make_profiles(folder):
     (folder / "tilt.ies").write_text("lamp\nTILT=INCLUDE\n1\n2\n0 90\n1 0.8\n1 900 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n9,4\n")
 
 
+def make_instances(folder):
+    """Places of instances: with a line of names, and without."""
+    (folder / "places.csv").write_text("x, y, z, ry, scale, density\n0, 0, 0, 30, 1, 1\n# beside it\n1, 0, 0, 0, 0.5, 2\n")
+    (folder / "plain.csv").write_text("0 0 0\r\n0.5; 0; 0\n")
+
+
 SCENE = """# Every section once, as small as it gets.
 [image]
 width = 8
@@ -189,7 +195,7 @@ def make_summaries(folder):
 
 
 MAKERS = {"volume": make_volumes, "mesh": make_meshes, "camera": make_cameras, "picture": make_pictures,
-          "profile": make_profiles, "film": make_films, "summary": make_summaries}
+          "profile": make_profiles, "instance": make_instances, "film": make_films, "summary": make_summaries}
 
 
 def make(folder):

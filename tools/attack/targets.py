@@ -28,7 +28,8 @@ class Case:
 # Sections that a key needs around it; a key of another section stands in a table of that name.
 AROUND = {"camera": '[camera]\n{line}\n', "volume": '[[volume]]\n{line}\nextinction = 3\n',
           "mesh": '[[mesh]]\n{line}\n', "mesh.material": '[[mesh]]\nfile = "mesh.obj"\n[mesh.material]\n{line}\n',
-          "light": '[[light]]\n{line}\n'}
+          "light": '[[light]]\n{line}\n',
+          "instance": '[[volume]]\nfile = "sphere_packed.vdb"\nname = "puff"\n[[instance]]\nvolume = "puff"\n{line}\n'}
 CAMERA = "[camera]\nposition = [0, 0.5, 6]\nlook_at = [0, 0, 0]\nfov = 30\n"
 SURROUNDINGS = {"camera": CAMERA, "volume": '[[volume]]\nfile = "sphere_packed.vdb"\nextinction = 3\n',
                 "light": '[[light]]\ntype = "distant"\nirradiance = [2, 2, 2]\n'}
@@ -188,7 +189,7 @@ class Targets:
         for key in rng.sample(tables.keys(), rng.choice([1, 1, 2, 4])):
             value = self.value_of(key, rng)
             section = key.section.split(".")
-            if section[0] in ("volume", "mesh", "light", "layer"):
+            if section[0] in ("volume", "instance", "mesh", "light", "layer"):
                 section.insert(1, rng.choice("0001"))
             sets += ["--set", f"{'.'.join(section)}.{key.name}={value}"]
         words = self.scene_words(rng)

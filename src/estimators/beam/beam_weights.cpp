@@ -108,7 +108,7 @@ struct WeightTable {
 };
 
 int count_channels(const World& world, const WeightSettings& settings) {
-  const bool coloured = world.medium.chromatic || world.medium.colored() ||
+  const bool coloured = world.air || world.medium.chromatic || world.medium.colored() ||
                         (!settings.albedo_in_power && settings.colored);
   return coloured ? 3 : 1;
 }
@@ -149,6 +149,7 @@ public:
     const std::size_t volumes = profile.volume_count();
     ProfileCursor cursor(profile);
     profile_ = &profile;
+    air_ = Rgb(1);
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
     albedos_.clear();
@@ -162,6 +163,8 @@ public:
       // Where the ray ends within, the interval does too.
       last_ = i + 1 == range.intervals || (end > from && end - from < table.step);
       length_ = last_ ? std::min(table.step, std::max(end - from, 1e-3f * table.step)) : table.step;
+      if (profile.air())
+        air_ = profile.air().left(from + 0.5f * length_);
       if (colored_)
         find_albedos(camera.ray().at(from + 0.5f * length_));
       if (settings_.store == PhotonStore::scatter)
@@ -222,7 +225,7 @@ private:
       const float piece = tau_after - tau_before;
       if (!(piece > 0))
         continue;
-      const float scattered = std::exp(-tau_before) * opacity_of(piece) / length_;
+      const float scattered = air_[c] * std::exp(-tau_before) * opacity_of(piece) / length_;
       for (std::size_t v = 0; v < volumes; ++v) {
         if (!counts(v))
           continue;
@@ -244,7 +247,7 @@ private:
         tau += volume(v).channel_scale[c] * 0.5f * (before_[v] + after_[v]);
         piece += albedos_[v][c] * volume(v).channel_scale[c] * (after_[v] - before_[v]);
       }
-      const float tr = std::exp(-tau);
+      const float tr = air_[c] * std::exp(-tau);
       if (!(piece > 0)) {
         *weight(table, world_.medium.volumes[0].phase_index, c, knot, ray) += first ? tr : 0;
         continue;
@@ -263,6 +266,7 @@ private:
   bool colored_;                      ///< albedos change along the ray
   std::vector<float> before_, after_; ///< optical depths at the ends of the interval at hand
   std::vector<Rgb> albedos_;          ///< of the volumes, in its middle
+  Rgb air_{1, 1, 1};                  ///< what the air lets through of light from there
   bool last_ = false;                 ///< it is the ray's last
   float length_ = 1;
 };

@@ -52,6 +52,7 @@ public:
         ++counts.lookups;
         counts.contributions += c.contributions;
         find_albedos(camera.ray().at(t));
+        air_ = profile.air().left(t);
         const Rgb light = weigh(before, after, step, gathered_.data(), sink.volumes);
         std::vector<Rgb> parts;
         for (std::size_t g = 0; g < groups_.size(); g += gathered_.size())
@@ -87,7 +88,7 @@ private:
     }
     Rgb sum;
     for (int c = 0; c < 3; ++c) {
-      const float tr = std::exp(-tau[c]);
+      const float tr = air_[c] * std::exp(-tau[c]);
       const float whole =
           scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * opacity_of(piece[c]);
       for (std::size_t v = 0; v < volumes; ++v) {
@@ -111,6 +112,7 @@ private:
   const DepthProfile* profile_ = nullptr; ///< of the ray at hand
   bool scatter_photons_;
   float step_ = 0, reach_ = 0;
+  Rgb air_{1, 1, 1};          ///< what the air lets through of light from the step
   std::vector<Rgb> albedos_;  ///< per volume
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights

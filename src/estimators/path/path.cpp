@@ -131,7 +131,8 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   const World& world = input_.world;
   const CameraRay camera = camera_ray_of(key, pixel);
   DepthProfile& profile = scratch.profile;
-  profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff));
+  profile.build(world.medium, camera.segment, static_cast<float>(input_.settings.cutoff),
+                camera.air);
   const RayTask ray(world, camera, profile, key, pixel, target, effort_);
   shade_profile(input_, camera, profile, target, image, seen_surface(ray, scratch));
   shade_emission(input_, world, camera, profile, target, image, scratch.counts.emission_rays);

@@ -96,7 +96,7 @@ PathEstimator::TrialRay PathEstimator::try_ray(std::size_t pixel, std::uint64_t 
   RngKey key{input_.settings.seed, input_.frame, first_pass};
   const CameraRay camera = camera_ray_of(key, pixel);
   scratch.profile.build(input_.world.medium, camera.segment,
-                        static_cast<float>(input_.settings.cutoff));
+                        static_cast<float>(input_.settings.cutoff), camera.air);
   TrialRay result;
   PassImage image;
   image.resize(1, 1, !input_.world.medium.emitters.empty());

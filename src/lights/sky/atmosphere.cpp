@@ -190,47 +190,100 @@ Atmosphere::Spectrum Atmosphere::scattered(double radius, double mu) const {
                     0.5 + 0.5 * std::copysign(std::sqrt(std::abs(mu)), mu), mix_spectra);
 }
 
-Atmosphere::Spectrum Atmosphere::along(const Line& line, bool repeated, Spectrum* isotropic) const {
-  const double ground = to_ground(line.radius, line.mu);
-  const double length = ground >= 0 ? ground : to_top(line.radius, line.mu);
-  const double of_air = rayleigh(line.cosine), of_haze = haze_phase(line.cosine);
-  Spectrum sum{}, left;
-  left.fill(1);
-  const auto point = [&](double t, double& radius, double& sun_mu) {
-    radius = std::sqrt(line.radius * line.radius + t * t + 2 * line.radius * line.mu * t);
-    sun_mu = std::clamp((line.radius * line.sun_mu + t * line.cosine) / radius, -1.0, 1.0);
-  };
-  double radius = 0, sun_mu = 0, begin = 0;
-  for (int k = 0; k < line.steps; ++k) {
-    const double share = static_cast<double>(k + 1) / line.steps;
-    const double end = length * share * share; // shorter steps where the air is dense
-    point((begin + end) / 2, radius, sun_mu);
+/// Light that is scattered towards the beginning of a line, summed from there on.
+class Atmosphere::Gathering {
+public:
+  Gathering(const Atmosphere& air, const Line& line, bool repeated)
+      : air_(air), line_(line), repeated_(repeated), of_air_(rayleigh(line.cosine)),
+        of_haze_(haze_phase(line.cosine)) {
+    left.fill(1);
+  }
+
+  /// Adds the piece up to `end`. `isotropic`, unless it is null, takes what scatters there of light
+  /// that comes from everywhere.
+  void advance(double end, Spectrum* isotropic = nullptr) {
+    double radius = 0, sun_mu = 0;
+    point((begin_ + end) / 2, radius, sun_mu);
     const Vec3d density = densities(radius);
-    const Spectrum sun = sunlight(radius, sun_mu),
-                   more = repeated ? scattered(radius, sun_mu) : Spectrum{};
+    const Spectrum sun = air_.sunlight(radius, sun_mu),
+                   more = repeated_ ? air_.scattered(radius, sun_mu) : Spectrum{};
     for (std::size_t w = 0; w < count; ++w) {
-      const double air = air_[w] * density.x, haze = haze_[w] * density.y * haze_albedo;
-      const double extinction = air + haze_[w] * density.y + ozone_[w] * density.z;
-      const double after = std::exp(-extinction * (end - begin));
+      const double air = air_.air_[w] * density.x, all_haze = air_.haze_[w] * density.y;
+      const double haze = all_haze * haze_albedo;
+      const double extinction = air + all_haze + air_.ozone_[w] * density.z;
+      const double after = std::exp(-extinction * (end - begin_));
       const double mean = extinction > 0 ? left[w] * (1 - after) / extinction : 0;
-      sum[w] += mean * ((air * of_air + haze * of_haze) * sun[w] + (air + haze) * more[w]);
+      sum[w] += mean * ((air * of_air_ + haze * of_haze_) * sun[w] + (air + haze) * more[w]);
       if (isotropic)
         (*isotropic)[w] += mean * (air + haze);
       left[w] *= after;
     }
-    begin = end;
+    begin_ = end;
   }
+
+  /// A point of the line; below the ground it counts as on it.
+  void point(double t, double& radius, double& sun_mu) const {
+    radius = std::sqrt(line_.radius * line_.radius + t * t + 2 * line_.radius * line_.mu * t);
+    radius = std::max(radius, earth);
+    sun_mu = std::clamp((line_.radius * line_.sun_mu + t * line_.cosine) / radius, -1.0, 1.0);
+  }
+
+  Spectrum sum{}, left; ///< light so far, and what is left of light from there
+
+private:
+  const Atmosphere& air_;
+  const Line& line_;
+  bool repeated_;
+  double of_air_, of_haze_, begin_ = 0;
+};
+
+Atmosphere::Spectrum Atmosphere::along(const Line& line, bool repeated, Spectrum* isotropic) const {
+  const double ground = to_ground(line.radius, line.mu);
+  const double length = ground >= 0 ? ground : to_top(line.radius, line.mu);
+  Gathering gathering(*this, line, repeated);
+  for (int k = 0; k < line.steps; ++k) {
+    const double share = static_cast<double>(k + 1) / line.steps;
+    gathering.advance(length * share * share, isotropic); // shorter steps where the air is dense
+  }
+  Spectrum& sum = gathering.sum;
   if (ground >= 0) {
-    point(length, radius, sun_mu);
+    double radius = 0, sun_mu = 0;
+    gathering.point(length, radius, sun_mu);
     const Spectrum sun = sunlight(earth, sun_mu);
     for (std::size_t w = 0; w < count; ++w) {
       const double lit = std::max(0.0, sun_mu) * sun[w] + (repeated ? sky_spectrum_[w] : 0);
-      sum[w] += left[w] * settings_.ground_albedo / pi_ * lit;
+      sum[w] += gathering.left[w] * settings_.ground_albedo / pi_ * lit;
       if (isotropic)
-        (*isotropic)[w] += left[w] * settings_.ground_albedo;
+        (*isotropic)[w] += gathering.left[w] * settings_.ground_albedo;
     }
   }
   return sum;
+}
+
+Vec3d Atmosphere::unfiltered() const {
+  Spectrum whole;
+  whole.fill(1);
+  return to_xyz(whole);
+}
+
+double Atmosphere::length_in_air(double elevation) const {
+  const double radius = earth + settings_.altitude, mu = std::sin(elevation);
+  if (to_ground(radius, mu) < 0)
+    return to_top(radius, mu);
+  return std::sqrt(radius * radius - earth * earth) + std::sqrt(top * top - earth * earth);
+}
+
+void Atmosphere::between(double elevation, double azimuth, std::span<const double> distances,
+                         std::span<Between> result) const {
+  const double sun_mu = std::sin(settings_.sun_elevation), mu = std::sin(elevation);
+  const double sides = std::cos(settings_.sun_elevation) * std::cos(elevation);
+  const double cosine = std::clamp(mu * sun_mu + sides * std::cos(azimuth), -1.0, 1.0);
+  const Line line{earth + settings_.altitude, mu, sun_mu, cosine, 0};
+  Gathering gathering(*this, line, true);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    gathering.advance(distances[i]);
+    result[i] = {to_xyz(gathering.left), to_xyz(gathering.sum)};
+  }
 }
 
 void Atmosphere::make_scattered() {

@@ -3,6 +3,7 @@
 #include "vdbeam/vec.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace vdbeam {
@@ -35,6 +36,20 @@ public:
   /// Radiance of the sky, or of the ground below the horizon, without the sun's disc. `elevation`
   /// of the line of sight and `azimuth` from the sun's, radians.
   Vec3d radiance(double elevation, double azimuth) const;
+  /// The air between the eye and a point.
+  struct Between {
+    Vec3d left;  ///< what it lets through of light with the spectrum of the sun above the air
+    Vec3d light; ///< radiance that it scatters towards the eye
+  };
+  /// The air along a line of sight up to each of the distances [m], which ascend and are the steps
+  /// of the integral. A line that meets the ground goes on in air as dense as there.
+  void between(double elevation, double azimuth, std::span<const double> distances,
+               std::span<Between> result) const;
+  /// The colour of `Between::left` without air.
+  Vec3d unfiltered() const;
+  /// Length of that line in the air, or, where it meets the ground, of one that just misses it [m].
+  double length_in_air(double elevation) const;
+
   /// Irradiance by the sun's disc on a plane that faces it.
   const Vec3d& sun() const { return sun_; }
   /// Irradiance by the sky on the ground.
@@ -43,7 +58,8 @@ public:
 private:
   /// Integrals along a line of the densities of air, haze and ozone, relative to the largest [m].
   using Columns = Vec3d;
-  struct Line; ///< a line of sight
+  struct Line;     ///< a line of sight
+  class Gathering; ///< the integral along it
 
   void make_columns();
   void make_scattered();

@@ -1,8 +1,7 @@
 #include "lights/disc_light.h"
 #include "lights/environment_image.h"
 #include "lights/light_table.h"
-#include "lights/sky/atmosphere.h"
-#include "volume/blackbody.h"
+#include "lights/sky/air_colors.h"
 
 #include <tbb/task_arena.h>
 
@@ -19,15 +18,6 @@ constexpr double sun_radius = 0.2666;
 /// How the sun darkens towards its limb, at 610, 550 and 465 nm (Hestroffer and Magnan, Wavelength
 /// dependency of the Solar limb darkening, 1998).
 const Rgb sun_limb{0.456f, 0.508f, 0.605f};
-
-AirSettings air_of(const LightSettings& settings, const Vec3d& up) {
-  const Vec3d to_sun = -unit_direction(settings.direction, "light.direction");
-  return {.sun_elevation =
-              std::asin(std::clamp(dot(to_sun, unit_direction(up, "camera.up")), -1.0, 1.0)),
-          .aerosol = settings.aerosol,
-          .ground_albedo = settings.ground_albedo,
-          .altitude = settings.altitude};
-}
 
 /// The value that `make` gives for a key, which lights of a frame, and of frames that follow,
 /// share.
@@ -51,29 +41,23 @@ private:
   std::shared_ptr<const Value> value_;
 };
 
+} // namespace
+
+AirSettings air_of(const LightSettings& settings, const Vec3d& up) {
+  const Vec3d to_sun = -unit_direction(settings.direction, "light.direction");
+  return {.sun_elevation =
+              std::asin(std::clamp(dot(to_sun, unit_direction(up, "camera.up")), -1.0, 1.0)),
+          .aerosol = settings.aerosol,
+          .ground_albedo = settings.ground_albedo,
+          .altitude = settings.altitude};
+}
+
 std::shared_ptr<const Atmosphere> atmosphere_of(const AirSettings& air) {
   static LastMade<AirSettings, Atmosphere> last;
   return last.get(air, [&] { return Atmosphere(air); });
 }
 
-/// Colours of the working space; what it cannot show counts as 0.
-class AirColors {
-public:
-  explicit AirColors(const LightSettings& settings)
-      : scale_(settings.irradiance), space_(settings.color_space),
-        matrix_(rgb_matrix(chromaticities_of(ColorSpace::rec709), chromaticities_of(space_))) {}
-
-  Rgb operator()(const Vec3d& xyz) const {
-    const Vec3d rec709 = xyz_to_rgb(xyz);
-    const Vec3d rgb = space_ == ColorSpace::rec709 ? rec709 : matrix_.apply(rec709);
-    return scale_ * Rgb(max(rgb, Vec3d(0)));
-  }
-
-private:
-  Rgb scale_;
-  ColorSpace space_;
-  ColorMatrix matrix_;
-};
+namespace {
 
 /// What an image of the sky is made from.
 struct SkyImageKey {
@@ -81,6 +65,9 @@ struct SkyImageKey {
   Rgb irradiance;
   ColorSpace space = ColorSpace::rec709;
   double sun_turn = 0; ///< where the sun is in the image, radians
+  /// The row below the horizon shows the sky: what is far away on the ground has its colour, and
+  /// no image is so fine that the ground behind could not be seen in between.
+  bool open_horizon = false;
 
   friend bool operator==(const SkyImageKey&, const SkyImageKey&) = default;
 };
@@ -96,7 +83,8 @@ Image sky_image(const SkyImageKey& key, const AirColors& color) {
   std::size_t pixel = 0;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x, ++pixel) {
-      const double elevation = std::numbers::pi * (0.5 - (y + 0.5) / image.height);
+      const int row = key.open_horizon && y == image.height / 2 ? y - 1 : y;
+      const double elevation = std::numbers::pi * (0.5 - (row + 0.5) / image.height);
       const double turn = 2 * std::numbers::pi * (x + 0.5) / image.width;
       const Rgb seen = color(air->radiance(elevation, turn - key.sun_turn));
       for (int c = 0; c < 3; ++c)
@@ -110,7 +98,8 @@ std::unique_ptr<Light> make_atmosphere_light(const LightSettings& settings,
   const std::array<Vec3d, 3> axes = environment_axes(context.up, 0);
   const Vec3d to_sun = -unit_direction(settings.direction, "light.direction");
   const SkyImageKey key{air_of(settings, context.up), settings.irradiance, settings.color_space,
-                        std::atan2(dot(axes[1], to_sun), dot(axes[0], to_sun))};
+                        std::atan2(dot(axes[1], to_sun), dot(axes[0], to_sun)),
+                        settings.metres_per_unit.has_value()};
   static LastMade<SkyImageKey, Image> last;
   const auto image = last.get(key, [&] { return sky_image(key, AirColors(settings)); });
   LightSettings sky = settings;
@@ -125,8 +114,8 @@ std::unique_ptr<Light> make_sun_light(const LightSettings& settings, const Light
                          AirColors(settings)(air->sun()), sun_radius, sun_limb, context.region);
 }
 
-constexpr std::string_view atmosphere_keys[] = {"direction",     "irradiance", "aerosol",
-                                                "ground_albedo", "altitude",   "sun"};
+constexpr std::string_view atmosphere_keys[] = {
+    "direction", "irradiance", "aerosol", "ground_albedo", "altitude", "sun", "metres_per_unit"};
 constexpr std::string_view sun_keys[] = {"direction", "irradiance", "aerosol", "altitude"};
 
 bool is_colored(const LightSettings&) {

@@ -1,4 +1,6 @@
 """From surface shaders to the material of a [[mesh]]."""
+import math
+
 from . import nodes
 
 TEXTURES = "Base Color", "Color"
@@ -42,24 +44,47 @@ def metal(node, notes, subject):
             "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
 
 
+def share(value):
+    """A number within [0, 1]."""
+    return max(0.0, min(1.0, value))
+
+
+def gloss_ior(node, notes, subject):
+    """The index of refraction with the reflectance of a Principled BSDF's gloss straight on; 1: it has none. Blender 4
+    scales that of IOR by twice the level, earlier versions have 0.08 of Specular."""
+    if nodes.socket(node, "Specular IOR Level") is not None:
+        ior = nodes.constant_number(node, notes, subject, "IOR", default=1.5)
+        level = nodes.constant_number(node, notes, subject, "Specular IOR Level")
+        reflectance = ((ior - 1) / (ior + 1)) ** 2 * 2 * level
+    else:
+        reflectance = 0.08 * nodes.constant_number(node, notes, subject, "Specular")
+    root = math.sqrt(max(0.0, min(0.65, reflectance)))
+    return round((1 + root) / (1 - root), 6)
+
+
 def principled(node, notes, subject, image_path):
-    """The strongest part of a Principled BSDF: emission, glass, metal, or a matt surface."""
+    """A Principled BSDF: emission or glass where it has them, else a standard surface."""
     colour = nodes.constant_colour(node, notes, subject, "Emission Color", "Emission")
     strength = nodes.constant_number(node, notes, subject, "Emission Strength", default=1.0)
     if strength * max(colour) > 0:
         return emission(colour, strength)
     transmission = nodes.constant_number(node, notes, subject, "Transmission Weight", "Transmission")
     metallic = nodes.constant_number(node, notes, subject, "Metallic")
-    for name, value in (("transmission", transmission), ("metallic", metallic)):
-        if 0.01 < value < 0.99:
-            notes.add(subject, f"a {name} of {value:.2g} has no counterpart; it is rounded to 0 or 1")
-    if metallic > 0.5:
-        return metal(node, notes, subject)
-    if transmission > 0.5:
+    if 0.01 < transmission < 0.99:
+        notes.add(subject, f"a transmission of {transmission:.2g} has no counterpart; it is rounded to 0 or 1")
+    if transmission > 0.5 and metallic < 0.5:
         return glass(node, notes, subject)
-    if nodes.number(node, "Specular IOR Level", "Specular") > 0:
-        notes.add(subject, "the gloss of a Principled BSDF that is not metal has no counterpart; the surface is matt")
-    return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
+    ior = gloss_ior(node, notes, subject)
+    coat = nodes.constant_number(node, notes, subject, "Coat Weight", "Clearcoat")
+    if ior == 1 and metallic == 0 and coat == 0:
+        return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
+    keys = {"type": "standard", "metal": share(metallic), "ior": ior,
+            "roughness": share(nodes.constant_number(node, notes, subject, "Roughness", default=0.5))}
+    if coat > 0:
+        keys["coat"] = share(coat)
+        keys["coat_roughness"] = share(nodes.constant_number(node, notes, subject, "Coat Roughness",
+                                                             "Clearcoat Roughness"))
+    return with_texture(node, keys, notes, subject, image_path)
 
 
 def surface_keys(node, notes, subject, image_path):
