@@ -27,10 +27,12 @@
 namespace vdbeam::cli {
 namespace {
 
-constexpr std::chrono::milliseconds watch_interval{20};
+constexpr std::chrono::milliseconds watch_interval{10};
 /// How long a scene file that cannot be read may stay so before the error is printed: editors
 /// write in steps.
 constexpr std::chrono::milliseconds patience{250};
+/// How long the render waits until the look at an edit is in its file.
+constexpr std::chrono::milliseconds longest_wait{100};
 
 struct LiveOptions {
   SceneOptions scene;
@@ -54,7 +56,9 @@ public:
       display_ = std::make_unique<Display>(options.display);
     if (!options.preview.empty())
       writer_ = std::make_unique<PreviewWriter>(
-          options.preview, WriteOptions{options.exposure, options.view},
+          options.preview,
+          WriteOptions{
+              .exposure = options.exposure, .view = options.view, .life = ImageLife::passing},
           [this](const std::string& line) { report_error(line); });
   }
   ~LiveView() { end_status(); }
@@ -88,6 +92,8 @@ private:
       writer_->write(shown.image, [event] { send_event("image", event); });
     else
       send_event("image", event);
+    if (writer_ && shown.passes == 0 && !shown.mixed) // else passes would take its processors
+      writer_->wait(longest_wait);
     status(shown);
   }
 

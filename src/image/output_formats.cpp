@@ -31,7 +31,7 @@ constexpr OutputFormat formats[] = {
      }},
     {".png", "8-bit sRGB preview", false,
      [](const Image& image, const std::string& path, const WriteOptions& options) {
-       write_png(image, path, options.exposure, options.view);
+       write_png(image, path, options.exposure, options.view, options.life);
      }},
 };
 

@@ -106,10 +106,11 @@ private:
       call(lock, hooks_.on_edit, edit);
     }
     record_.reset();
-    if (std::optional<Image> look = take_small_look(scene, prepared_, stop_))
+    if (std::optional<Image> look = looks_.take(scene, prepared_, stop_))
       take(std::move(*look), 0);
     RenderHooks hooks;
     hooks.stop = &stop_;
+    hooks.discards_when_stopped = true;
     hooks.refines_quick_look = true;
     hooks.snapshot_interval.seconds = seconds_between_images;
     hooks.on_pass = [this](const PassRecord& record, const RenderStatistics&) { record_ = record; };
@@ -178,6 +179,7 @@ private:
   std::atomic<bool> stop_ = false;
   // What only the thread uses:
   PreparedScenePtr prepared_;
+  SmallLooks looks_;
   std::optional<PassRecord> record_;
   std::thread thread_; ///< the last member: it uses the others
 };
