@@ -65,7 +65,7 @@ public:
 
   LiveHooks hooks() {
     LiveHooks hooks;
-    hooks.on_image = [this](const LiveImage& image) { show(image); };
+    hooks.on_image = [this](LiveImage& image) { show(image); };
     hooks.on_edit = [this](const LiveEdit& edit) { report(edit); };
     hooks.on_error = [this](int, const std::string& line) { report_error(line); };
     hooks.on_finished = [this](int edit) {
@@ -84,12 +84,12 @@ public:
   }
 
 private:
-  void show(const LiveImage& shown) {
+  void show(LiveImage& shown) {
     if (display_)
       display_->show(name_, shown.image);
     const nlohmann::ordered_json event = image_event(shown);
     if (writer_)
-      writer_->write(shown.image, [event] { send_event("image", event); });
+      writer_->write(std::move(shown.image), [event] { send_event("image", event); });
     else
       send_event("image", event);
     if (writer_ && shown.passes == 0 && !shown.mixed) // else passes would take its processors

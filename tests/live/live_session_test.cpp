@@ -53,7 +53,7 @@ class Watched {
 public:
   Watched()
       : session_({.on_image =
-                      [this](const LiveImage& image) {
+                      [this](LiveImage& image) {
                         const std::lock_guard lock(mutex_);
                         last_ = image;
                       },
