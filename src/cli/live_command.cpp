@@ -33,13 +33,15 @@ constexpr std::chrono::milliseconds watch_interval{10};
 constexpr std::chrono::milliseconds patience{250};
 /// How long the render waits until the look at an edit is in its file.
 constexpr std::chrono::milliseconds longest_wait{100};
+/// And how long it waits for the last image.
+constexpr std::chrono::milliseconds longest_wait_in_the_end{5000};
 
 struct LiveOptions {
   SceneOptions scene;
   std::optional<int> frame;
   std::string preview, display, view, progress = "plain";
   double exposure = 0;
-  bool quiet = false;
+  bool quiet = false, end_with_stdin = false;
 };
 
 nlohmann::ordered_json number(double value) {
@@ -70,6 +72,8 @@ public:
     hooks.on_error = [this](int, const std::string& line) { report_error(line); };
     hooks.on_finished = [this](int edit) {
       end_status();
+      if (writer_)
+        writer_->wait(longest_wait_in_the_end); // the last image comes before this event
       send_event("finished", {{"edit", edit}});
       if (!options_.quiet)
         log("finished; waiting for edits, Ctrl+C ends");
@@ -172,10 +176,11 @@ private:
 /// Reads the scene again where its files change, and shows it.
 class LiveLoop {
 public:
-  LiveLoop(const LiveOptions& options, int frame, const SceneDocument& document)
-      : options_(options), frame_(frame), watch_(options.scene.path(), frame_), view_(options),
+  /// `watch` has begun before the document was read.
+  LiveLoop(const LiveOptions& options, int frame, const SceneDocument& document, SceneWatch watch)
+      : options_(options), frame_(frame), watch_(std::move(watch)), view_(options),
         session_(view_.hooks()) {
-    watch_.name_files(document);
+    watch_.name_files(document, frame_);
     session_.show(document.scene_at(frame_));
   }
 
@@ -205,7 +210,7 @@ private:
           std::filesystem::file_size(options_.scene.path(), no_size) == 0 && !no_size)
         throw InputError(options_.scene.path() + ": the file is empty"); // about to be written
       const SceneDocument document = options_.scene.open();
-      watch_.name_files(document);
+      watch_.name_files(document, frame_);
       Scene scene = document.scene_at(frame_);
       FileClaims claims;
       claims.scene(document, options_.scene.path(), {frame_});
@@ -228,6 +233,7 @@ private:
 int run_live(LiveOptions& options) {
   if (options.progress == "json")
     enable_events();
+  SceneWatch watch(options.scene.path());
   const SceneDocument document = options.scene.open();
   if (options.preview.empty() && options.display.empty())
     options.preview = std::filesystem::path(options.scene.path()).stem().string() + ".live.png";
@@ -238,7 +244,9 @@ int run_live(LiveOptions& options) {
   claims.scene(document, options.scene.path(), {frame});
   claims.output("--preview", options.preview);
   handle_signals();
-  LiveLoop(options, frame, document).run();
+  if (options.end_with_stdin)
+    end_with_stdin();
+  LiveLoop(options, frame, document, std::move(watch)).run();
   return 0;
 }
 
@@ -249,10 +257,11 @@ CommandRun add_live(CLI::App& app) {
   options->scene.declare(app);
   app.add_option("-f,--frame", options->frame, "Frame number; default: the first on disk, or 1")
       ->option_text("N");
-  app.add_option("--preview", options->preview,
-                 "Image that is replaced in one step; default: NAME.live.png of the scene, unless "
-                 "there is a --display")
-      ->option_text("FILE.png");
+  app.add_option(
+         "--preview", options->preview,
+         "Image that is replaced in one step, .png or linear .exr; default: NAME.live.png of "
+         "the scene, unless there is a --display")
+      ->option_text("FILE");
   app.add_option("--display", options->display,
                  "Show the image in the viewer tev, e.g. localhost:14158")
       ->option_text("HOST:PORT");
@@ -265,6 +274,10 @@ CommandRun add_live(CLI::App& app) {
       ->check(CLI::IsMember({"plain", "json"}))
       ->option_text("plain|json");
   app.add_flag("-q,--quiet", options->quiet, "Print errors only");
+  app.add_flag(
+      "--end-with-stdin", options->end_with_stdin,
+      "End when the standard input is closed, as when the program that started this one is "
+      "killed");
   app.footer(R"(The scene is rendered again whenever it, or a file that it names, is saved. What did
 not change is kept; strengths and colours of lights are changed at once. Ctrl+C ends.
 

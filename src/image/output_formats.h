@@ -11,10 +11,10 @@ namespace vdbeam {
 
 /// Options of a writer.
 struct WriteOptions {
-  double exposure = 0;                 ///< stops, for 8-bit formats
-  std::string view = "filmic";         ///< view transform of 8-bit formats
-  Links links = Links::follow;         ///< of an EXR
-  ImageLife life = ImageLife::lasting; ///< of 8-bit formats
+  double exposure = 0;         ///< stops, for 8-bit formats
+  std::string view = "filmic"; ///< view transform of 8-bit formats
+  Links links = Links::follow; ///< of an EXR
+  ImageLife life = ImageLife::lasting;
 };
 
 /// One kind of output file.

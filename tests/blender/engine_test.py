@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 FILE = os.path.abspath(__file__)
@@ -20,7 +21,7 @@ if blender_runner.inside_blender():
     import bpy
     import numpy
     import scenes
-    from vdbeam_blender import engine, exr
+    from vdbeam_blender import engine, exr, view_engine
 
 DATA = pathlib.Path(FILE).resolve().parents[2] / "data"
 SMOKE = DATA / "smoke" / "smoke.0024.vdb"
@@ -204,6 +205,38 @@ class Engine(unittest.TestCase):
         self.assertGreater(alpha.max(), 0.9)  # the shadow
         self.assertLess(alpha.min(), 0.01)  # beside it, and the holdout
         self.assertLess((alpha > 0.5).mean(), 0.2)
+
+    def test_viewport(self):
+        """What Blender calls for a viewport, with stubs of what a Blender without windows lacks."""
+        scene = self.smoke()
+        scene.camera.data.dof.use_dof = True
+        engine_of_view, drawn, lines = view_engine.Viewport(), [], []
+        engine_of_view.update_stats = lambda _name, line: lines.append(line)
+        engine_of_view.tag_redraw = lambda: None
+        self.replace(view_engine.view_draw.Drawing, "draw",
+                     lambda _own, _engine, _scene, pixels, width, height: drawn.append((pixels, width, height)))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        camera = scene.camera.evaluated_get(depsgraph)
+        window = camera.calc_matrix_camera(depsgraph, x=48, y=32)
+        context = types.SimpleNamespace(
+            region=types.SimpleNamespace(width=48, height=32),
+            region_data=types.SimpleNamespace(view_perspective="CAMERA", window_matrix=window,
+                                              view_matrix=camera.matrix_world.inverted()))
+        engine_of_view.view_update(context, depsgraph)
+        end = time.monotonic() + 120
+        while (not lines or lines[-1] != "Done") and time.monotonic() < end:
+            engine_of_view.view_draw(context, depsgraph)
+            time.sleep(0.05)
+        self.assertEqual(lines[-1], "Done")
+        pixels, width, height = drawn[-1]
+        self.assertEqual((pixels.shape, width, height), ((32, 48, 4), 48, 32))
+        self.assertTrue(numpy.allclose(pixels[-1, 0], [0.5, 0.5, 0.5, 1], atol=2e-3))  # the world
+        self.assertGreater(numpy.abs(pixels - 0.5)[..., :3].max(), 0.1)
+        child = engine_of_view.preview.render.child
+        text = (pathlib.Path(engine_of_view.preview.folder) / "scene.toml").read_text(encoding="utf-8")
+        self.assertIn("lens_radius", text)
+        del engine_of_view
+        child.wait(30)
 
     def test_farm_job(self):
         """The job's scene gives the image of F12, frame by frame."""

@@ -36,11 +36,16 @@ class SceneReader:
     def read(self, depsgraph, frame):
         """The scene at a time, as {table: keys or list of keys}. Throws ValueError without a camera."""
         scene = depsgraph.scene
-        self.frame = frame
         if scene.camera is None:
             raise ValueError("the scene has no camera")
-        tables = {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame), "volume": [], "mesh": [],
-                  "light": []}
+        return {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame),
+                **self.contents(depsgraph, frame)}
+
+    def contents(self, depsgraph, frame):
+        """The tables without [image] and [camera]."""
+        scene = depsgraph.scene
+        self.frame = frame
+        tables = {"volume": [], "mesh": [], "light": []}
         for instance in depsgraph.object_instances:
             if instance.show_self:
                 self.add(instance, scene, tables)
