@@ -101,6 +101,12 @@ class Engine(unittest.TestCase):
         self.assertGreater(planes["Combined_key.R"].max(), 0.01)
         total = planes["Combined_key.R"] + planes["Combined_sky.R"]
         self.assertLess(numpy.abs(total - planes["Combined.R"]).max(), 2e-3)
+        self.assertEqual(planes["Combined_rest.R"].max(), 0)
+        scene.world.lightgroup = ""
+        planes = self.render(scene)
+        rest = planes["Combined_rest.R"] + planes["Combined_key.R"]
+        self.assertGreater(planes["Combined_rest.R"].max(), 0.1)
+        self.assertLess(numpy.abs(rest - planes["Combined.R"]).max(), 2e-3)
         while layer.lightgroups:
             layer.lightgroups.remove(layer.lightgroups[0]) if hasattr(layer.lightgroups, "remove") else \
                 bpy.ops.scene.view_layer_remove_lightgroup()
@@ -192,6 +198,45 @@ class Engine(unittest.TestCase):
         part = scenes.combined(self.render(scene))
         self.assertEqual(part.shape, (18, 32, 3))
         self.assertLess(numpy.abs(part - whole[:18, 16:48]).max(), 1e-6)
+
+    def test_a_lamp_with_a_radius_is_as_bright(self):
+        """And has soft shadows: a plane beneath a smaller one, whose edge is as sharp as pixels, or not."""
+        means, steps = [], []
+        for radius in (0.0, 0.4):
+            scene = scenes.empty_scene()
+            scenes.add_camera(scene, (0, 0, 6), (0, 0, 0), lens=40)
+            scenes.add_plane(scene, 4)
+            scenes.add_plane(scene, 0.3, location=(0, 0, 1))
+            lamp = scenes.add_lamp(scene, "POINT", 300, location=(1.5, 0, 4))
+            lamp.data.shadow_soft_size = radius
+            scene.vdbeam.estimator, scene.vdbeam.passes = "path", 32
+            image = scenes.combined(self.render(scene))[..., 1]
+            means.append(image[:10].mean())
+            steps.append(numpy.abs(numpy.diff(image[45, :64])).max())  # left of the smaller plane
+        scene.vdbeam.estimator = "auto"
+        self.assertLess(abs(means[1] / means[0] - 1), 0.02)
+        self.assertLess(steps[1], 0.7 * steps[0])
+
+    def test_a_mesh_that_changes_its_shape_is_reported(self):
+        scene = self.smoke()
+        plane = scenes.add_plane(scene, 1)
+        plane.shape_key_add(name="basis")
+        key = plane.shape_key_add(name="up")
+        for point in key.data:
+            point.co.z += 1
+        for frame, value in ((0, 0.0), (2, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        scene.frame_set(1)
+        lines = []
+        write = engine.VdbeamRenderEngine.write_scene
+        self.replace(engine.VdbeamRenderEngine, "write_scene",
+                     lambda *words: (lines.extend(write(*words)), list(lines))[1])
+        self.render(scene)
+        self.assertFalse([line for line in lines if "its shape changes" in line])
+        scene.render.use_motion_blur = True
+        self.render(scene)
+        self.assertTrue([line for line in lines if "its shape changes" in line])
 
     def test_holdout_and_shadow_catcher(self):
         scene = scenes.empty_scene()

@@ -1,7 +1,12 @@
 """From surface shaders to the material of a [[mesh]]."""
+import math
+
+import numpy
+
 from . import nodes
 
 TEXTURES = "Base Color", "Color"
+TINT = "tint"  # no key of vdbeam's: the colour of glass until its mesh is known
 
 
 def with_texture(node, keys, notes, subject, image_path):
@@ -29,11 +34,38 @@ def emission(colour, strength):
 
 def glass(node, notes, subject):
     """A smooth or frosted dielectric."""
-    tint = nodes.constant_colour(node, notes, subject, *TEXTURES)
-    if min(tint) < 0.95:
-        notes.add(subject, "the colour of glass has no counterpart; give the mesh a volume absorption")
-    return {"type": "dielectric", "ior": nodes.constant_number(node, notes, subject, "IOR", default=1.5),
+    tint = clipped(nodes.constant_colour(node, notes, subject, *TEXTURES))
+    # The colour counts at each surface here, inside there: tinted_inside knows how far light goes.
+    keys = {TINT: tint} if min(tint) < 0.95 else {}
+    return {**keys, "type": "dielectric", "ior": nodes.constant_number(node, notes, subject, "IOR", default=1.5),
             "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
+
+
+def mean_chord(triangles):
+    """Mean length of the rays inside a closed surface, 4 V / A (Cauchy); 0 for an open one. `triangles`: corners, of
+    (n, 3, 3)."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    normals = numpy.cross(b - a, c - a)
+    area = numpy.linalg.norm(normals, axis=1).sum() / 2
+    if area == 0 or numpy.linalg.norm(normals.sum(axis=0)) > 1e-3 * 2 * area:
+        return 0.0
+    middle = triangles.reshape(-1, 3).mean(axis=0)
+    return 4 * abs((normals * (a - middle)).sum()) / 6 / area
+
+
+def tinted_inside(keys, triangles, notes, subject):
+    """The material with the colour of its glass as absorption: a ray through two surfaces of the colour c has c^2,
+    which the mean chord has too."""
+    tint = keys.get(TINT)
+    if tint is None:
+        return keys
+    plain = {name: value for name, value in keys.items() if name != TINT}
+    chord = mean_chord(triangles)
+    if chord <= 0:
+        notes.add(subject, "the colour of glass has no counterpart where its mesh is not closed; it is left out")
+        return plain
+    notes.add(subject, "the colour of glass is exported as absorption inside, which grows with the way of the light")
+    return {**plain, "absorption": [-2 * math.log(max(value, 1e-3)) / chord for value in tint]}
 
 
 def metal(node, notes, subject):
