@@ -9,10 +9,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools" / "blender"))
 
-import numpy  # noqa: E402
-
-from vdbeam_blender import (animate, camera, lamps, layers, nodes, notes, objects, sequence, surface_shader,  # noqa: E402
-                            toml_text, volume_shader, world)
+from vdbeam_blender import (animate, camera, lamps, nodes, notes, sequence, surface_shader, toml_text,  # noqa: E402
+                            volume_shader, world)
 
 
 class Socket:
@@ -220,57 +218,23 @@ class Lamps(unittest.TestCase):
         self.assertIn("without shadows", found.lines[0])
         self.assertIn("radius of a spot lamp", found.lines[1])
 
-    def test_shadow_settings_of_blender(self):
-        cycles = types.SimpleNamespace
-        self.assertFalse(objects.casts_shadow(cycles(cycles=cycles(cast_shadow=False), use_shadow=True)))
-        self.assertFalse(objects.casts_shadow(cycles(use_shadow=False)))
-        self.assertTrue(objects.casts_shadow(cycles()))
-
 
 class Glass(unittest.TestCase):
-    @staticmethod
-    def cube(edge):
-        """The twelve triangles of a cube, with their fronts outside."""
-        faces = []
-        for axis in range(3):
-            u, v = numpy.eye(3)[(axis + 1) % 3], numpy.eye(3)[(axis + 2) % 3]
-            for side in (0.0, 1.0):
-                corner = side * numpy.eye(3)[axis]
-                quad = [corner, corner + u, corner + u + v, corner + v]
-                quad = quad if side else quad[::-1]
-                faces += [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]
-        return edge * numpy.array(faces) + 7.0
-
-    def test_mean_chord(self):
-        """4 V / A: two thirds of the edge of a cube."""
-        self.assertAlmostEqual(surface_shader.mean_chord(self.cube(3.0)), 2.0)
-        self.assertEqual(surface_shader.mean_chord(self.cube(3.0)[:-1]), 0)
-
     def test_colour_becomes_absorption(self):
         found = notes.Notes()
         glass = node("BSDF_GLASS", {"Color": (1.0, 0.5, 0.25, 1.0), "IOR": 1.45, "Roughness": 0.0})
         keys = surface_shader.surface_keys(glass, found, "glass", None)
-        inside = surface_shader.tinted_inside(keys, self.cube(3.0), found, "glass")
+        inside = surface_shader.tinted_inside(keys, 2.0, found, "glass")
         for value, colour in zip(inside["absorption"], (1.0, 0.5, 0.25)):
             self.assertAlmostEqual(math.exp(-2.0 * value), colour * colour)
         self.assertEqual(set(inside), {"type", "ior", "roughness", "absorption"})
-        open_one = surface_shader.tinted_inside(keys, self.cube(3.0)[:-1], found, "glass")
-        self.assertNotIn("absorption", open_one)
+        self.assertNotIn("absorption", surface_shader.tinted_inside(keys, 0.0, found, "glass"))
         self.assertIn("not closed", found.lines[-1])
 
     def test_clear_glass_is_clear(self):
         glass = node("BSDF_GLASS", {"Color": (1.0, 1.0, 1.0, 1.0), "IOR": 1.45, "Roughness": 0.0})
         keys = surface_shader.surface_keys(glass, notes.Notes(), "glass", None)
-        self.assertEqual(surface_shader.tinted_inside(keys, self.cube(1.0), notes.Notes(), "glass"), keys)
-
-
-class Layers(unittest.TestCase):
-    def test_lights_without_a_group_have_a_pass(self):
-        chosen = layers.passes(set(), ["key", "sky"])
-        self.assertEqual([one.name for one in chosen], ["Combined", "Combined_key", "Combined_sky", "Combined_rest"])
-        self.assertEqual(layers.layer_tables(chosen), [{"name": "alpha"}, {"name": "lights"}])
-        self.assertEqual([one.name for one in layers.passes(set())], ["Combined"])
-        self.assertEqual(len(layers.passes(set(), ["rest"])), 2)
+        self.assertEqual(surface_shader.tinted_inside(keys, 1.0, notes.Notes(), "glass"), keys)
 
 
 class Cameras(unittest.TestCase):

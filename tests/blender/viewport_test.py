@@ -13,7 +13,12 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools" / "blender"), str(ROOT / "tests" / "support")]
 
-import numpy  # noqa: E402
+import requirements  # noqa: E402
+
+try:
+    import numpy
+except ImportError as problem:
+    requirements.import_failed(problem)
 
 from program import BINARY, InTempFolder  # noqa: E402
 from vdbeam_blender import view_camera, view_draw, viewport  # noqa: E402

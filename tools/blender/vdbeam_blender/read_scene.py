@@ -183,8 +183,8 @@ class SceneReader:
             if (triangles.materials == index).any():
                 part = mesh.name if len(shaders) == 1 else f"{mesh.name}_{index}"
                 files[index] = meshes.write(self.options.folder, part, triangles.of_material(index))
-                shaders[index] = surface_shader.tinted_inside(shaders[index], triangles.of_one(index, matrix),
-                                                              self.notes, name)
+                chord = meshes.mean_chord(triangles.of_one(index, matrix))
+                shaders[index] = surface_shader.tinted_inside(shaders[index], chord, self.notes, name)
         self.written[name] = files, {index: shaders[index] for index in files}
         return files
 

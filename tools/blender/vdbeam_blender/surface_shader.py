@@ -1,8 +1,6 @@
 """From surface shaders to the material of a [[mesh]]."""
 import math
 
-import numpy
-
 from . import nodes
 
 TEXTURES = "Base Color", "Color"
@@ -41,26 +39,13 @@ def glass(node, notes, subject):
             "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
 
 
-def mean_chord(triangles):
-    """Mean length of the rays inside a closed surface, 4 V / A (Cauchy); 0 for an open one. `triangles`: corners, of
-    (n, 3, 3)."""
-    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-    normals = numpy.cross(b - a, c - a)
-    area = numpy.linalg.norm(normals, axis=1).sum() / 2
-    if area == 0 or numpy.linalg.norm(normals.sum(axis=0)) > 1e-3 * 2 * area:
-        return 0.0
-    middle = triangles.reshape(-1, 3).mean(axis=0)
-    return 4 * abs((normals * (a - middle)).sum()) / 6 / area
-
-
-def tinted_inside(keys, triangles, notes, subject):
+def tinted_inside(keys, chord, notes, subject):
     """The material with the colour of its glass as absorption: a ray through two surfaces of the colour c has c^2,
-    which the mean chord has too."""
+    which the mean chord has too, 0 for a mesh that is not closed."""
     tint = keys.get(TINT)
     if tint is None:
         return keys
     plain = {name: value for name, value in keys.items() if name != TINT}
-    chord = mean_chord(triangles)
     if chord <= 0:
         notes.add(subject, "the colour of glass has no counterpart where its mesh is not closed; it is left out")
         return plain
