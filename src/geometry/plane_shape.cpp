@@ -20,6 +20,8 @@ class PlaneShape final : public Shape {
 public:
   std::size_t primitives() const override { return 1; }
   bool is_infinite() const override { return true; }
+  bool is_flat() const override { return true; }
+  bool holds(double, double) const override { return true; }
   /// Where the picture is shown first; the plane goes on.
   Boxd bounds(std::size_t) const override { return {{0, 0, 0}, {1, 1, 0}}; }
   std::optional<ShapeHit> intersect(std::size_t, const Vec3d& origin, const Vec3d& direction,

@@ -191,6 +191,7 @@ public:
 class FlatShape : public Shape {
 public:
   std::size_t primitives() const override { return 1; }
+  bool is_flat() const override { return true; }
   Boxd bounds(std::size_t) const override { return {{-1, -1, 0}, {1, 1, 0}}; }
   std::optional<ShapeHit> intersect(std::size_t, const Vec3d& origin, const Vec3d& direction,
                                     double t_begin, double t_end) const override {
@@ -203,9 +204,6 @@ public:
   Uv uv(std::size_t, const Vec3d& point) const override {
     return {static_cast<float>((point.x + 1) / 2), static_cast<float>((point.y + 1) / 2)};
   }
-
-private:
-  virtual bool holds(double x, double y) const = 0;
 };
 
 class QuadShape final : public FlatShape {
@@ -224,8 +222,6 @@ public:
   AreaPlace place_of(std::size_t, const Vec3d& point) const override {
     return {(point.x + 1) / 2, (point.y + 1) / 2};
   }
-
-private:
   bool holds(double x, double y) const override { return std::abs(x) <= 1 && std::abs(y) <= 1; }
 };
 
@@ -246,8 +242,6 @@ public:
   AreaPlace place_of(std::size_t, const Vec3d& point) const override {
     return {point.x * point.x + point.y * point.y, turn(point)};
   }
-
-private:
   bool holds(double x, double y) const override { return x * x + y * y <= 1; }
 };
 

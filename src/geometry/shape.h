@@ -41,6 +41,12 @@ public:
   virtual std::size_t primitives() const = 0;
   /// It has no end: its bounds are those of a part, and it needs no tree.
   virtual bool is_infinite() const { return false; }
+  /// It is one primitive, a part of the plane z = 0: the one that `holds` these points.
+  virtual bool is_flat() const { return false; }
+  virtual bool holds(double x, double y) const {
+    static_cast<void>(x), static_cast<void>(y);
+    return false;
+  }
   virtual Boxd bounds(std::size_t primitive) const = 0;
   /// The nearest point of the line origin + t direction with t_begin < t < t_end; `direction` need
   /// not have unit length.

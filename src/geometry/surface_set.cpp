@@ -14,6 +14,7 @@ struct Nearest {
   const std::vector<Placed>* surfaces;
   Vec3d point;
   double distance;
+  unsigned skipped; ///< surface that does not count
 };
 
 float radius_of(double distance) {
@@ -23,7 +24,10 @@ float radius_of(double distance) {
 /// Takes a primitive into account; true where Embree need not look as far any more.
 bool approach_primitive(RTCPointQueryFunctionArguments* args) {
   auto& nearest = *static_cast<Nearest*>(args->userPtr);
-  const Placed& entry = (*nearest.surfaces)[args->context->instID[0]];
+  const unsigned surface = args->context->instID[0];
+  if (surface == nearest.skipped)
+    return false;
+  const Placed& entry = (*nearest.surfaces)[surface];
   const double distance = entry.surface.shape->distance(args->primID, nearest.point, entry.place);
   nearest.distance = std::min(nearest.distance, distance);
   // The radius is that of the query as it was asked, not one of the shape's own space.
@@ -53,6 +57,8 @@ struct SurfaceSet::Data {
   void build_scene();
   bool meet_planes(Query& query) const;
   void run(Query& query) const;
+  double distance(const Vec3d& point, double most,
+                  unsigned skipped = RTC_INVALID_GEOMETRY_ID) const;
 };
 
 void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
@@ -208,6 +214,24 @@ void SurfaceSet::Data::run(Query& query) const {
     rtcIntersect1(scene.get(), &query.context, &ray);
 }
 
+/// From the nearest surface but one that is skipped.
+double SurfaceSet::Data::distance(const Vec3d& point, double most, unsigned skipped) const {
+  for (const unsigned i : planes)
+    if (i != skipped)
+      most = std::min(most, surfaces[i].surface.shape->distance(0, point, surfaces[i].place));
+  if (!device)
+    return most;
+  Nearest nearest{&surfaces, point, most, skipped};
+  // Embree 3.13 begins in a shape's own space with the radius as it is, in units of that space: too
+  // small where the shape is. From the first primitive on it converts the radius.
+  RTCPointQuery query{static_cast<float>(point.x), static_cast<float>(point.y),
+                      static_cast<float>(point.z), 0, radius_of(most * most_shrink)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene.get(), &query, &context, approach_primitive, &nearest);
+  return nearest.distance;
+}
+
 SurfaceSet::SurfaceSet(std::vector<PlacedShape> surfaces, double reach, const SurfaceSet* previous)
     : data_(std::make_unique<Data>()) {
   data_->place(std::move(surfaces));
@@ -260,21 +284,18 @@ bool SurfaceSet::occluded(const Vec3d& origin, const Vec3d& direction, double t_
 }
 
 double SurfaceSet::distance(const Vec3d& point, double most) const {
-  for (const unsigned i : data_->planes) {
-    const Placed& entry = data_->surfaces[i];
-    most = std::min(most, entry.surface.shape->distance(0, point, entry.place));
-  }
-  if (!data_->device)
-    return most;
-  Nearest nearest{&data_->surfaces, point, most};
-  // Embree 3.13 begins in a shape's own space with the radius as it is, in units of that space: too
-  // small where the shape is. From the first primitive on it converts the radius.
-  RTCPointQuery query{static_cast<float>(point.x), static_cast<float>(point.y),
-                      static_cast<float>(point.z), 0, radius_of(most * data_->most_shrink)};
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(data_->scene.get(), &query, &context, approach_primitive, &nearest);
-  return nearest.distance;
+  return data_->distance(point, most);
+}
+
+bool SurfaceSet::is_flat_and_alone(std::size_t surface, const Vec3d& point, double radius) const {
+  return data_->surfaces[surface].surface.shape->is_flat() &&
+         !(data_->distance(point, radius, static_cast<unsigned>(surface)) < radius);
+}
+
+bool SurfaceSet::holds(std::size_t surface, const Vec3d& point) const {
+  const Placed& entry = data_->surfaces[surface];
+  const Vec3d local = entry.place.to_shape.point(point);
+  return entry.surface.shape->holds(local.x, local.y);
 }
 
 std::size_t SurfaceSet::size() const {

@@ -79,6 +79,11 @@ public:
   /// disk is stretched it may be less than that.
   double distance(const Vec3d& point, double most) const;
 
+  /// A flat surface lies alone there: nothing else of the scene is nearer to the point than this.
+  bool is_flat_and_alone(std::size_t surface, const Vec3d& point, double radius) const;
+  /// Whether a flat surface reaches as far as a point of its plane.
+  bool holds(std::size_t surface, const Vec3d& point) const;
+
   std::size_t size() const;
   const Boxd& bounds() const; ///< of all surfaces but planes; empty where there are no others
   /// Bounds of one; of a plane, of the part that sends light to the medium and to other surfaces.

@@ -19,9 +19,6 @@ constexpr double default_neighbours = 500;
 constexpr double paths_per_hit = 4;
 constexpr double fewest_paths = 10000;
 constexpr double most_photons = 4e6;
-/// Weight of a camera ray that meets a surface alone: photons and camera rays balance, and paths
-/// from surfaces take time, too (research-log/decisions.md).
-constexpr double share_of_surface = 0.5;
 /// For lights that shadow rays do not reach there are more light paths: at most this factor, until
 /// there is one photon per camera ray that meets the medium.
 constexpr double most_for_hidden_lights = 8;
@@ -76,10 +73,8 @@ int PhotonPlan::direct_samples_of(float depth) const {
 double count_hits(const EstimatorInput& input) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;
-  // Caustics need photons where they lie; else a surface only takes the time of its paths.
   const bool caustics =
       input.plan.needs(Stage::surface_photons) && input.world.surfaces->throw_light();
-  const double of_surface = caustics ? 1 : share_of_surface;
   DepthProfile profile;
   double hits = 0;
   for (int y = 0; y < samples && !input.stopped(); ++y)
@@ -88,7 +83,7 @@ double count_hits(const EstimatorInput& input) {
           input.world, camera,
           camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
       profile.build(input.world.medium, ray.segment, 0.5f);
-      hits += !profile.empty() ? 1 : ray.hit ? of_surface : 0;
+      hits += !profile.empty() || (caustics && ray.hit) ? 1 : 0;
     }
   return hits / (samples * samples) * camera.width() * camera.height();
 }

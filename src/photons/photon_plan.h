@@ -55,8 +55,8 @@ PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// photons to store, everywhere with the same probability. Only for a render that needs photons.
 /// The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
-/// Camera rays of a pass that meet the medium, from a coarse sample; those that meet a surface
-/// alone count in part, unless photons bring caustics there.
+/// Camera rays of a pass that show photons' light, from a coarse sample: those that meet the
+/// medium, and surfaces where photons bring caustics.
 double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);

@@ -28,11 +28,15 @@ struct SurfacePhotons::Disc {
   Vec3d center, normal, above; ///< `above`: the center, lifted off the surface
   double lift = 0;
   float radius = 0;
+  std::size_t surface = 0;
+  bool alone = false;  ///< nothing but the surface, which is flat, is near
   bool hidden = false; ///< something stands in the disc
 };
 
 /// Nothing stands between the lifted centre and a point of the plane, lifted by the same height.
 bool SurfacePhotons::sees(const Disc& disc, const Vec3d& point) const {
+  if (disc.alone)
+    return true;
   const Vec3d to = point + disc.normal * disc.lift - disc.above;
   const double distance = length(to);
   return !(distance > 0) || !surfaces_.set->occluded(disc.above, to / distance, 0, distance);
@@ -40,6 +44,8 @@ bool SurfacePhotons::sees(const Disc& disc, const Vec3d& point) const {
 
 /// Photons can lie under the point.
 bool SurfacePhotons::on_surface(const Disc& disc, const Vec3d& point) const {
+  if (disc.alone)
+    return surfaces_.set->holds(disc.surface, point);
   const auto hit =
       surfaces_.set->intersect(point + disc.normal * disc.lift, -disc.normal, 0, 2 * disc.lift);
   return hit && surfaces_.material(*hit).takes_photons() &&
@@ -93,10 +99,14 @@ GroupedLight SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) co
   disc.normal = Vec3d(vertex.front() ? hit.normal : -hit.normal);
   disc.radius = radii / weights;
   disc.lift = static_cast<double>(flatness * disc.radius);
+  disc.surface = static_cast<std::size_t>(hit.surface);
+  disc.alone = surfaces_.set->is_flat_and_alone(disc.surface, disc.center,
+                                                static_cast<double>(disc.radius) + disc.lift);
   // Under a low ceiling half of its height.
-  if (const auto ceiling =
-          surfaces_.set->intersect(hit.leave(Vec3f(disc.normal)), disc.normal, 0, disc.lift))
-    disc.lift = 0.5 * ceiling->t;
+  if (!disc.alone)
+    if (const auto ceiling =
+            surfaces_.set->intersect(hit.leave(Vec3f(disc.normal)), disc.normal, 0, disc.lift))
+      disc.lift = 0.5 * ceiling->t;
   disc.above = disc.center + disc.normal * disc.lift;
   const float part = share(disc, rng);
   GroupedLight sum;
