@@ -32,7 +32,7 @@ def asset(prim, name, time):
 
 def asset_path(found):
     """The path of a value that is an asset or a text."""
-    return getattr(found, "resolvedPath", "") or getattr(found, "path", "") or str(found)
+    return found.resolvedPath or found.path if hasattr(found, "path") else str(found)
 
 
 def own_keys(prim, time):
