@@ -280,8 +280,12 @@ class Engine(unittest.TestCase):
         child = engine_of_view.preview.render.child
         text = (pathlib.Path(engine_of_view.preview.folder) / "scene.toml").read_text(encoding="utf-8")
         self.assertIn("lens_radius", text)
+        folder = pathlib.Path(engine_of_view.preview.folder)
         del engine_of_view
         child.wait(30)
+        while folder.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertFalse(folder.exists())
 
     def test_farm_job(self):
         """The job's scene gives the image of F12, frame by frame."""
