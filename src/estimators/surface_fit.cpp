@@ -202,11 +202,9 @@ void SurfaceFit::fit_wide(int x, int y) {
   }
 }
 
-/// How much a plane counts against what has the variance V and a squared difference from the plane
-/// of `difference`, which expects V and the squared bias B of the plane. The mean over n passes to
-/// come has the least error where that is (V / n) / (V / n + B).
-float SurfaceFit::best_weight(float variance, float difference) const {
-  const float of_mean = variance / static_cast<float>(2 * (pass_ + 1));
+/// The mean over n passes to come has the least error at the weight (V / n) / (V / n + B).
+float SurfaceFit::best_weight(float variance, float difference, int pass) {
+  const float of_mean = variance / static_cast<float>(2 * (pass + 1));
   const float bias = std::max(0.0f, difference - variance);
   return of_mean + bias > 0 ? of_mean / (of_mean + bias) : 0;
 }
@@ -224,8 +222,8 @@ std::array<float, 2> SurfaceFit::weights_of_planes(const Part& part, int x, int 
   });
   variance /= count;
   const float of_narrow = variance * variance_of_narrow_[index(x, y)];
-  return {&part == &parts_[smooth] ? 1 : best_weight(variance, from_narrow / count),
-          wide_ > 0 ? best_weight(of_narrow, from_wide / count) : 0};
+  return {&part == &parts_[smooth] ? 1 : best_weight(variance, from_narrow / count, pass_),
+          wide_ > 0 ? best_weight(of_narrow, from_wide / count, pass_) : 0};
 }
 
 void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const {

@@ -42,6 +42,10 @@ public:
   /// null, takes how much that blurs.
   void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr);
 
+  /// How much a plane counts, in a pass, against what has the variance V and a squared difference
+  /// from the plane of `difference`, which expects V and the squared bias B of the plane.
+  static float best_weight(float variance, float difference, int pass);
+
 private:
   struct Pixel {
     Rgb factor;     ///< albedo times transmittance
@@ -78,7 +82,6 @@ private:
   void fit_wide(int x, int y);
   void fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const;
   std::array<float, 2> weights_of_planes(const Part& part, int x, int y) const;
-  float best_weight(float variance, float difference) const;
 
   const Camera& camera_;
   int width_, height_;

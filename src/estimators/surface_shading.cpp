@@ -1,6 +1,5 @@
 #include "estimators/surface_shading.h"
 
-#include "math/mean_of_light.h"
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
 #include "rays/caught_shadow.h"
@@ -17,10 +16,6 @@ namespace {
 
 /// Random paths that go on from each camera ray that ends at a surface.
 constexpr int paths_per_ray = 4;
-/// Paths of a matt surface, whose light is fitted over pixels (SurfaceFit), and additional shadow
-/// rays towards lights with an extent. Twice or half of them change error times time by less than a
-/// fifth (research-log/surface-fit.md).
-constexpr int matt_paths = 2, more_shadow_rays = 4;
 /// Additional rays that look for lamps behind rough glass and gather nothing else, by this factor.
 constexpr int lamp_rays = 12;
 /// Interfaces beyond the first at which a path goes both ways.
@@ -69,13 +64,6 @@ MaterialSample one_of(const SpecularBranches& ways, Rng& rng) {
   return way;
 }
 
-bool samples_extended_light(const World& world, const WalkTracer& tracer) {
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    if (tracer.samples_light(i) && !world.lights[i].is_delta())
-      return true;
-  return false;
-}
-
 } // namespace
 
 /// A camera ray that goes on from surface to surface.
@@ -115,8 +103,7 @@ private:
 SurfaceShading::SurfaceShading(const EstimatorInput& input, const PhotonPass& photons,
                                const SurfaceLighting& surfaces, GatherAlong gather)
     : input_(input), world_(photons.world()), photons_(photons), gather_(std::move(gather)),
-      surfaces_(surfaces),
-      more_shadow_rays_(samples_extended_light(world_, surfaces.tracer()) ? more_shadow_rays : 0),
+      surfaces_(surfaces), matt_(world_, photons.plan(), surfaces),
       cutoff_(static_cast<float>(input.settings.cutoff)) {}
 
 SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
@@ -136,53 +123,7 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
   }
   if (vertex.material().shows_surroundings())
     return {shown_by(vertex, path_rng, counts)};
-  return matt(vertex, camera.ray().direction, path_rng);
-}
-
-/// Radiance of a surface other than mirror, glass or polished metal.
-template <class PathRng>
-SeenSurface SurfaceShading::matt(const SurfaceVertex& vertex, const Vec3f& direction,
-                                 const PathRng& path_rng) const {
-  const Rgb albedo = vertex.matt_albedo();
-  // A channel that reflects nothing does not show what light there is.
-  constexpr float least_albedo = 1e-3f;
-  const bool fitted = std::min(albedo.x, std::min(albedo.y, albedo.z)) > least_albedo;
-  const int paths = fitted ? matt_paths : paths_per_ray;
-  GroupedLight beyond, photons;
-  MeanOfLight straight;
-  for (int i = 0; i < paths; ++i) {
-    Rng rng = path_rng(i);
-    GroupedLight by_shadow_rays;
-    beyond += surfaces_.by_paths(vertex, direction, rng, &by_shadow_rays) - by_shadow_rays;
-    straight.add(by_shadow_rays);
-    if (i > 0)
-      continue;
-    photons = surfaces_.by_photons(vertex, rng); // the same for all
-    for (int ray = 0; ray < more_shadow_rays_; ++ray)
-      straight.add(surfaces_.tracer().lights_at_surface(vertex, rng, true) * vertex.absorbed());
-  }
-  beyond *= 1 / static_cast<float>(paths);
-  const GroupedLight emitted(vertex.emitted(), group_of(world_, vertex));
-  SeenSurface seen{.radiance = beyond + straight.mean() + photons + emitted,
-                   .lamp = lamp_of(vertex)};
-  if (!fitted)
-    return seen;
-  seen.albedo = albedo;
-  seen.smooth = beyond / albedo;
-  seen.straight = straight.mean() / albedo;
-  seen.straight_variance = mean_component(straight.variance() / (albedo * albedo));
-  seen.position = Vec3f(vertex.hit().position);
-  seen.normal = vertex.hit().shading_normal * (vertex.front() ? 1.0f : -1.0f);
-  seen.surface = vertex.hit().surface;
-  return seen;
-}
-
-/// Emission of the surface as a light with shadow rays into the medium.
-GroupedLight SurfaceShading::lamp_of(const SurfaceVertex& vertex) const {
-  const int light = vertex.light();
-  const bool sampled =
-      light >= 0 && photons_.plan().sampled_lights[static_cast<std::size_t>(light)];
-  return {sampled ? vertex.emitted() : Rgb(), group_of(world_, vertex)};
+  return matt_.seen(vertex, camera.ray().direction, key, stream);
 }
 
 /// Reflected and refracted light of the first surface: the mean over a few paths. Glass sends some

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/matt_shading.h"
 #include "estimators/surface_lighting.h"
 #include "photons/photon_pass.h"
 #include "rays/profile_shading.h"
@@ -32,6 +33,8 @@ public:
   SeenSurface seen(const CameraRay& camera, const RngKey& key, std::size_t stream,
                    RenderStatistics& counts) const;
 
+  const MattShading& matt() const { return matt_; }
+
 private:
   struct Chain;
 
@@ -44,10 +47,6 @@ private:
   GroupedLight lamps_behind(const SurfaceVertex& vertex, Rng& rng) const;
   GroupedLight scatter(const SurfaceVertex& vertex, Chain& chain) const;
   GroupedLight follow(Chain chain) const;
-  template <class PathRng>
-  SeenSurface matt(const SurfaceVertex& vertex, const Vec3f& direction,
-                   const PathRng& path_rng) const;
-  GroupedLight lamp_of(const SurfaceVertex& vertex) const;
   Rgb left_of_lamps(const DepthProfile& profile) const;
   GroupedLight along(const CameraRay& ray, const DepthProfile& profile, const Rgb& tr,
                      Chain& chain) const;
@@ -61,7 +60,7 @@ private:
   const PhotonPass& photons_;
   GatherAlong gather_;
   const SurfaceLighting& surfaces_;
-  int more_shadow_rays_; ///< from a matt surface
+  MattShading matt_;
   float cutoff_;
 };
 

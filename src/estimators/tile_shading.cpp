@@ -1,5 +1,6 @@
 #include "estimators/tile_shading.h"
 
+#include "estimators/matt_effort.h"
 #include "estimators/surface_fit.h"
 
 #include "machine/stopwatch.h"
@@ -166,6 +167,26 @@ std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, con
   return uneven;
 }
 
+/// The surfaces at the ends of a tile's rays, matt ones by more samples where they are noisy.
+void see_surfaces(const EstimatorInput& input, const SurfaceShading& surfaces, const RngKey& key,
+                  int pass, TileScratch& scratch) {
+  const auto for_rays = [&](const auto& work) {
+    for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
+      if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside)
+        work(ray, static_cast<std::size_t>(i));
+  };
+  scratch.seen.fill({});
+  for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
+    scratch.seen[i] = surfaces.seen(ray.camera, key, ray.stream, scratch.statistics);
+  });
+  const auto more =
+      more_samples(input.world.medium, scratch.rays, scratch.seen, input.camera.width(), pass);
+  for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
+    if (scratch.seen[i].surface >= 0)
+      surfaces.matt().add(ray.camera, more[i], key, ray.stream, scratch.seen[i]);
+  });
+}
+
 /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
 void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
                   const SurfaceShading* surfaces, SurfaceFit* fit, const RngKey& key,
@@ -252,12 +273,13 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     Stopwatch watch;
     scratch.rays.prepare(input.in(world), key, x0, y0);
     scratch.statistics.profile += watch.restart();
+    if (surfaces)
+      see_surfaces(input, *surfaces, key, pass, scratch);
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
-        SeenSurface surface;
-        if (surfaces) {
+        const SeenSurface& surface = scratch.seen[static_cast<std::size_t>(i)];
+        if (fit) {
           const Rgb tr = transmittance(world.medium, ray.profile);
-          surface = surfaces->seen(ray.camera, key, ray.stream, scratch.statistics);
           fit->set(ray.pixel, surface, tr);
           scratch.ends[static_cast<std::size_t>(i)] =
               mean_component(light_of_end(world, ray, surface, tr));

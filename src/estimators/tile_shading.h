@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimators/matt_effort.h"
 #include "estimators/surface_shading.h"
 #include "rays/estimator_input.h"
 #include "rays/tile_rays.h"
@@ -12,6 +13,7 @@ class BlurProbe;
 struct TileScratch {
   TileRays rays;
   BeamTile tile;
+  TileSurfaces seen; ///< at the ends of the rays; nothing without surfaces
   RenderStatistics statistics;
   /// Light that each ray meets at its end, mean over channels; 0 without surfaces.
   std::array<float, TileRays::count> ends{};

@@ -25,7 +25,8 @@ enum class RngStage : std::uint64_t {
   surface,
   line,
   final_gather,
-  crossed_shadows
+  crossed_shadows,
+  more_surface
 };
 
 /// Everything that identifies a stream, except the index within its stage.

@@ -10,6 +10,15 @@
 
 namespace vdbeam {
 
+/// Numbers of samples of a matt surface's light.
+struct MattSamples {
+  int paths = 0;       ///< that go on from there
+  int shadow_rays = 0; ///< sets of one to each light, the paths' own among them
+
+  /// The fewest that show how much the shadow rays vary.
+  static constexpr MattSamples fewest() { return {1, 2}; }
+};
+
 /// Light of the surface at the end of a camera ray.
 struct SeenSurface {
   GroupedLight radiance = {}; ///< that leaves it against the ray
@@ -24,10 +33,11 @@ struct SeenSurface {
   /// over them, mean of channels.
   GroupedLight straight = {};
   float straight_variance = 0;
-  Rgb albedo = {};     ///< of the surface
-  Vec3f position = {}; ///< render space
-  Vec3f normal = {};   ///< on the side that is seen
-  int surface = -1;    ///< -1: not matt
+  MattSamples samples = {}; ///< of the two
+  Rgb albedo = {};          ///< of the surface
+  Vec3f position = {};      ///< render space
+  Vec3f normal = {};        ///< on the side that is seen
+  int surface = -1;         ///< -1: not matt
 };
 
 /// Contribution of a ray to PassImage::opacity and PassImage::depth.

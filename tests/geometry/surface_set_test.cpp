@@ -237,6 +237,26 @@ TEST(SurfaceSet, distances_do_not_depend_on_the_units_of_a_file) {
   }
 }
 
+/// A sphere hangs over flat ground: it is near where the distance says so, and the ground itself is
+/// not. Triangles are never known to be flat.
+TEST(SurfaceSet, knows_where_flat_surfaces_lie_alone) {
+  const auto sphere = make_simple_shape(SurfaceShape::sphere);
+  for (const SurfaceShape kind : {SurfaceShape::quad, SurfaceShape::disk, SurfaceShape::plane}) {
+    const SurfaceSet set({{make_simple_shape(kind), placed(2, {0, 0, 0})},
+                          {sphere, placed(0.3, {0, 0, 0.5})},
+                          {make_mesh_shape(ball(4)), placed(0.1, {0.9, 0, 0})}},
+                         2);
+    EXPECT_TRUE(set.is_flat_and_alone(0, {0, 0, 0}, 0.19)) << static_cast<int>(kind);
+    EXPECT_FALSE(set.is_flat_and_alone(0, {0, 0, 0}, 0.21)) << static_cast<int>(kind);
+    EXPECT_FALSE(set.is_flat_and_alone(0, {0.95, 0, 0}, 0.2)) << static_cast<int>(kind);
+    EXPECT_FALSE(set.is_flat_and_alone(1, {0, 0, 0.8}, 1e-3));
+    EXPECT_FALSE(set.is_flat_and_alone(2, {1, 0, 0}, 1e-3));
+    EXPECT_TRUE(set.holds(0, {1.3, 1.3, 0}));
+    EXPECT_EQ(set.holds(0, {1.9, 1.9, 0}), kind != SurfaceShape::disk);
+    EXPECT_EQ(set.holds(0, {2.1, 0, 0}), kind == SurfaceShape::plane);
+  }
+}
+
 /// Against the nearest of many points on the surfaces; never more than the true distance.
 TEST(SurfaceSet, distances_are_those_of_the_nearest_point) {
   Affine stretched = placed(0.3, {0.5, 0.2, -0.4});

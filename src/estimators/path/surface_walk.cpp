@@ -150,10 +150,10 @@ GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng
     const Rgb value = vertex.evaluate(wi);
     const Vec3d origin = vertex.hit().leave(wi);
     if (max_component(value) > 0 && unoccluded(world_, origin, wi, shadow_ray->distance))
-      sum.add(
-          shadow_ray->light * value * shadow_ray->weight *
-              exact_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance}),
-          world_.lights.group(i));
+      sum.add(shadow_ray->light * value * shadow_ray->weight *
+                  estimate_transmittance(
+                      world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance}, rng.uniform()),
+              world_.lights.group(i));
   }
   return sum;
 }

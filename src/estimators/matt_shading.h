@@ -1,0 +1,35 @@
+#pragma once
+
+#include "estimators/surface_lighting.h"
+#include "photons/photon_plan.h"
+#include "rays/profile_shading.h"
+
+namespace vdbeam {
+
+/// The light of matt surfaces at the ends of camera rays: by paths that go on from there, by shadow
+/// rays, and by photons that lie on them.
+class MattShading {
+public:
+  /// What is given must outlive this.
+  MattShading(const World& world, const PhotonPlan& plan, const SurfaceLighting& surfaces);
+
+  /// From few samples; `vertex` shows neither mirror, glass nor polished metal.
+  SeenSurface seen(const SurfaceVertex& vertex, const Vec3f& direction, const RngKey& key,
+                   std::size_t stream) const;
+  /// Adds samples to what `seen` found at the end of a ray.
+  void add(const CameraRay& camera, const MattSamples& more, const RngKey& key, std::size_t stream,
+           SeenSurface& seen) const;
+
+private:
+  struct Sum;
+  void sample(const SurfaceVertex& vertex, const Vec3f& direction, const MattSamples& samples,
+              Rng& rng, Sum& sum) const;
+  GroupedLight lamp_of(const SurfaceVertex& vertex) const;
+
+  const World& world_;
+  const PhotonPlan& plan_;
+  const SurfaceLighting& surfaces_;
+  bool extended_ = false; ///< some light with shadow rays has an extent, so these have noise
+};
+
+} // namespace vdbeam
