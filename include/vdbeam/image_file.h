@@ -20,10 +20,13 @@ std::uint64_t write_deep_exr(const DeepImage& deep, const Image& attributes,
 /// InputError for anything that is not such a file, within bounded memory.
 Image read_image(const std::string& path);
 
+/// `passing`: the image will be replaced soon. It is packed less, in less time, and not synced.
+enum class ImageLife { lasting, passing };
+
 /// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` says how
 /// highlights are shown: "filmic" rolls them off, "srgb" clips them (docs/reference/output.md).
 /// Throws InputError for another view.
 void write_png(const Image& image, const std::string& path, double exposure = 0,
-               const std::string& view = "filmic");
+               const std::string& view = "filmic", ImageLife life = ImageLife::lasting);
 
 } // namespace vdbeam

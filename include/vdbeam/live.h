@@ -31,10 +31,11 @@ struct LiveEdit {
 
 /// Callbacks of a LiveSession, on threads of its own, never two at a time; all optional.
 struct LiveHooks {
-  std::function<void(const LiveImage&)> on_image;
-  std::function<void(const LiveEdit&)> on_edit;                    ///< what it takes is known
-  std::function<void(int edit, const std::string& line)> on_error; ///< the scene cannot be rendered
-  std::function<void(int edit)> on_finished;                       ///< the scene's stop rule is met
+  std::function<void(LiveImage&)> on_image;     ///< may take the image away
+  std::function<void(const LiveEdit&)> on_edit; ///< what it takes is known
+  /// The scene cannot be rendered; std::current_exception() is the error.
+  std::function<void(int edit, const std::string& line)> on_error;
+  std::function<void(int edit)> on_finished; ///< the scene's stop rule is met
 };
 
 /// Renders the latest scene that it was given, until its stop rule is met or there is a newer one.
@@ -49,9 +50,12 @@ public:
   /// Ends the render in progress.
   ~LiveSession();
 
-  /// Shows a scene instead of the last one. Returns at once. `files_changed`: files that it names
-  /// have other contents than before, so that equal keys do not make an equal scene.
-  void show(Scene scene, bool files_changed = false);
+  /// Shows a scene instead of the last one. Returns at once, with the number of the edit.
+  /// `files_changed`: files that it names have other contents than before, so that equal keys do
+  /// not make an equal scene.
+  int show(Scene scene, bool files_changed = false);
+  /// Ends the render in progress, if there is one; the next scene that is shown begins another.
+  void stop();
 
 private:
   class Impl;

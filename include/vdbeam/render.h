@@ -89,6 +89,8 @@ struct RenderHooks {
   /// Ends the render soon when it becomes true; the pass in progress is lost, the first for a quick
   /// look.
   const std::atomic<bool>* stop = nullptr;
+  /// A render that `stop` ends gives no image, and ends sooner.
+  bool discards_when_stopped = false;
   /// When it becomes true, it is set to false and on_snapshot gets the image so far.
   std::atomic<bool>* snapshot = nullptr;
   /// When on_snapshot gets the image so far without being asked.

@@ -27,17 +27,21 @@
 namespace vdbeam::cli {
 namespace {
 
-constexpr std::chrono::milliseconds watch_interval{20};
+constexpr std::chrono::milliseconds watch_interval{10};
 /// How long a scene file that cannot be read may stay so before the error is printed: editors
 /// write in steps.
 constexpr std::chrono::milliseconds patience{250};
+/// How long the render waits until the look at an edit is in its file.
+constexpr std::chrono::milliseconds longest_wait{100};
+/// And how long it waits for the last image.
+constexpr std::chrono::milliseconds longest_wait_in_the_end{5000};
 
 struct LiveOptions {
   SceneOptions scene;
   std::optional<int> frame;
   std::string preview, display, view, progress = "plain";
   double exposure = 0;
-  bool quiet = false;
+  bool quiet = false, end_with_stdin = false;
 };
 
 nlohmann::ordered_json number(double value) {
@@ -54,18 +58,22 @@ public:
       display_ = std::make_unique<Display>(options.display);
     if (!options.preview.empty())
       writer_ = std::make_unique<PreviewWriter>(
-          options.preview, WriteOptions{options.exposure, options.view},
+          options.preview,
+          WriteOptions{
+              .exposure = options.exposure, .view = options.view, .life = ImageLife::passing},
           [this](const std::string& line) { report_error(line); });
   }
   ~LiveView() { end_status(); }
 
   LiveHooks hooks() {
     LiveHooks hooks;
-    hooks.on_image = [this](const LiveImage& image) { show(image); };
+    hooks.on_image = [this](LiveImage& image) { show(image); };
     hooks.on_edit = [this](const LiveEdit& edit) { report(edit); };
     hooks.on_error = [this](int, const std::string& line) { report_error(line); };
     hooks.on_finished = [this](int edit) {
       end_status();
+      if (writer_)
+        writer_->wait(longest_wait_in_the_end); // the last image comes before this event
       send_event("finished", {{"edit", edit}});
       if (!options_.quiet)
         log("finished; waiting for edits, Ctrl+C ends");
@@ -80,14 +88,16 @@ public:
   }
 
 private:
-  void show(const LiveImage& shown) {
+  void show(LiveImage& shown) {
     if (display_)
       display_->show(name_, shown.image);
     const nlohmann::ordered_json event = image_event(shown);
     if (writer_)
-      writer_->write(shown.image, [event] { send_event("image", event); });
+      writer_->write(std::move(shown.image), [event] { send_event("image", event); });
     else
       send_event("image", event);
+    if (writer_ && shown.passes == 0 && !shown.mixed) // else passes would take its processors
+      writer_->wait(longest_wait);
     status(shown);
   }
 
@@ -166,10 +176,11 @@ private:
 /// Reads the scene again where its files change, and shows it.
 class LiveLoop {
 public:
-  LiveLoop(const LiveOptions& options, int frame, const SceneDocument& document)
-      : options_(options), frame_(frame), watch_(options.scene.path(), frame_), view_(options),
+  /// `watch` has begun before the document was read.
+  LiveLoop(const LiveOptions& options, int frame, const SceneDocument& document, SceneWatch watch)
+      : options_(options), frame_(frame), watch_(std::move(watch)), view_(options),
         session_(view_.hooks()) {
-    watch_.name_files(document);
+    watch_.name_files(document, frame_);
     session_.show(document.scene_at(frame_));
   }
 
@@ -199,7 +210,7 @@ private:
           std::filesystem::file_size(options_.scene.path(), no_size) == 0 && !no_size)
         throw InputError(options_.scene.path() + ": the file is empty"); // about to be written
       const SceneDocument document = options_.scene.open();
-      watch_.name_files(document);
+      watch_.name_files(document, frame_);
       Scene scene = document.scene_at(frame_);
       FileClaims claims;
       claims.scene(document, options_.scene.path(), {frame_});
@@ -222,6 +233,7 @@ private:
 int run_live(LiveOptions& options) {
   if (options.progress == "json")
     enable_events();
+  SceneWatch watch(options.scene.path());
   const SceneDocument document = options.scene.open();
   if (options.preview.empty() && options.display.empty())
     options.preview = std::filesystem::path(options.scene.path()).stem().string() + ".live.png";
@@ -232,7 +244,9 @@ int run_live(LiveOptions& options) {
   claims.scene(document, options.scene.path(), {frame});
   claims.output("--preview", options.preview);
   handle_signals();
-  LiveLoop(options, frame, document).run();
+  if (options.end_with_stdin)
+    end_with_stdin();
+  LiveLoop(options, frame, document, std::move(watch)).run();
   return 0;
 }
 
@@ -243,10 +257,11 @@ CommandRun add_live(CLI::App& app) {
   options->scene.declare(app);
   app.add_option("-f,--frame", options->frame, "Frame number; default: the first on disk, or 1")
       ->option_text("N");
-  app.add_option("--preview", options->preview,
-                 "Image that is replaced in one step; default: NAME.live.png of the scene, unless "
-                 "there is a --display")
-      ->option_text("FILE.png");
+  app.add_option(
+         "--preview", options->preview,
+         "Image that is replaced in one step, .png or linear .exr; default: NAME.live.png of "
+         "the scene, unless there is a --display")
+      ->option_text("FILE");
   app.add_option("--display", options->display,
                  "Show the image in the viewer tev, e.g. localhost:14158")
       ->option_text("HOST:PORT");
@@ -259,6 +274,10 @@ CommandRun add_live(CLI::App& app) {
       ->check(CLI::IsMember({"plain", "json"}))
       ->option_text("plain|json");
   app.add_flag("-q,--quiet", options->quiet, "Print errors only");
+  app.add_flag(
+      "--end-with-stdin", options->end_with_stdin,
+      "End when the standard input is closed, as when the program that started this one is "
+      "killed");
   app.footer(R"(The scene is rendered again whenever it, or a file that it names, is saved. What did
 not change is kept; strengths and colours of lights are changed at once. Ctrl+C ends.
 

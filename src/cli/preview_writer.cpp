@@ -26,14 +26,22 @@ void PreviewWriter::write(Image image, std::function<void()> written) {
   changed_.notify_all();
 }
 
+void PreviewWriter::wait(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  idle_.wait_for(lock, most, [this] { return !next_ && !writing_; });
+}
+
 void PreviewWriter::run() {
   for (;;) {
     std::unique_lock lock(mutex_);
+    writing_ = false;
+    idle_.notify_all();
     changed_.wait(lock, [this] { return closing_ || next_; });
     if (!next_)
       return;
     const Waiting image = std::move(*next_);
     next_.reset();
+    writing_ = true;
     lock.unlock();
     try {
       write_image(image.image, path_, options_);

@@ -2,6 +2,7 @@
 
 #include "image/output_formats.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -26,6 +27,8 @@ public:
 
   /// `written`, unless it is empty, is called by the thread when this image is in the file.
   void write(Image image, std::function<void()> written);
+  /// Waits until all is written, but no longer than `most`: a disk may hang.
+  void wait(std::chrono::milliseconds most);
 
 private:
   struct Waiting {
@@ -38,9 +41,9 @@ private:
   WriteOptions options_;
   std::function<void(const std::string&)> on_error_;
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable changed_, idle_;
   std::optional<Waiting> next_;
-  bool closing_ = false;
+  bool closing_ = false, writing_ = false;
   std::thread thread_; ///< the last member: it uses the others
 };
 

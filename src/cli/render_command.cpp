@@ -42,7 +42,7 @@ struct RenderOptions {
   SceneOptions scene;
   BatchOptions batch;
   std::string frames, pass_range, region, checkpoint, snapshot, display;
-  bool no_resume = false, overwrite = false;
+  bool no_resume = false, overwrite = false, end_with_stdin = false;
 };
 
 /// "cloud.toml" gives "cloud.exr"; several frames get a place for their number, and passes of a
@@ -190,6 +190,8 @@ int run_render(RenderOptions& options) {
   if (!options.display.empty())
     options.batch.frame.display = std::make_shared<Display>(options.display);
   handle_signals();
+  if (options.end_with_stdin)
+    end_with_stdin();
   return Batch(document, options.scene.path(), frames, options.batch).run();
 }
 
@@ -285,6 +287,10 @@ void declare(CLI::App& app, const std::shared_ptr<RenderOptions>& options) {
   app.add_option("--report", options->batch.frame.files.report, "Write a JSON report; - is stdout")
       ->option_text("FILE.json");
   app.add_flag("-q,--quiet", options->batch.frame.quiet, "Print errors only");
+  app.add_flag(
+      "--end-with-stdin", options->end_with_stdin,
+      "End when the standard input is closed, as when the program that started this one is "
+      "killed");
   add_batch_options(app, *options);
   group_options(app, "Output",
                 {"-o", "--preview", "--snapshot", "--display", "--exposure", "--region",

@@ -22,14 +22,14 @@ void SceneWatch::look_again() {
     before = stamp(path);
 }
 
-void SceneWatch::name_files(const SceneDocument& document) {
+void SceneWatch::name_files(const SceneDocument& document, int frame) {
   std::map<std::string, Stamp> named{{scene_path_, stamps_[scene_path_]}};
   const auto add = [&](const std::string& path) {
     const auto known = stamps_.find(path);
     named[path] = known != stamps_.end() ? known->second : stamp(path);
   };
   for (const SceneFile& file : document.files()) {
-    const std::string path = substitute_frame(file.pattern, frame_);
+    const std::string path = substitute_frame(file.pattern, frame);
     add(path);
     try {
       for (const std::string& other : files_named_by(file.input, path))

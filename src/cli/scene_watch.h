@@ -13,15 +13,13 @@ namespace vdbeam::cli {
 /// on network file systems, too, where the kernel reports nothing.
 class SceneWatch {
 public:
-  SceneWatch(const std::string& scene_path, int frame) : scene_path_(scene_path), frame_(frame) {
-    look_again();
-  }
+  explicit SceneWatch(const std::string& scene_path) : scene_path_(scene_path) { look_again(); }
 
   /// Takes the files as they are now for unchanged.
   void look_again();
   /// Watches the scene file, and the files that the document names for the frame, as they are now
   /// where they were not watched before.
-  void name_files(const SceneDocument& document);
+  void name_files(const SceneDocument& document, int frame);
 
   /// The paths of those that have changed, were removed or came; none: all are the same.
   std::vector<std::string> changed() const;
@@ -39,7 +37,6 @@ private:
   static Stamp stamp(const std::string& path);
 
   std::string scene_path_;
-  int frame_;
   std::map<std::string, Stamp> stamps_;
 };
 

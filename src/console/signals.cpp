@@ -1,8 +1,11 @@
 #include "console/signals.h"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
+#include <thread>
+#include <unistd.h>
 
 namespace vdbeam::cli {
 namespace {
@@ -54,6 +57,17 @@ void handle_signals() {
     action.sa_flags = SA_RESTART;
     sigaction(number, &action, nullptr);
   }
+}
+
+void end_with_stdin() {
+  std::thread([] {
+    char dropped[256];
+    ssize_t count = 0;
+    do
+      count = read(STDIN_FILENO, dropped, sizeof dropped);
+    while (count > 0 || (count < 0 && errno == EINTR));
+    on_signal(SIGTERM);
+  }).detach();
 }
 
 const std::atomic<bool>& stop_requested() {

@@ -9,6 +9,10 @@ namespace vdbeam::cli {
 /// ignored.
 void handle_signals();
 
+/// Lets the end of the standard input act as SIGTERM: it comes also when the program that has
+/// started this one is killed. What is read is dropped.
+void end_with_stdin();
+
 /// True after the first signal to end.
 const std::atomic<bool>& stop_requested();
 

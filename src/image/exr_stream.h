@@ -32,7 +32,8 @@ private:
 Imf::Header exr_header(const Image& image, const std::string& path);
 
 /// As the public write_exr.
-void write_exr(const Image& image, const std::string& path, Links links);
+void write_exr(const Image& image, const std::string& path, Links links,
+               Synced synced = Synced::yes);
 
 /// The other way: text, numbers and matrices of a header into the image's maps.
 void copy_attributes(const Imf::Header& header, Image& image);

@@ -275,11 +275,11 @@ void write_exr(const Image& image, const std::string& path) {
   write_exr(image, path, Links::follow);
 }
 
-void write_exr(const Image& image, const std::string& path, Links links) {
+void write_exr(const Image& image, const std::string& path, Links links, Synced synced) {
   check_image(image, path);
   AtomicFile file(path, links);
   with_exr<FrameError>(path, "cannot be written", [&] { write_channels(image, file); });
-  file.commit();
+  file.commit(synced);
 }
 
 } // namespace vdbeam

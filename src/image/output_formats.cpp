@@ -19,7 +19,8 @@ constexpr OutputFormat formats[] = {
      [](const Image& image, const std::string& path, const WriteOptions& options) {
        const auto space = image.metadata.find("vdbeam:outputSpace");
        const auto names = image.metadata.find("vdbeam:layerNames");
-       if (space == image.metadata.end() && names == image.metadata.end())
+       const bool passing = options.life == ImageLife::passing;
+       if (space == image.metadata.end() && names == image.metadata.end() && !passing)
          return write_exr(image, path, options.links);
        Image converted = image;
        converted.metadata.erase("vdbeam:outputSpace");
@@ -27,11 +28,13 @@ constexpr OutputFormat formats[] = {
          convert_to_output_space(converted, space->second);
        if (names != image.metadata.end())
          rename_layers(converted, names->second);
-       write_exr(converted, path, options.links);
+       if (passing)
+         converted.metadata["vdbeam:compression"] = "none";
+       write_exr(converted, path, options.links, passing ? Synced::no : Synced::yes);
      }},
     {".png", "8-bit sRGB preview", false,
      [](const Image& image, const std::string& path, const WriteOptions& options) {
-       write_png(image, path, options.exposure, options.view);
+       write_png(image, path, options.exposure, options.view, options.life);
      }},
 };
 

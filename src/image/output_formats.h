@@ -1,7 +1,7 @@
 #pragma once
 
 #include "machine/atomic_file.h"
-#include "vdbeam/image.h"
+#include "vdbeam/image_file.h"
 
 #include <span>
 #include <string>
@@ -14,6 +14,7 @@ struct WriteOptions {
   double exposure = 0;         ///< stops, for 8-bit formats
   std::string view = "filmic"; ///< view transform of 8-bit formats
   Links links = Links::follow; ///< of an EXR
+  ImageLife life = ImageLife::lasting;
 };
 
 /// One kind of output file.

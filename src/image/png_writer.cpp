@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <png.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,25 +49,28 @@ std::vector<unsigned char> encode_pixels(const Image& image, const std::string& 
   constexpr double brightest = 1e30; // infinity, too, has a colour
   const double scale = std::exp2(exposure);
   std::vector<unsigned char> bytes(pixels * 3);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    Vec3d radiance;
-    for (int c = 0; c < 3; ++c) {
-      const double value = static_cast<double>(channels[c]->data[i]) * scale;
-      radiance[c] = value > 0 ? std::min(value, brightest) : 0;
+  const auto width = static_cast<std::size_t>(image.width);
+  tbb::parallel_for(std::size_t{0}, pixels / width, [&](std::size_t y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::size_t i = y * width + x;
+      Vec3d radiance;
+      for (int c = 0; c < 3; ++c) {
+        const double value = static_cast<double>(channels[c]->data[i]) * scale;
+        radiance[c] = value > 0 ? std::min(value, brightest) : 0;
+      }
+      const Vec3d shown = view.apply(radiance);
+      const double noise = dither(x, y);
+      for (int c = 0; c < 3; ++c)
+        bytes[3 * i + static_cast<std::size_t>(c)] = encode_srgb(shown[c], noise);
     }
-    const Vec3d shown = view.apply(radiance);
-    const auto width = static_cast<std::size_t>(image.width);
-    const double noise = dither(i % width, i / width);
-    for (int c = 0; c < 3; ++c)
-      bytes[3 * i + static_cast<std::size_t>(c)] = encode_srgb(shown[c], noise);
-  }
+  });
   return bytes;
 }
 
 } // namespace
 
 void write_png(const Image& picture, const std::string& path, double exposure,
-               const std::string& view) {
+               const std::string& view, ImageLife life) {
   Image shown;
   if (picture.primaries && !picture.primaries->is_near({})) {
     shown = picture;
@@ -80,6 +84,9 @@ void write_png(const Image& picture, const std::string& path, double exposure,
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
+  const bool passing = life == ImageLife::passing;
+  if (passing)
+    png.flags = PNG_IMAGE_FLAG_FAST;
   // To ask for the exact size would compress the pixels twice.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<unsigned char> encoded(size);
@@ -87,7 +94,7 @@ void write_png(const Image& picture, const std::string& path, double exposure,
     throw FrameError(fmt::format("{}: cannot be written: {}", path, png.message));
   AtomicFile file(path);
   file.write(encoded.data(), size);
-  file.commit();
+  file.commit(passing ? Synced::no : Synced::yes);
 }
 
 } // namespace vdbeam

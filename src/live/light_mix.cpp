@@ -129,10 +129,21 @@ std::optional<LightMix> LightMix::between(const Scene& rendered, const Scene& ed
 }
 
 std::optional<Image> LightMix::apply(const Image& image) const {
-  Image result = image;
-  std::erase_if(result.channels, [](const ImageChannel& channel) {
-    return channel.name.size() > 1; // all but R, G, B and A
-  });
+  Image result{.width = image.width,
+               .height = image.height,
+               .x = image.x,
+               .y = image.y,
+               .full_width = image.full_width,
+               .full_height = image.full_height,
+               .primaries = image.primaries,
+               .channels = {},
+               .metadata = image.metadata,
+               .numbers = image.numbers,
+               .integers = image.integers,
+               .matrices = image.matrices};
+  for (const ImageChannel& channel : image.channels)
+    if (channel.name.size() == 1) // R, G, B and A: the groups need not be copied
+      result.channels.push_back(channel);
   for (ImageChannel& channel : result.channels) {
     const std::size_t c = std::string("RGB").find(channel.name);
     for (const Factor& factor : factors_) {

@@ -36,28 +36,38 @@ public:
     thread_.join();
   }
 
-  void show(Scene scene, bool files_changed) {
+  int show(Scene scene, bool files_changed) {
     std::unique_lock lock(mutex_);
     LiveEdit edit;
     if (edits_ > 0)
       edit.changed = changed_keys(shown_, scene);
-    if (edits_ > 0 && edit.changed.empty() && !files_changed)
-      return; // a file that was saved as it was
-    edit.edit = ++edits_;
+    if (edits_ > 0 && edit.changed.empty() && !files_changed && !failed_)
+      return edits_; // a file that was saved as it was
+    const int number = edit.edit = ++edits_;
     given_ = Clock::now();
     shown_ = std::move(scene);
     if (edits_ > 1 && !files_changed && !next_ && !failed_)
       if (auto mix = LightMix::between(grouped_, shown_, changed_keys(base_, shown_))) {
         mix_ = std::move(*mix);
         edit.mixed = true;
+        const bool finished = finished_;
         call(lock, hooks_.on_edit, edit);
         show_last(lock);
-        return;
+        if (finished)
+          call(lock, hooks_.on_finished, number);
+        return number;
       }
     next_ = std::move(edit);
     stop_ = true;
     lock.unlock();
     changed_.notify_all();
+    return number;
+  }
+
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    next_.reset();
+    stop_ = failed_ = true;
   }
 
 private:
@@ -80,16 +90,17 @@ private:
       grouped_ = LightMix::with_groups(base_);
       mix_ = {};
       last_ = {};
-      stop_ = failed_ = false;
+      stop_ = failed_ = finished_ = false;
       const Scene scene = grouped_;
       lock.unlock();
       try {
         render(scene, std::move(edit));
       } catch (const Error& error) {
         lock.lock();
-        failed_ = !stop_;
-        if (failed_)
-          call(lock, hooks_.on_error, edits_, std::string(error.what()));
+        if (!stop_) {
+          failed_ = true;
+          call(lock, hooks_.on_error, int{edits_}, std::string(error.what()));
+        }
       }
     }
   }
@@ -106,10 +117,11 @@ private:
       call(lock, hooks_.on_edit, edit);
     }
     record_.reset();
-    if (std::optional<Image> look = take_small_look(scene, prepared_, stop_))
+    if (std::optional<Image> look = looks_.take(scene, prepared_, stop_))
       take(std::move(*look), 0);
     RenderHooks hooks;
     hooks.stop = &stop_;
+    hooks.discards_when_stopped = true;
     hooks.refines_quick_look = true;
     hooks.snapshot_interval.seconds = seconds_between_images;
     hooks.on_pass = [this](const PassRecord& record, const RenderStatistics&) { record_ = record; };
@@ -122,7 +134,9 @@ private:
       return;
     take(std::move(result.image), record_ ? record_->pass : 0);
     std::unique_lock lock(mutex_);
-    call(lock, hooks_.on_finished, edits_);
+    finished_ = !stop_;
+    if (finished_)
+      call(lock, hooks_.on_finished, int{edits_});
   }
 
   void take(Image image, int passes) {
@@ -152,13 +166,13 @@ private:
   /// Calls back without the lock of the state, so that a callback may show another scene, and one
   /// at a time.
   template <class Function, class... Args>
-  void call(std::unique_lock<std::mutex>& lock, const Function& function, const Args&... args) {
+  void call(std::unique_lock<std::mutex>& lock, const Function& function, Args&&... args) {
     if (!function)
       return;
     lock.unlock();
     {
       const std::lock_guard one_at_a_time(calls_);
-      function(args...);
+      function(std::forward<Args>(args)...);
     }
     lock.lock();
   }
@@ -174,10 +188,13 @@ private:
   std::optional<LiveEdit> next_;
   int edits_ = 0;
   Clock::time_point given_;
-  bool closing_ = false, failed_ = false;
+  bool closing_ = false;
+  bool failed_ = false;   ///< or stopped: the next edit cannot be mixed
+  bool finished_ = false; ///< the stop rule of `base_` is met
   std::atomic<bool> stop_ = false;
   // What only the thread uses:
   PreparedScenePtr prepared_;
+  SmallLooks looks_;
   std::optional<PassRecord> record_;
   std::thread thread_; ///< the last member: it uses the others
 };
@@ -185,8 +202,12 @@ private:
 LiveSession::LiveSession(LiveHooks hooks) : impl_(std::make_unique<Impl>(std::move(hooks))) {}
 LiveSession::~LiveSession() = default;
 
-void LiveSession::show(Scene scene, bool files_changed) {
-  impl_->show(std::move(scene), files_changed);
+int LiveSession::show(Scene scene, bool files_changed) {
+  return impl_->show(std::move(scene), files_changed);
+}
+
+void LiveSession::stop() {
+  impl_->stop();
 }
 
 } // namespace vdbeam

@@ -7,10 +7,17 @@
 
 namespace vdbeam {
 
-/// A path traced image of a scene in few pixels, enlarged to the size of the scene's own: what can
-/// be seen of an edit soonest. It has the layers of the scene's groups of lights. Nothing for
-/// images that are small anyway, and where `stop` becomes true.
-std::optional<Image> take_small_look(const Scene& scene, const PreparedScenePtr& prepared,
-                                     const std::atomic<bool>& stop);
+/// Path traced images of scenes in few pixels, enlarged to the size of the scenes' own: what can be
+/// seen of an edit soonest. They have the layers of a scene's groups of lights. Each look has the
+/// pixels for which there was time in the one before.
+class SmallLooks {
+public:
+  /// Nothing for images that are small anyway, and where `stop` becomes true.
+  std::optional<Image> take(const Scene& scene, const PreparedScenePtr& prepared,
+                            const std::atomic<bool>& stop);
+
+private:
+  double pixels_ = 3000; ///< for which there is time
+};
 
 } // namespace vdbeam

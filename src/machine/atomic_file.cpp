@@ -120,10 +120,10 @@ void AtomicFile::seek(std::uint64_t position) {
     fail(errno);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Synced synced) {
   if (error_ != 0)
     fail(error_);
-  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0)
+  if (std::fflush(file_) != 0 || (synced == Synced::yes && fsync(fileno(file_)) != 0))
     fail(errno);
   std::FILE* file = file_;
   file_ = nullptr;
@@ -136,7 +136,8 @@ void AtomicFile::commit() {
   close(lock);
   if (!done)
     fail(error);
-  sync_folder(target_);
+  if (synced == Synced::yes)
+    sync_folder(target_);
 }
 
 } // namespace vdbeam

@@ -10,6 +10,10 @@ namespace vdbeam {
 /// to is replaced, or the file takes its place.
 enum class Links { follow, replace };
 
+/// Whether a file survives a power failure. `no`: it will be replaced soon, and nobody waits for
+/// the disk.
+enum class Synced { yes, no };
+
 /// A file that appears under its name only when it is complete. Writes go to a temporary name in
 /// the same folder; commit() syncs it to the disk and renames it; without commit() it is removed.
 /// Temporary files of killed processes are removed when a file is created in their folder.
@@ -31,7 +35,7 @@ public:
   void seek(std::uint64_t position);
   /// Makes the file visible. Throws FrameError, also for a write that failed earlier and whose
   /// exception somebody in between swallowed.
-  void commit();
+  void commit(Synced synced = Synced::yes);
 
 private:
   [[noreturn]] void fail(int error);

@@ -20,6 +20,7 @@ using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>
 void bind_scenes(py::module_& module);
 void bind_images(py::module_& module);
 void bind_render(py::module_& module);
+void bind_live(py::module_& module);
 
 /// The planes of an image, by name, as arrays of height by width values that share its memory and
 /// keep `owner` alive.

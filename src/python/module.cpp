@@ -35,4 +35,5 @@ PYBIND11_MODULE(_core, module) {
   bind_scenes(module);
   bind_images(module);
   bind_render(module);
+  bind_live(module);
 }

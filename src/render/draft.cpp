@@ -279,7 +279,7 @@ PassImage Draft::enlarged(const EstimatorInput& full, const PixelRegion& part) c
   const RasterMap map(picture_, scene_.image);
   tbb::parallel_for(part.y0, part.y1, [&](int y) {
     DepthProfile profile;
-    for (int x = part.x0; x < part.x1; ++x) {
+    for (int x = part.x0; x < part.x1 && !(full.stop && full.stop->requested()); ++x) {
       const std::size_t pixel =
           static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(image.width) +
           static_cast<std::size_t>(x - part.x0);

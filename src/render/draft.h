@@ -39,7 +39,7 @@ public:
   /// Makes the mean of the passes ready to be enlarged; requires a pass.
   void look_through();
   /// The mean in a part of the window of `full`, the same scene's input, as an image of that part's
-  /// size. Several threads may ask.
+  /// size. Several threads may ask. Pixels are left out after a request of `full` to stop.
   PassImage enlarged(const EstimatorInput& full, const PixelRegion& part) const;
 
 private:

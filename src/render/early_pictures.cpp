@@ -65,7 +65,8 @@ void PassLoop::show(const std::function<void()>& take) {
   const RenderStatistics before = result_.statistics;
   result_.quick_look = true;
   take();
-  attempt([&] { hooks_.on_quick_look(result_); });
+  if (!stop_.requested()) // else it may be cut off, and nobody waits for it
+    attempt([&] { hooks_.on_quick_look(result_); });
   result_.statistics = before;
   result_.quick_look = false;
   result_.image = {};
@@ -167,7 +168,9 @@ void PassLoop::take_enlarged(const EstimatorInput& full) {
 
 /// Makes the draft the frame's picture.
 void PassLoop::take_draft(const EstimatorInput& full) {
-  take_enlarged(full);
+  EstimatorInput whole = full;
+  whole.stop = nullptr; // the frame has ended, and this is what is left of it
+  take_enlarged(whole);
   result_.draft = draft_->reduction();
   result_.quick_look = result_.stopped_by == "stop";
   note(fmt::format("there was no time for a pass: the image is a draft, {} at 1/{} of the "

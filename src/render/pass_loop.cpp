@@ -134,6 +134,8 @@ void PassLoop::run(Shutter& shutter, const EstimatorInput& quick_look) {
   since_attempt_.restart();
   while (!finished())
     render_pass(shutter);
+  if (hooks_.discards_when_stopped && result_.stopped_by == "stop")
+    return;
   begin_step(RenderStep::develop);
   if (result_.stopped_by == "stop")
     write_checkpoint();

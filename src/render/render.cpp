@@ -208,7 +208,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   } catch (const Stopped&) { // the loop finds out why
   }
   loop.run(shutter, path_input);
-  if (result.quick_look || result.draft > 0 || frame.pass_range)
+  if (result.quick_look || result.draft > 0 || frame.pass_range || result.image.channels.empty())
     return result;
   result.picture = picture_facts(result.image, sight);
   if (!scene.lights.empty() || scene.glows()) // the scene's own note says that there is no light

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 FILE = os.path.abspath(__file__)
@@ -20,7 +21,7 @@ if blender_runner.inside_blender():
     import bpy
     import numpy
     import scenes
-    from vdbeam_blender import engine, exr
+    from vdbeam_blender import engine, exr, view_engine
 
 DATA = pathlib.Path(FILE).resolve().parents[2] / "data"
 SMOKE = DATA / "smoke" / "smoke.0024.vdb"
@@ -100,6 +101,12 @@ class Engine(unittest.TestCase):
         self.assertGreater(planes["Combined_key.R"].max(), 0.01)
         total = planes["Combined_key.R"] + planes["Combined_sky.R"]
         self.assertLess(numpy.abs(total - planes["Combined.R"]).max(), 2e-3)
+        self.assertEqual(planes["Combined_rest.R"].max(), 0)
+        scene.world.lightgroup = ""
+        planes = self.render(scene)
+        rest = planes["Combined_rest.R"] + planes["Combined_key.R"]
+        self.assertGreater(planes["Combined_rest.R"].max(), 0.1)
+        self.assertLess(numpy.abs(rest - planes["Combined.R"]).max(), 2e-3)
         while layer.lightgroups:
             layer.lightgroups.remove(layer.lightgroups[0]) if hasattr(layer.lightgroups, "remove") else \
                 bpy.ops.scene.view_layer_remove_lightgroup()
@@ -192,6 +199,45 @@ class Engine(unittest.TestCase):
         self.assertEqual(part.shape, (18, 32, 3))
         self.assertLess(numpy.abs(part - whole[:18, 16:48]).max(), 1e-6)
 
+    def test_a_lamp_with_a_radius_is_as_bright(self):
+        """And has soft shadows: a plane beneath a smaller one, whose edge is as sharp as pixels, or not."""
+        means, steps = [], []
+        for radius in (0.0, 0.4):
+            scene = scenes.empty_scene()
+            scenes.add_camera(scene, (0, 0, 6), (0, 0, 0), lens=40)
+            scenes.add_plane(scene, 4)
+            scenes.add_plane(scene, 0.3, location=(0, 0, 1))
+            lamp = scenes.add_lamp(scene, "POINT", 300, location=(1.5, 0, 4))
+            lamp.data.shadow_soft_size = radius
+            scene.vdbeam.estimator, scene.vdbeam.passes = "path", 32
+            image = scenes.combined(self.render(scene))[..., 1]
+            means.append(image[:10].mean())
+            steps.append(numpy.abs(numpy.diff(image[45, :64])).max())  # left of the smaller plane
+        scene.vdbeam.estimator = "auto"
+        self.assertLess(abs(means[1] / means[0] - 1), 0.02)
+        self.assertLess(steps[1], 0.7 * steps[0])
+
+    def test_a_mesh_that_changes_its_shape_is_reported(self):
+        scene = self.smoke()
+        plane = scenes.add_plane(scene, 1)
+        plane.shape_key_add(name="basis")
+        key = plane.shape_key_add(name="up")
+        for point in key.data:
+            point.co.z += 1
+        for frame, value in ((0, 0.0), (2, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        scene.frame_set(1)
+        lines = []
+        write = engine.VdbeamRenderEngine.write_scene
+        self.replace(engine.VdbeamRenderEngine, "write_scene",
+                     lambda *words: (lines.extend(write(*words)), list(lines))[1])
+        self.render(scene)
+        self.assertFalse([line for line in lines if "its shape changes" in line])
+        scene.render.use_motion_blur = True
+        self.render(scene)
+        self.assertTrue([line for line in lines if "its shape changes" in line])
+
     def test_holdout_and_shadow_catcher(self):
         scene = scenes.empty_scene()
         scenes.add_camera(scene, (0, -5, 5), (0, 0, 0), lens=28)
@@ -204,6 +250,42 @@ class Engine(unittest.TestCase):
         self.assertGreater(alpha.max(), 0.9)  # the shadow
         self.assertLess(alpha.min(), 0.01)  # beside it, and the holdout
         self.assertLess((alpha > 0.5).mean(), 0.2)
+
+    def test_viewport(self):
+        """What Blender calls for a viewport, with stubs of what a Blender without windows lacks."""
+        scene = self.smoke()
+        scene.camera.data.dof.use_dof = True
+        engine_of_view, drawn, lines = view_engine.Viewport(), [], []
+        engine_of_view.update_stats = lambda _name, line: lines.append(line)
+        engine_of_view.tag_redraw = lambda: None
+        self.replace(view_engine.view_draw.Drawing, "draw",
+                     lambda _own, _engine, _scene, pixels, width, height: drawn.append((pixels, width, height)))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        camera = scene.camera.evaluated_get(depsgraph)
+        window = camera.calc_matrix_camera(depsgraph, x=48, y=32)
+        context = types.SimpleNamespace(
+            region=types.SimpleNamespace(width=48, height=32),
+            region_data=types.SimpleNamespace(view_perspective="CAMERA", window_matrix=window,
+                                              view_matrix=camera.matrix_world.inverted()))
+        engine_of_view.view_update(context, depsgraph)
+        end = time.monotonic() + 120
+        while (not lines or lines[-1] != "Done") and time.monotonic() < end:
+            engine_of_view.view_draw(context, depsgraph)
+            time.sleep(0.05)
+        self.assertEqual(lines[-1], "Done")
+        pixels, width, height = drawn[-1]
+        self.assertEqual((pixels.shape, width, height), ((32, 48, 4), 48, 32))
+        self.assertTrue(numpy.allclose(pixels[-1, 0], [0.5, 0.5, 0.5, 1], atol=2e-3))  # the world
+        self.assertGreater(numpy.abs(pixels - 0.5)[..., :3].max(), 0.1)
+        child = engine_of_view.preview.render.child
+        text = (pathlib.Path(engine_of_view.preview.folder) / "scene.toml").read_text(encoding="utf-8")
+        self.assertIn("lens_radius", text)
+        folder = pathlib.Path(engine_of_view.preview.folder)
+        del engine_of_view
+        child.wait(30)
+        while folder.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertFalse(folder.exists())
 
     def test_farm_job(self):
         """The job's scene gives the image of F12, frame by frame."""

@@ -4,6 +4,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import types
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -17,7 +18,42 @@ except ImportError as problem:
     requirements.import_failed(problem)
 
 from program import BINARY, DATA, InTempFolder  # noqa: E402
-from vdbeam_blender import exr, layers, meshes  # noqa: E402
+from vdbeam_blender import exr, layers, meshes, objects  # noqa: E402
+
+
+class Chords(unittest.TestCase):
+    @staticmethod
+    def cube(edge):
+        """The twelve triangles of a cube, with their fronts outside."""
+        faces = []
+        for axis in range(3):
+            u, v = numpy.eye(3)[(axis + 1) % 3], numpy.eye(3)[(axis + 2) % 3]
+            for side in (0.0, 1.0):
+                corner = side * numpy.eye(3)[axis]
+                quad = [corner, corner + u, corner + u + v, corner + v]
+                quad = quad if side else quad[::-1]
+                faces += [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]
+        return edge * numpy.array(faces) + 7.0
+
+    def test_mean_chord(self):
+        """4 V / A: two thirds of the edge of a cube."""
+        self.assertAlmostEqual(meshes.mean_chord(self.cube(3.0)), 2.0)
+        self.assertEqual(meshes.mean_chord(self.cube(3.0)[:-1]), 0)
+
+
+class Facts(unittest.TestCase):
+    def test_shadow_settings_of_blender(self):
+        cycles = types.SimpleNamespace
+        self.assertFalse(objects.casts_shadow(cycles(cycles=cycles(cast_shadow=False), use_shadow=True)))
+        self.assertFalse(objects.casts_shadow(cycles(use_shadow=False)))
+        self.assertTrue(objects.casts_shadow(cycles()))
+
+    def test_lights_without_a_group_have_a_pass(self):
+        chosen = layers.passes(set(), ["key", "sky"])
+        self.assertEqual([one.name for one in chosen], ["Combined", "Combined_key", "Combined_sky", "Combined_rest"])
+        self.assertEqual(layers.layer_tables(chosen), [{"name": "alpha"}, {"name": "lights"}])
+        self.assertEqual([one.name for one in layers.passes(set())], ["Combined"])
+        self.assertEqual(len(layers.passes(set(), ["rest"])), 2)
 
 
 class Files(InTempFolder):
@@ -67,9 +103,9 @@ class Passes(unittest.TestCase):
     def test_names_and_signs(self):
         chosen = layers.passes({"depth", "vector", "volume"}, ["key"])
         self.assertEqual([one.name for one in chosen],
-                         ["Combined", "Depth", "Vector", "VolumeDir", "VolumeInd", "Combined_key"])
+                         ["Combined", "Depth", "Vector", "VolumeDir", "VolumeInd", "Combined_key", "Combined_rest"])
         self.assertEqual([table["name"] for table in layers.layer_tables(chosen)],
-                         ["alpha", "depth", "motion", "volume_direct", "volume_indirect", "light_key"])
+                         ["alpha", "depth", "motion", "volume_direct", "volume_indirect", "lights"])
         planes = {"R": numpy.full((1, 2), 3, numpy.float32), "motion.X": numpy.ones((1, 2), numpy.float32)}
         found = layers.planes_for_blender(planes, chosen, "Layer")
         self.assertEqual(found["Layer.Combined.R"].tolist(), [[3, 3]])

@@ -215,6 +215,38 @@ class Lamps(unittest.TestCase):
         self.assertEqual(quad["transform"], [1, 0, 0, 1, 0, -0.25, 0, 2, 0, 0, -1, 3])
 
 
+    def test_radius_is_a_sphere_of_the_same_intensity(self):
+        found = notes.Notes()
+        table, ball = lamps.lamp_keys(self.lamp(type="POINT", radius=0.5), found)
+        self.assertEqual((table, ball["type"], ball["translate"], ball["scale"]), ("mesh", "sphere", [1, 2, 3], [0.5] * 3))
+        self.assertAlmostEqual(ball["material"]["radiance"][0] * math.pi * 0.25, 40 / (4 * math.pi))
+        self.assertIn("emissive sphere", found.lines[0])
+
+    def test_what_has_no_counterpart_is_reported(self):
+        found = notes.Notes()
+        lamps.lamp_keys(self.lamp(type="SPOT", radius=0.5, spot_size=1.0, spot_blend=0.0, casts_shadow=False), found)
+        self.assertIn("without shadows", found.lines[0])
+        self.assertIn("radius of a spot lamp", found.lines[1])
+
+
+class Glass(unittest.TestCase):
+    def test_colour_becomes_absorption(self):
+        found = notes.Notes()
+        glass = node("BSDF_GLASS", {"Color": (1.0, 0.5, 0.25, 1.0), "IOR": 1.45, "Roughness": 0.0})
+        keys = surface_shader.surface_keys(glass, found, "glass", None)
+        inside = surface_shader.tinted_inside(keys, 2.0, found, "glass")
+        for value, colour in zip(inside["absorption"], (1.0, 0.5, 0.25)):
+            self.assertAlmostEqual(math.exp(-2.0 * value), colour * colour)
+        self.assertEqual(set(inside), {"type", "ior", "roughness", "absorption"})
+        self.assertNotIn("absorption", surface_shader.tinted_inside(keys, 0.0, found, "glass"))
+        self.assertIn("not closed", found.lines[-1])
+
+    def test_clear_glass_is_clear(self):
+        glass = node("BSDF_GLASS", {"Color": (1.0, 1.0, 1.0, 1.0), "IOR": 1.45, "Roughness": 0.0})
+        keys = surface_shader.surface_keys(glass, notes.Notes(), "glass", None)
+        self.assertEqual(surface_shader.tinted_inside(keys, 1.0, notes.Notes(), "glass"), keys)
+
+
 class Cameras(unittest.TestCase):
     @staticmethod
     def facts(**more):

@@ -169,6 +169,25 @@ class LiveTest(InTempFolder):
         live.wait("image", edit=2)
         self.assertEqual(live.end()[0], 0)
 
+    def test_ends_with_its_input(self):
+        """So it ends when whoever started it is killed, and so does a render."""
+        self.save(scene().replace("passes = 4", "passes = 1000000"))
+        for command, code in ((["live", "fog.toml"], 0), (["render", "fog.toml", "--threads", "1"], 128 + 15)):
+            process = subprocess.Popen([VDBEAM, *command, "-q", "--end-with-stdin"], stdin=subprocess.PIPE,
+                                       stderr=subprocess.PIPE)
+            process.stdin.write(b"dropped")
+            process.stdin.flush()
+            with self.assertRaises(subprocess.TimeoutExpired):
+                process.wait(1)
+            process.communicate(timeout=PATIENCE)  # closes it
+            self.assertEqual(process.returncode, code)
+
+    def test_linear_preview_before_the_end(self):
+        live = self.start("--preview", "view.exr")
+        self.assertEqual(live.wait("image", passes=4)["path"], str(pathlib.Path("view.exr").resolve()))
+        live.wait("finished")
+        self.assertEqual(pathlib.Path("view.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+
     def test_never_replaces_an_input(self):
         for target in ("fog.vdb", "fog.toml"):
             os.symlink(target, "out.png")

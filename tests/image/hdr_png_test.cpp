@@ -184,6 +184,16 @@ TEST(Png, EncodesSrgbAndSurvivesAnyValue) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.png"});
 }
 
+TEST(Png, APassingOneHasTheSamePixels) {
+  TempFolder folder;
+  std::vector<float> ramp;
+  for (int i = 0; i < 4096; ++i)
+    ramp.push_back(static_cast<float>(i) / 2048);
+  write_png(make_grey(ramp), folder.file("a.png"));
+  write_png(make_grey(ramp), folder.file("b.png"), 0, "filmic", ImageLife::passing);
+  EXPECT_EQ(read_png(folder.file("a.png")), read_png(folder.file("b.png")));
+}
+
 TEST(Png, ExposureIsInStops) {
   TempFolder folder;
   write_png(make_grey({0.25f}), folder.file("a.png"), 1, "srgb");

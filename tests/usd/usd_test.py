@@ -63,6 +63,20 @@ class UsdScene(InTempFolder):
         self.almost([volumes[2]["transform"][k] for k in (3, 7, 11)], [0, 1.5, 5.25])
         self.assertEqual((volumes[1]["density"], volumes[1]["extinction"]), ("density", 4))
 
+    def test_hidden_instances_and_names_of_old(self):
+        """Points may be hidden; lights had no `inputs:` before USD 21, and the schema's fallbacks do not count then."""
+        if tomllib is None:
+            self.skipTest("needs Python 3.11")
+        text = (HERE / "shot.usda").read_text(encoding="utf-8")
+        text = text.replace("int[] protoIndices = [0, 0]", "int[] protoIndices = [0, 0]\n        int64[] invisibleIds = [0]")
+        text += '\ndef SphereLight "old"\n{\n    float intensity = 3\n    float radius = 2\n}\n'
+        pathlib.Path(self.file("old.usda")).write_text(text, encoding="utf-8")
+        self.convert(stage="old.usda")
+        scene = tomllib.loads(pathlib.Path(self.file("scene.toml")).read_text(encoding="utf-8"))
+        self.assertEqual([volume["name"] for volume in scene["volume"][1:]], ["/world/puffs/puff/cloud.1"])
+        old = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/old")
+        self.assertEqual((old["material"]["radiance"], old["transform"][0]), ([3] * 3, 2))
+
     def test_camera(self):
         camera = self.scene()["camera"]
         self.assertEqual((camera["focal_length"], camera["film_width"], camera["focus_distance"]), (50, 36, 7))

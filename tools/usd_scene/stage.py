@@ -137,11 +137,15 @@ class StageReader:
     def add_instances(self, prim, matrix, time, tables, suffix):
         """Volumes and meshes of a point instancer's prototypes, one for each point."""
         instancer = UsdGeom.PointInstancer(prim)
-        placed = instancer.ComputeInstanceTransformsAtTime(time, time)
+        placed = instancer.ComputeInstanceTransformsAtTime(time, time, UsdGeom.PointInstancer.IncludeProtoXform,
+                                                           UsdGeom.PointInstancer.IgnoreMask)
+        shown = instancer.ComputeMaskAtTime(time)  # empty: all of them
         indices = instancer.GetProtoIndicesAttr().Get(time) or []
         prototypes = [self.stage.GetPrimAtPath(path) for path in instancer.GetPrototypesRel().GetForwardedTargets()]
         cache = UsdGeom.XformCache(time)
         for place, (index, instance) in enumerate(zip(indices, placed)):
+            if shown and not shown[place]:
+                continue
             root = prototypes[index]
             above = values.product(matrix, values.rows(instance))
             for part in self.prims(root):

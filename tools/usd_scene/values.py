@@ -2,13 +2,15 @@
 
 
 def value(prim, name, time, default=None):
-    """An attribute's value at a time: of `inputs:NAME` or `NAME`, whichever has one (lights changed theirs)."""
-    for full in (f"inputs:{name}", name):
-        attribute = prim.GetAttribute(full)
-        if attribute and attribute.IsValid():
-            found = attribute.Get(time)
-            if found is not None:
-                return found
+    """An attribute's value at a time: of `inputs:NAME` or `NAME`, whichever is authored (lights changed theirs), else
+    the fallback of its schema."""
+    attributes = [prim.GetAttribute(full) for full in (f"inputs:{name}", name)]
+    for authored in (True, False):
+        for attribute in attributes:
+            if attribute and attribute.IsValid() and attribute.HasAuthoredValue() == authored:
+                found = attribute.Get(time)
+                if found is not None:
+                    return found
     return default
 
 
@@ -25,9 +27,12 @@ def colour(prim, name, time, default=(1.0, 1.0, 1.0)):
 def asset(prim, name, time):
     """The path of an asset, resolved where it can be; empty without one."""
     found = value(prim, name, time)
-    if found is None:
-        return ""
-    return getattr(found, "resolvedPath", "") or getattr(found, "path", "") or str(found)
+    return "" if found is None else asset_path(found)
+
+
+def asset_path(found):
+    """The path of a value that is an asset or a text."""
+    return found.resolvedPath or found.path if hasattr(found, "path") else str(found)
 
 
 def own_keys(prim, time):
@@ -52,7 +57,7 @@ def plain(found):
     try:
         return [float(part) for part in found]
     except TypeError:
-        return str(found)
+        return asset_path(found)
 
 
 def rows(matrix):

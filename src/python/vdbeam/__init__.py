@@ -12,11 +12,12 @@ that a scene file, an option or a volume can have wrong raises `InputError` or `
 line that the program prints.
 """
 
-from ._core import Error, FrameError, InputError, PassRecord
+from ._core import Error, FrameError, InputError, LiveEdit, PassRecord
 from ._core import version as __version__
 from ._density import Density
+from ._live import LiveImage, LiveSession
 from ._render import Frame, Session, compare, read_image, render
 from ._scene import Scene
 
-__all__ = ["Density", "Error", "Frame", "FrameError", "InputError", "PassRecord", "Scene", "Session", "compare",
-           "read_image", "render", "__version__"]
+__all__ = ["Density", "Error", "Frame", "FrameError", "InputError", "LiveEdit", "LiveImage", "LiveSession",
+           "PassRecord", "Scene", "Session", "compare", "read_image", "render", "__version__"]

@@ -43,6 +43,34 @@ class Frame:
     notes: list[str]
     report: str
 
+class LiveImage:
+    planes: dict[str, np.ndarray]
+    image: Image
+    edit: int
+    passes: int
+    mixed: bool
+    seconds: float
+    record: Optional[PassRecord]
+
+class LiveEdit:
+    edit: int
+    changed: list[str]
+    mixed: bool
+    grids_read: int
+    meshes_read: int
+    trees_built: int
+
+class LiveSession:
+    latest: Optional[LiveImage]
+    def __init__(self, on_image: Optional[Callable[[LiveImage], Optional[bool]]],
+                 on_edit: Optional[Callable[[LiveEdit], Optional[bool]]],
+                 on_error: Optional[Callable[[Error], Optional[bool]]],
+                 on_finished: Optional[Callable[[int], Optional[bool]]]) -> None: ...
+    def show(self, scene: Scene, files_changed: bool) -> None: ...
+    def stop(self) -> None: ...
+    def wait(self, seconds: float) -> Optional[LiveImage]: ...
+    def close(self) -> None: ...
+
 def load_scene(path: str, frame: int, overrides: Sequence[str]) -> Scene: ...
 def parse_scene(text: str, path: str, frame: int, overrides: Sequence[str]) -> Scene: ...
 def write_density(values: Any, path: str, voxel_size: float, origin: Sequence[float], grid: str) -> None: ...

@@ -1,6 +1,6 @@
 """vdbeam for Blender: a render engine for clouds, smoke and fire. docs/how-to/blender.md describes its use.
 
-Modules without bpy (all but engine, farm, panels, settings and this one) can be imported by any Python with NumPy.
+Modules without bpy (all but engine, view_engine, farm, panels, settings and this one) can be imported by any Python with NumPy.
 """
 
 bl_info = {

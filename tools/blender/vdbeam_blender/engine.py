@@ -4,7 +4,7 @@ import tempfile
 
 import bpy
 
-from . import export, exr, layers, process, read_scene, settings
+from . import export, exr, layers, process, read_scene, settings, view_engine
 
 PACKAGE = __package__
 POLL = 0.05  # seconds
@@ -40,7 +40,7 @@ def command(program, scene, frame, border):
     return words
 
 
-class VdbeamRenderEngine(bpy.types.RenderEngine):
+class VdbeamRenderEngine(view_engine.Viewport, bpy.types.RenderEngine):
     """Renders a scene's volumes, lights and meshes by vdbeam."""
 
     bl_idname = "VDBEAM"

@@ -40,6 +40,15 @@ def sun(lamp):
             "visible": False}
 
 
+def ball(lamp):
+    """A point lamp with a radius, as an emissive sphere of the same intensity: its radiance times pi r^2."""
+    radius = lamp["radius"]
+    x, y, z = place(lamp["matrix"])
+    radiance = lamp["energy"] / (4 * math.pi**2 * radius**2)
+    return {"type": "sphere", "translate": [x, y, z], "scale": [radius] * 3, "visible": False,
+            "material": {"type": "emissive", "radiance": scaled(lamp["colour"], radiance)}}
+
+
 def point(lamp):
     """A lamp without a size."""
     return {"type": "point", "position": place(lamp["matrix"]),
@@ -74,6 +83,8 @@ def lamp_keys(lamp, notes):
     kind, group = lamp["type"], lamp.get("group", "")
     if lamp.get("nodes"):
         notes.add(lamp["name"], "the nodes of a lamp have no counterpart; its colour and strength are exported")
+    if not lamp.get("casts_shadow", True):
+        notes.add(lamp["name"], "a lamp without shadows has no counterpart; it casts them")
     if kind == "SUN":
         table, keys = "light", sun(lamp)
     elif kind == "AREA":
@@ -81,9 +92,12 @@ def lamp_keys(lamp, notes):
             notes.add(lamp["name"], "the spread of an area lamp has no counterpart; it shines in all directions")
         notes.add(lamp["name"], "it is exported as an emissive mesh, which blocks light")
         table, keys = "mesh", area(lamp)
+    elif kind == "POINT" and lamp["radius"] > 0:
+        notes.add(lamp["name"], "its radius is exported as an emissive sphere, which blocks light")
+        table, keys = "mesh", ball(lamp)
     else:
         if lamp["radius"] > 0:
-            notes.add(lamp["name"], "the radius of a lamp has no counterpart; its shadows are sharp")
+            notes.add(lamp["name"], "the radius of a spot lamp has no counterpart; its shadows are sharp")
         table, keys = "light", spot(lamp) if kind == "SPOT" else point(lamp)
     if group:
         keys["group"] = group

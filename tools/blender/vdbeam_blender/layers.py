@@ -23,6 +23,7 @@ def colour(name, layer):
     return Pass(name, "RGB", "COLOR", layer, plain(layer, "RGB"))
 
 
+REST = "rest"  # vdbeam's name for the lights without a group
 COMBINED = Pass("Combined", "RGBA", "COLOR", "alpha", [(letter, 1.0) for letter in "RGBA"])
 # By the option that asks for it; keys are those of `wanted`.
 OPTIONAL = {
@@ -40,13 +41,17 @@ OPTIONAL = {
 
 
 def passes(wanted, groups=()):
-    """The passes of a view layer: Combined, those of the options in `wanted`, one for each light group."""
+    """The passes of a view layer: Combined, those of the options in `wanted`, one for each light group and
+    one for the lights without."""
     chosen = [COMBINED]
     for option, several in OPTIONAL.items():
         if option in wanted:
             chosen += several
-    return chosen + [Pass(f"Combined_{group}", "RGB", "COLOR", f"light_{group}", plain(f"light_{group}", "RGB"))
-                     for group in groups]
+    if groups:  # and what belongs to none of them
+        names = [*groups, *([] if REST in groups else [REST])]
+        chosen = chosen + [Pass(f"Combined_{name}", "RGB", "COLOR", "" if index else "lights",
+                                plain(f"light_{name}", "RGB")) for index, name in enumerate(names)]
+    return chosen
 
 
 def layer_tables(chosen):

@@ -40,6 +40,18 @@ def write(folder, name, data):
     return file
 
 
+def mean_chord(triangles):
+    """Mean length of the rays inside a closed surface, 4 V / A (Cauchy); 0 for an open one. `triangles`: corners, of
+    (n, 3, 3)."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    normals = numpy.cross(b - a, c - a)
+    area = numpy.linalg.norm(normals, axis=1).sum() / 2
+    if area == 0 or numpy.linalg.norm(normals.sum(axis=0)) > 1e-3 * 2 * area:
+        return 0.0
+    middle = triangles.reshape(-1, 3).mean(axis=0)
+    return 4 * abs((normals * (a - middle)).sum()) / 6 / area
+
+
 def box_of(positions):
     """(lower, upper) where the points are the eight corners of a box with axes of its own, else None."""
     points = numpy.unique(numpy.round(numpy.asarray(positions, float), 6), axis=0)

@@ -87,6 +87,14 @@ def volume_motion(data, fps):
             "velocity_scale": scale if per_second else scale * fps}
 
 
+def casts_shadow(data):
+    """Whether a lamp casts shadows in Cycles, whose setting was its own before Blender 4.2."""
+    own = getattr(data, "cycles", None)
+    if own is not None and hasattr(own, "cast_shadow"):
+        return bool(own.cast_shadow)
+    return bool(getattr(data, "use_shadow", True))
+
+
 def lamp_facts(obj, matrix, data):
     """What lamps.py needs to know of a lamp."""
     return {"name": obj.name, "type": data.type, "matrix": rows(matrix), "colour": [float(c) for c in data.color],
@@ -96,7 +104,7 @@ def lamp_facts(obj, matrix, data):
             "angle": float(getattr(data, "angle", 0.0)), "spot_size": float(getattr(data, "spot_size", 0.0)),
             "spot_blend": float(getattr(data, "spot_blend", 0.0)), "shape": getattr(data, "shape", ""),
             "size": float(getattr(data, "size", 0.0)), "size_y": float(getattr(data, "size_y", 0.0)),
-            "spread": float(getattr(data, "spread", math.pi))}
+            "spread": float(getattr(data, "spread", math.pi)), "casts_shadow": casts_shadow(data)}
 
 
 def camera_facts(obj, image, notes):
@@ -131,11 +139,10 @@ class Triangles:
         mesh.loop_triangles.foreach_get("loops", self.loops)
         self.materials = numpy.empty(count, numpy.int32)
         mesh.loop_triangles.foreach_get("material_index", self.materials)
-        points = numpy.empty(3 * len(mesh.vertices), numpy.float32)
-        mesh.vertices.foreach_get("co", points)
+        points = points_of(mesh)
         of_corner = numpy.empty(corners, numpy.int32)
         mesh.loops.foreach_get("vertex_index", of_corner)
-        self.positions = points.reshape(-1, 3)[of_corner]
+        self.positions = points[of_corner]
         normals = numpy.empty(3 * corners, numpy.float32)
         if hasattr(mesh, "corner_normals"):  # from Blender 4.1 on
             mesh.corner_normals.foreach_get("vector", normals)
@@ -148,6 +155,12 @@ class Triangles:
             uvs = numpy.empty(2 * corners, numpy.float32)
             mesh.uv_layers.active.data.foreach_get("uv", uvs)
             self.uvs = uvs.reshape(-1, 2)
+
+    def of_one(self, index, matrix):
+        """The corners of the triangles with this material, placed: (n, 3, 3)."""
+        chosen = self.loops.reshape(-1, 3)[self.materials == index]
+        placed = numpy.asarray(matrix, float)
+        return self.positions[chosen].astype(float) @ placed[:3, :3].T + placed[:3, 3]
 
     def of_material(self, index):
         """The PLY of the triangles with this material."""
@@ -171,11 +184,16 @@ def material_keys(obj, material, notes, image_path):
     return keys
 
 
-def mesh_volume(obj, mesh, matrix, shader, notes):
-    """A box of a homogeneous medium, as a [[volume]]; None for anything else."""
+def points_of(mesh):
+    """The points of a mesh, of (n, 3)."""
     points = numpy.empty(3 * len(mesh.vertices), numpy.float32)
     mesh.vertices.foreach_get("co", points)
-    box = meshes.box_of(points.reshape(-1, 3)) if len(mesh.vertices) == 8 else None
+    return points.reshape(-1, 3)
+
+
+def mesh_volume(obj, mesh, matrix, shader, notes):
+    """A box of a homogeneous medium, as a [[volume]]; None for anything else."""
+    box = meshes.box_of(points_of(mesh)) if len(mesh.vertices) == 8 else None
     keys = volume_shader.volume_keys(shader, notes, obj.name)
     if keys is None:
         return None

@@ -9,6 +9,7 @@ import threading
 import time
 
 PROTOCOL = 1
+END_WITH_STDIN = "--end-with-stdin"
 PATIENCE = 10.0  # seconds from the request to end until the process is killed
 
 
@@ -36,8 +37,9 @@ class Render:
         """Starts `words`, the whole command line, in a folder. Throws ProgramMissing."""
         self.log = open(os.path.join(folder, "log.txt"), "w+b")
         try:
-            self.child = subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                          stderr=self.log)
+            # The pipe to its input ends with Blender, however Blender ends, and the program with the pipe.
+            self.child = subprocess.Popen([*words, END_WITH_STDIN], cwd=folder, stdin=subprocess.PIPE,
+                                          stdout=subprocess.PIPE, stderr=self.log)
         except OSError as problem:
             self.log.close()
             raise ProgramMissing(f"{words[0]} cannot be started: {problem.strerror}") from problem
@@ -76,6 +78,7 @@ class Render:
         """Waits for the end; returns (exit code, last line of the log)."""
         code = self.child.wait()
         self.thread.join()
+        self.child.stdin.close()
         self.child.stdout.close()
         self.log.seek(0)
         lines = [line for line in self.log.read().decode("utf-8", "replace").splitlines() if line.strip()]

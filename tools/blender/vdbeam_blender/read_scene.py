@@ -1,7 +1,9 @@
 """Reads an evaluated scene into the dictionary of a scene file."""
 import os
 
-from . import camera, layers, meshes, objects, world
+import numpy
+
+from . import camera, layers, meshes, objects, surface_shader, world
 
 
 class Options:
@@ -29,18 +31,24 @@ class SceneReader:
     def __init__(self, options, notes):
         self.options = options
         self.notes = notes
-        self.written = {}  # files of an object's materials, from the first time on
+        self.written = {}  # files and materials of an object, from the first time on
+        self.shapes = {}  # points of deforming meshes, from the first time on
         self.frame = 1.0
         self.matrices = {}  # of the camera, by time
 
     def read(self, depsgraph, frame):
         """The scene at a time, as {table: keys or list of keys}. Throws ValueError without a camera."""
         scene = depsgraph.scene
-        self.frame = frame
         if scene.camera is None:
             raise ValueError("the scene has no camera")
-        tables = {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame), "volume": [], "mesh": [],
-                  "light": []}
+        return {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame),
+                **self.contents(depsgraph, frame)}
+
+    def contents(self, depsgraph, frame):
+        """The tables without [image] and [camera]."""
+        scene = depsgraph.scene
+        self.frame = frame
+        tables = {"volume": [], "mesh": [], "light": []}
         for instance in depsgraph.object_instances:
             if instance.show_self:
                 self.add(instance, scene, tables)
@@ -131,7 +139,8 @@ class SceneReader:
         try:
             if medium is not None and (box := objects.mesh_volume(obj, mesh, matrix, medium, self.notes)):
                 tables["volume"].append({"name": name, **box})
-            files = self.mesh_files(mesh, name, shaders)
+            files = self.mesh_files(mesh, name, shaders, matrix)
+            self.note_deformation(obj, mesh, name)
         finally:
             obj.to_mesh_clear()
         for index, file in files.items():
@@ -150,10 +159,22 @@ class SceneReader:
                 self.notes.add(name, "a simulation has no counterpart; bake it as OpenVDB and import the files of "
                                      f"{modifier.domain_settings.cache_directory} as a volume object")
 
-    def mesh_files(self, mesh, name, shaders):
-        """Files of the triangles by the index of their material, written where needed."""
+    def note_deformation(self, obj, mesh, name):
+        """A mesh that modifiers or shape keys change while the shutter is open is that of the first moment."""
+        if self.options.sequence or not (len(obj.modifiers) or getattr(obj.data, "shape_keys", None)):
+            return
+        points = objects.points_of(mesh)
+        first = self.shapes.setdefault(name, points)
+        if first.shape != points.shape or not numpy.allclose(first, points, atol=1e-6):
+            self.notes.add(name, "its shape changes while the shutter is open, which has no counterpart; it keeps that "
+                                 "of the first moment")
+
+    def mesh_files(self, mesh, name, shaders, matrix):
+        """Files of the triangles by the index of their material, written where needed. Completes their materials."""
         if not self.options.sequence and name in self.written:  # a moment of the shutter
-            return self.written[name]
+            files, materials = self.written[name]
+            shaders.update(materials)
+            return files
         if len(mesh.polygons) == 0:
             return {}
         triangles = objects.Triangles(mesh)
@@ -162,7 +183,9 @@ class SceneReader:
             if (triangles.materials == index).any():
                 part = mesh.name if len(shaders) == 1 else f"{mesh.name}_{index}"
                 files[index] = meshes.write(self.options.folder, part, triangles.of_material(index))
-        self.written[name] = files
+                chord = meshes.mean_chord(triangles.of_one(index, matrix))
+                shaders[index] = surface_shader.tinted_inside(shaders[index], chord, self.notes, name)
+        self.written[name] = files, {index: shaders[index] for index in files}
         return files
 
 

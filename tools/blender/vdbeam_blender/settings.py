@@ -46,6 +46,11 @@ def render_keys(settings):
     return keys
 
 
+def viewport_keys(settings):
+    """Keys of [render] for a viewport, which renders for longer than a frame may take."""
+    return {name: value for name, value in render_keys(settings).items() if name != "time"}
+
+
 def wanted_passes(scene, view_layer):
     """Options of layers.passes that the view layer asks for, and its light groups."""
     wanted = {option for option, name in (("depth", "use_pass_z"), ("position", "use_pass_position"),

@@ -4,6 +4,7 @@ import math
 from . import nodes
 
 TEXTURES = "Base Color", "Color"
+TINT = "tint"  # no key of vdbeam's: the colour of glass until its mesh is known
 
 
 def with_texture(node, keys, notes, subject, image_path):
@@ -31,11 +32,25 @@ def emission(colour, strength):
 
 def glass(node, notes, subject):
     """A smooth or frosted dielectric."""
-    tint = nodes.constant_colour(node, notes, subject, *TEXTURES)
-    if min(tint) < 0.95:
-        notes.add(subject, "the colour of glass has no counterpart; give the mesh a volume absorption")
-    return {"type": "dielectric", "ior": nodes.constant_number(node, notes, subject, "IOR", default=1.5),
+    tint = clipped(nodes.constant_colour(node, notes, subject, *TEXTURES))
+    # The colour counts at each surface here, inside there: tinted_inside knows how far light goes.
+    keys = {TINT: tint} if min(tint) < 0.95 else {}
+    return {**keys, "type": "dielectric", "ior": nodes.constant_number(node, notes, subject, "IOR", default=1.5),
             "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
+
+
+def tinted_inside(keys, chord, notes, subject):
+    """The material with the colour of its glass as absorption: a ray through two surfaces of the colour c has c^2,
+    which the mean chord has too, 0 for a mesh that is not closed."""
+    tint = keys.get(TINT)
+    if tint is None:
+        return keys
+    plain = {name: value for name, value in keys.items() if name != TINT}
+    if chord <= 0:
+        notes.add(subject, "the colour of glass has no counterpart where its mesh is not closed; it is left out")
+        return plain
+    notes.add(subject, "the colour of glass is exported as absorption inside, which grows with the way of the light")
+    return {**plain, "absorption": [-2 * math.log(max(value, 1e-3)) / chord for value in tint]}
 
 
 def metal(node, notes, subject):

@@ -2,16 +2,25 @@
 from . import usda
 
 
+# Values of schemas, as USD gives them where nothing is authored.
+FALLBACKS = {("DistantLight", "inputs:intensity"): 50000.0, ("SphereLight", "inputs:intensity"): 1.0,
+             ("SphereLight", "inputs:radius"): 0.5}
+
+
 class Attribute:
     """An attribute: a value, or samples that hold until the next (numbers are interpolated)."""
 
-    def __init__(self, name, value=None, samples=None):
+    def __init__(self, name, value=None, samples=None, fallback=None):
         self.name, self.value, self.samples = name, value, samples
+        self.fallback = fallback  # of the schema
 
     def __bool__(self):
         return self.IsValid()
 
     def IsValid(self):
+        return self.HasAuthoredValue() or self.fallback is not None
+
+    def HasAuthoredValue(self):
         return self.value is not None or self.samples is not None
 
     def GetName(self):
@@ -21,6 +30,8 @@ class Attribute:
         return len(self.samples or {})
 
     def Get(self, time=None):
+        if not self.HasAuthoredValue():
+            return self.fallback
         if not self.samples or time is None:
             return self.value
         times = sorted(self.samples)
@@ -70,7 +81,8 @@ class Prim:
         return self.spec.kind
 
     def GetAttribute(self, name):
-        return Attribute(name, self.spec.attributes.get(name), self.spec.samples.get(name))
+        return Attribute(name, self.spec.attributes.get(name), self.spec.samples.get(name),
+                         FALLBACKS.get((self.spec.kind, name)))
 
     def GetAttributes(self):
         return [self.GetAttribute(name) for name in {**self.spec.attributes, **self.spec.samples}]

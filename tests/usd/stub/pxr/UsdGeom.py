@@ -102,10 +102,19 @@ class Imageable:
 class PointInstancer:
     """A point instancer with positions."""
 
+    IncludeProtoXform, ExcludeProtoXform = "IncludeProtoXform", "ExcludeProtoXform"
+    ApplyMask, IgnoreMask = "ApplyMask", "IgnoreMask"
+
     def __init__(self, prim):
         self.prim = prim
 
-    def ComputeInstanceTransformsAtTime(self, time, _base):
+    def ComputeMaskAtTime(self, time):
+        """By the places of points without ids; empty where nothing is hidden."""
+        hidden = self.prim.GetAttribute("invisibleIds").Get(time)
+        return [place not in hidden for place in range(len(self.GetProtoIndicesAttr().Get(time)))] if hidden else []
+
+    def ComputeInstanceTransformsAtTime(self, time, _base, _prototypes, mask):
+        assert mask == self.IgnoreMask
         roots = [self.prim.stage.GetPrimAtPath(path) for path in self.GetPrototypesRel().GetForwardedTargets()]
         indices = self.GetProtoIndicesAttr().Get(time)
         return [local(roots[index], time) * translation(place)
