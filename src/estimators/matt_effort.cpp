@@ -77,7 +77,7 @@ int samples_for(float error, float error_of_one) {
                                                  static_cast<float>(tuning::most_matt_samples))));
 }
 
-/// Samples of a pixel with this light around, `tr` of which reaches the camera.
+/// Samples of a pixel with this light around; `tr`: what of it reaches the camera.
 MattSamples wanted_samples(const Around& near, int rays_so_far, float tr, int pass) {
   const float mean = mean_component(near.light) / near.count;
   if (!(mean > 0))

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-/// Every number of the method that was fitted, none of which changes what a render converges to:
-/// each trades error against time. A comment gives its unit and what it trades;
-/// docs/developer/tuning.md, which tools/sensitivity.py writes, how error times work changes where
-/// it is halved and doubled. A new one needs a row there; one whose row shows nothing is deleted.
+/// The fitted numbers of the method. None changes what a render converges to: each trades error
+/// against time. A comment gives its unit and what it trades; docs/developer/tuning.md, whose table
+/// tools/sensitivity.py writes, shows how error times time changes where it is halved and doubled.
+/// A new number needs a row there; a number whose row shows nothing is deleted.
 namespace vdbeam::tuning {
 
 // Costs: processor time [ns] of what renders count. Only ratios matter: they decide how work is

@@ -30,7 +30,8 @@ public:
   }
   /// Surfaces with light of 1 by shadow rays, whose samples vary by this much, and with `smooth`
   /// light, by pixel.
-  template <class Smooth> TileSurfaces surfaces(float ray_variance, const Smooth& smooth) const {
+  template <class Smooth>
+  TileSurfaces surfaces(float ray_variance, const Smooth& smooth) const {
     TileSurfaces seen;
     for (int y = 0; y < width; ++y)
       for (int x = 0; x < width; ++x) {
