@@ -76,8 +76,9 @@ TEST(MattEffort, FollowsTheNoiseOfShadowRays) {
     EXPECT_EQ(more.paths, 0) << variance;
     EXPECT_GE(more.shadow_rays, before) << variance;
     before = more.shadow_rays;
-    if (variance == 0)
+    if (variance == 0) {
       EXPECT_EQ(more.shadow_rays, 0);
+    }
   }
   EXPECT_GE(before, 8);
   EXPECT_LE(before, 16);
