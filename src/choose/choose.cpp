@@ -124,8 +124,9 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
   narrow.neighbours = std::min(tuning::trial_neighbours, tuning::most_in_kernel * photons);
   wide.neighbours = tuning::wide_over_narrow * narrow.neighbours;
   RngKey key;
-  for (std::uint64_t i = 1; i <= tuning::trial_maps; ++i) {
-    PhotonPassSettings settings = pass_settings(input, plan, pilot_pass - i);
+  for (int i = 1; i <= tuning::trial_maps; ++i) {
+    PhotonPassSettings settings =
+        pass_settings(input, plan, pilot_pass - static_cast<std::uint64_t>(i));
     settings.paths = static_cast<std::uint64_t>(trial_paths);
     key = settings.key;
     const TracedPhotons traced = trace_photons(world, settings);

@@ -226,8 +226,8 @@ VDBEAM_TUNED(double, least_share_of_rays, 0.05);
 VDBEAM_TUNED(int, passes_compared_for_auto, 16);
 /// Renders of each trial pixel, more in small images, so that their noise is measured by these
 /// rays.
-VDBEAM_TUNED(int, fewest_trial_passes, 2);
-VDBEAM_TUNED(int, most_trial_passes, 16);
+VDBEAM_TUNED(std::size_t, fewest_trial_passes, 2);
+VDBEAM_TUNED(std::size_t, most_trial_passes, 16);
 VDBEAM_TUNED(std::size_t, wanted_trial_rays, 1000);
 /// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths.
 VDBEAM_TUNED(double, safe_lead, 1.25);

@@ -61,7 +61,7 @@ class Packages(unittest.TestCase):
         output("dpkg-deb", "-x", self.packages["python3-vdbeam"], root)
         package = os.path.join(root, "usr/lib/python3/dist-packages")
         self.assertEqual(sorted(name.split(".")[0] for name in os.listdir(os.path.join(package, "vdbeam"))),
-                         ["__init__", "_core", "_core", "_density", "_render", "_scene", "_toml", "py"])
+                         ["__init__", "_core", "_core", "_density", "_live", "_render", "_scene", "_toml", "py"])
         version = output("/usr/bin/python3", "-B", "-c", "import vdbeam; print(vdbeam.__version__)",
                          env={"PYTHONPATH": package})
         self.assertEqual(version.strip(), self.field("python3-vdbeam", "Version"))
