@@ -48,6 +48,7 @@ def measure_here(names, options):
     for name in names:
         result[name] = []
         for estimator, passes in (("auto", options.passes), ("path", options.path_passes)):
+            suite.prepare(known[name])
             errors, seconds = 0, math.inf
             for seed in range(1, options.seeds + 1):
                 start = time.process_time()

@@ -1,5 +1,7 @@
 """Renders the suite's scenes and compares them with references by `path`."""
 import dataclasses
+import hashlib
+import json
 import pathlib
 
 import numpy as np
@@ -46,6 +48,12 @@ def with_image(keys, width):
     return {**keys, "image": {"width": width, "height": width * 9 // 16}}
 
 
+def identity(keys):
+    """Name of a scene that is the same wherever its densities are written."""
+    text = json.dumps(keys, sort_keys=True, default=lambda density: density.identity)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
 class Suite:
     """Renders scenes at one size; references are kept in a folder, by the scenes' hashes."""
 
@@ -53,6 +61,7 @@ class Suite:
         self._vdbeam, self._width, self._passes = vdbeam, width, reference_passes
         self._folder = pathlib.Path(folder) if folder else None
         self._images = pathlib.Path(images) if images else None
+        self._kept = {}
 
     def _render(self, keys, settings, references=()):
         vdbeam = self._vdbeam
@@ -63,11 +72,11 @@ class Suite:
     def _reference(self, keys, seed):
         settings = {"render.estimator": "path", "render.passes": self._passes, "render.seed": seed}
         vdbeam = self._vdbeam
-        scene = vdbeam.Scene({k: v for k, v in with_image(keys, self._width).items() if k != "layer"}, settings)
-        path = self._folder / f"{scene.hash()}.npy" if self._folder else None
+        seen = {k: v for k, v in with_image(keys, self._width).items() if k != "layer"}
+        path = self._folder / f"{identity({**seen, **settings})}.npy" if self._folder else None
         if path and path.exists():
             return np.load(path)
-        image = vdbeam.render(scene).rgb
+        image = vdbeam.render(vdbeam.Scene(seen, settings)).rgb
         if path:
             self._folder.mkdir(parents=True, exist_ok=True)
             np.save(path, image)
@@ -76,10 +85,15 @@ class Suite:
     def _references(self, keys):
         return [self._reference(keys, 1001), self._reference(keys, 1002)]
 
+    def prepare(self, keys):
+        """Renders or reads the references of a scene, once."""
+        if identity(keys) not in self._kept:
+            self._kept[identity(keys)] = self._references(keys)
+
     def error(self, keys, estimator, passes, seed):
-        """MRSE of one render."""
+        """MRSE of one render of a scene that was prepared."""
         settings = {"render.passes": passes, "render.estimator": estimator, "render.seed": seed}
-        return self._vdbeam.compare(self._render(keys, settings), *self._references(keys))["mrse"]
+        return self._vdbeam.compare(self._render(keys, settings), *self._kept[identity(keys)])["mrse"]
 
     def measure(self, name, keys, passes, path_passes, seed=1):
         references = self._references(keys)

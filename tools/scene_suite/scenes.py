@@ -3,6 +3,7 @@
 No constant of the renderer was fitted to any of them.
 """
 import copy
+import hashlib
 
 import numpy as np
 
@@ -23,6 +24,7 @@ class Densities:
             random = np.random.default_rng(sorted(CLOUDS).index(name) + 1)
             values = CLOUDS[name](random, POINTS).astype(np.float32)
             self._made[name] = self._vdbeam.Density(values, VOXEL, [-1, -1, -1])
+            self._made[name].identity = hashlib.sha256(values.tobytes()).hexdigest()
         return self._made[name]
 
 
