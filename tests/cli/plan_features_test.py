@@ -21,7 +21,7 @@ SCENES = [
     ("sunlit_cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
     ("fire", ["-f", "14"], "beam", VIEW | {"forward peak", "shadow lattice", "boundary correction"},
      ("hidden lights", "shadow rays reach every light")),
-    ("ball_in_smoke", [], "beam", GATHER,
+    ("ball_in_smoke", [], "gather", GATHER,
      ("hidden lights", "shadow rays reach every light")),
     ("cloud_over_ground", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cornell_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, ("shadow lattice", "no light has a single direction")),
