@@ -22,7 +22,7 @@ import time
 CONSTANTS = pathlib.Path(__file__).resolve().parents[1] / "src" / "tuning" / "constants.h"
 SCENES = "cumulus,wisps,cloud_over_ground,lamp_in_smoke,droplets_over_ground,fire_over_floor"
 FACTORS = (0.5, 2.0)
-# What is written before the table, and what the table begins with.
+# The table follows this line of the page.
 MARK = "<!-- The table below is written by tools/sensitivity.py. -->"
 
 

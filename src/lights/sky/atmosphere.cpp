@@ -228,7 +228,7 @@ public:
     sun_mu = std::clamp((line_.radius * line_.sun_mu + t * line_.cosine) / radius, -1.0, 1.0);
   }
 
-  Spectrum sum{}, left; ///< light so far, and what is left of light from there
+  Spectrum sum{}, left; ///< light so far; transmittance of the air up to there
 
 private:
   const Atmosphere& air_;
