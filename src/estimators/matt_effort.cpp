@@ -16,12 +16,17 @@ constexpr int width = PassImage::tile_width;
 
 /// Sums over the pixels around one.
 struct Around {
-  float count = 0, ray_variance = 0;
-  Rgb light, straight, straight_squares, smooth, smooth_squares;
+  float count = 0, ray_variance = 0, gloss_variance = 0; ///< of one sample each
+  Rgb light, glossy;                                     ///< all light, per colour of each part
+  Rgb straight, straight_squares, smooth, smooth_squares, gloss, gloss_squares;
 
   void add(const SeenSurface& seen) {
     ++count;
     light += seen.radiance.sum() / seen.albedo;
+    glossy += seen.radiance.sum() / seen.gloss_color;
+    gloss_variance += seen.gloss_variance * static_cast<float>(seen.samples.paths);
+    gloss += seen.gloss.sum();
+    gloss_squares += seen.gloss.sum() * seen.gloss.sum();
     ray_variance += seen.straight_variance * static_cast<float>(seen.samples.shadow_rays);
     straight += seen.straight.sum();
     straight_squares += seen.straight.sum() * seen.straight.sum();
@@ -77,20 +82,33 @@ int samples_for(float error, float error_of_one) {
                                                  static_cast<float>(tuning::most_matt_samples))));
 }
 
-/// Samples of a pixel with this light around; `tr`: what of it reaches the camera.
-MattSamples wanted_samples(const Around& near, int rays_so_far, float tr, int pass) {
-  const float mean = mean_component(near.light) / near.count;
-  if (!(mean > 0))
+/// What the fit will leave of the variance of a sample, where this mean over samples varies by
+/// `spread` from pixel to pixel.
+float left_by_fit(float variance, int samples, float spread, int pass, float tolerance) {
+  const float plane =
+      SurfaceFit::best_weight(variance / static_cast<float>(samples), spread, pass, tolerance);
+  return variance * ((1 - plane) * (1 - plane) + plane * plane * tuning::left_by_plane);
+}
+
+/// Samples of a pixel with this light around that has `so_far`; `tr`: what of it reaches the
+/// camera.
+MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float tr, int pass) {
+  const float mean = mean_component(near.light) / near.count,
+              per_gloss = mean_component(near.glossy) / near.count;
+  if (!(mean > 0 && per_gloss > 0))
     return {};
   const float relative = tr * tr / (mean * mean);
-  const float variance = near.ray_variance / near.count;
-  const float plane =
-      SurfaceFit::best_weight(variance / static_cast<float>(rays_so_far),
-                              near.spread(near.straight, near.straight_squares), pass);
-  const float left = (1 - plane) * (1 - plane) + plane * plane * tuning::left_by_plane;
-  const float of_path = near.spread(near.smooth, near.smooth_squares) * tuning::left_by_plane;
-  return {samples_for(of_path * relative, tuning::error_of_matt_path),
-          samples_for(variance * left * relative, tuning::error_of_matt_ray)};
+  const float of_ray = left_by_fit(near.ray_variance / near.count, so_far.shadow_rays,
+                                   near.spread(near.straight, near.straight_squares), pass, 1) *
+                       relative;
+  const float of_gloss =
+      left_by_fit(near.gloss_variance / near.count, so_far.paths,
+                  near.spread(near.gloss, near.gloss_squares), pass, tuning::gloss_tolerance) *
+      tr * tr / (per_gloss * per_gloss);
+  const float of_smooth =
+      near.spread(near.smooth, near.smooth_squares) * tuning::left_by_plane * relative;
+  return {samples_for(of_smooth + of_gloss, tuning::error_of_matt_path),
+          samples_for(of_ray, tuning::error_of_matt_ray)};
 }
 
 } // namespace
@@ -102,14 +120,14 @@ std::array<MattSamples, TileRays::count> more_samples(const Medium& medium, cons
   const Pixels pixels(rays, seen, image_width);
   for (std::size_t i = 0; i < more.size(); ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
-    if (!ray.inside || seen[i].surface < 0)
+    if (!ray.inside || seen[i].surface < 0 || seen[i].samples.paths == 0)
       continue;
     const Around near = pixels.around_ray(i);
     if (near.count < fewest_around)
       continue;
     const MattSamples& has = seen[i].samples;
     const float tr = mean_component(transmittance(medium, ray.profile));
-    const MattSamples wanted = wanted_samples(near, has.shadow_rays, tr, pass);
+    const MattSamples wanted = wanted_samples(near, has, tr, pass);
     more[i] = {std::max(0, wanted.paths - has.paths),
                std::max(0, wanted.shadow_rays - has.shadow_rays)};
   }

@@ -4,6 +4,7 @@
 #include "math/plane_fit.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -46,7 +47,8 @@ SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
     : camera_(input.camera), width_(input.camera.width()), height_(input.camera.height()),
       pass_(pass), narrow_(radii_of(pass)[0]), wide_(radii_of(pass)[1]),
       pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
-      variance_of_narrow_(pixels_.size()) {
+      variance_of_narrow_(pixels_.size()),
+      parts_(input.world.surfaces->any_gloss() ? part_count : gloss) {
   const auto groups = static_cast<std::size_t>(input.world.lights.group_count());
   for (Part& part : parts_) {
     for (Planes* planes : {&part.own, &part.narrow, &part.wide}) {
@@ -58,15 +60,18 @@ SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
 }
 
 void SurfaceFit::set(std::size_t pixel, const SeenSurface& seen, const Rgb& tr) {
-  pixels_[pixel] = {seen.albedo * tr, seen.position, seen.normal, seen.surface};
-  const auto set_part = [&](Part& part, const GroupedLight& light) {
+  pixels_[pixel] = {seen.albedo * tr, seen.gloss_color * tr, seen.position, seen.normal,
+                    seen.surface};
+  const auto set_part = [&](Part& part, const GroupedLight& light, float variance) {
+    part.variance[pixel] = variance;
     part.own.light[pixel] = light.sum();
     for (std::size_t g = 0; g < light.parts().size(); ++g)
       part.own.groups[g][pixel] = light.parts()[g];
   };
-  set_part(parts_[smooth], seen.smooth);
-  set_part(parts_[straight], seen.straight);
-  parts_[straight].variance[pixel] = seen.straight_variance;
+  set_part(parts_[smooth], seen.smooth, 0);
+  set_part(parts_[straight], seen.straight, seen.straight_variance);
+  if (parts_.size() > gloss)
+    set_part(parts_[gloss], seen.gloss, seen.gloss_variance);
 }
 
 void SurfaceFit::add(std::size_t index, const SeenSurface& seen, const Rgb& tr, int rays) {
@@ -77,17 +82,20 @@ void SurfaceFit::add(std::size_t index, const SeenSurface& seen, const Rgb& tr, 
   }
   const float share = 1 / static_cast<float>(rays + 1);
   const auto join = [share](auto& mean, const auto& value) { mean += (value - mean) * share; };
-  const auto join_part = [&](Part& part, const GroupedLight& light) {
+  const auto join_part = [&](Part& part, const GroupedLight& light, float variance) {
+    float& of_mean = part.variance[index];
+    of_mean = of_mean * (1 - share) * (1 - share) + variance * share * share;
     join(part.own.light[index], light.sum());
     const auto& parts = light.parts(); // none where there is no light
     for (std::size_t g = 0; g < part.own.groups.size(); ++g)
       join(part.own.groups[g][index], g < parts.size() ? parts[g] : Rgb());
   };
-  join_part(parts_[smooth], seen.smooth);
-  join_part(parts_[straight], seen.straight);
-  float& variance = parts_[straight].variance[index]; // of a mean over `rays`
-  variance = variance * (1 - share) * (1 - share) + seen.straight_variance * share * share;
+  join_part(parts_[smooth], seen.smooth, 0);
+  join_part(parts_[straight], seen.straight, seen.straight_variance);
+  if (parts_.size() > gloss)
+    join_part(parts_[gloss], seen.gloss, seen.gloss_variance);
   join(pixel.factor, seen.albedo * tr);
+  join(pixel.of_gloss, seen.gloss_color * tr);
 }
 
 /// How far a neighbour may lie off the plane of the surface at a pixel, for a fit of this radius.
@@ -203,9 +211,9 @@ void SurfaceFit::fit_wide(int x, int y) {
 }
 
 /// The mean over n passes to come has the least error at the weight (V / n) / (V / n + B).
-float SurfaceFit::best_weight(float variance, float difference, int pass) {
+float SurfaceFit::best_weight(float variance, float difference, int pass, float tolerance) {
   const float of_mean = variance / static_cast<float>(2 * (pass + 1));
-  const float bias = std::max(0.0f, difference - variance);
+  const float bias = std::max(0.0f, difference - tolerance * variance);
   return of_mean + bias > 0 ? of_mean / (of_mean + bias) : 0;
 }
 
@@ -222,7 +230,9 @@ std::array<float, 2> SurfaceFit::weights_of_planes(const Part& part, int x, int 
   });
   variance /= count;
   const float of_narrow = variance * variance_of_narrow_[index(x, y)];
-  return {&part == &parts_[smooth] ? 1 : best_weight(variance, from_narrow / count, pass_),
+  const float tolerance = is_gloss(part) ? tuning::gloss_tolerance : 1;
+  return {&part == &parts_[smooth] ? 1
+                                   : best_weight(variance, from_narrow / count, pass_, tolerance),
           wide_ > 0 ? best_weight(of_narrow, from_wide / count, pass_) : 0};
 }
 
@@ -233,12 +243,13 @@ void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) cons
     return;
   PixelValue* const probe = blur ? blur->find(i) : nullptr;
   for (const Part& part : parts_) {
+    const Rgb& factor = is_gloss(part) ? pixel.of_gloss : pixel.factor;
     const auto [narrow, wide] = weights_of_planes(part, x, y);
     const auto beyond = [&, narrow = narrow, wide = wide](const auto& planes) { // its own light
       const Rgb by_narrow = planes(part.narrow)[i] - planes(part.own)[i];
       return (wide > 0 ? by_narrow + (planes(part.wide)[i] - planes(part.narrow)[i]) * wide
                        : by_narrow) *
-             narrow * pixel.factor;
+             narrow * factor;
     };
     const auto light = [](const Planes& planes) -> const std::vector<Rgb>& { return planes.light; };
     image.background[i] += beyond(light);
@@ -252,10 +263,9 @@ void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) cons
         sum_of(shares(x, y, PixelRegression::narrower(narrow_), 1, buffer), part.own.light);
     const Rgb of_narrow =
         (part.narrow.light[i] - narrower) * narrow * PixelRegression::blur_over_difference(narrow_);
-    probe->radiance += of_narrow * pixel.factor;
+    probe->radiance += of_narrow * factor;
     if (wide > 0)
-      probe->radiance +=
-          (part.wide.light[i] - part.narrow.light[i]) * (narrow * wide) * pixel.factor;
+      probe->radiance += (part.wide.light[i] - part.narrow.light[i]) * (narrow * wide) * factor;
   }
 }
 

@@ -18,8 +18,9 @@ class BlurProbe;
 /// pixel takes it from a plane that is fitted to the pixels around it which show the same surface
 /// (PlaneFit), within fewer pixels from pass to pass: the bias vanishes as the noise does. Then
 /// planes are fitted to the results, three times as wide, and count as far as their difference from
-/// the narrow ones is no more than noise. Light straight from lights has shadows, so the narrow
-/// planes count in the same way there, against the noise of the pixels' shadow rays.
+/// the narrow ones is no more than noise. Light straight from lights has shadows, and what glossy
+/// parts of materials reflect has edges, so the narrow planes count in the same way there, against
+/// the noise of the pixels' own samples.
 class SurfaceFit {
 public:
   /// Fit for one pass of a world with surfaces. `input` must outlive this.
@@ -44,11 +45,13 @@ public:
 
   /// How much a plane counts, in a pass, against what has the variance V and a squared difference
   /// from the plane of `difference`, which expects V and the squared bias B of the plane.
-  static float best_weight(float variance, float difference, int pass);
+  /// `tolerance`: how many times V may be noise.
+  static float best_weight(float variance, float difference, int pass, float tolerance = 1);
 
 private:
   struct Pixel {
     Rgb factor;     ///< albedo times transmittance
+    Rgb of_gloss;   ///< the same for glossy light
     Vec3f position; ///< render space
     Vec3f normal;
     int surface = -1; ///< -1: none that is fitted
@@ -58,12 +61,13 @@ private:
     std::vector<Rgb> light;
     std::vector<std::vector<Rgb>> groups;
   };
-  /// A part of the light, per albedo: of the pixels themselves, from narrow and from wide planes.
+  /// A part of the light: of the pixels themselves, from narrow and from wide planes.
   struct Part {
     Planes own, narrow, wide;
     std::vector<float> variance; ///< of a pixel's own light, mean of channels
   };
-  enum PartIndex : std::uint8_t { smooth, straight, part_count };
+  /// The first two are per albedo; the third is there if some material has a glossy part.
+  enum PartIndex : std::uint8_t { smooth, straight, gloss, part_count };
   struct Share {
     std::size_t pixel;
     double weight;
@@ -81,6 +85,9 @@ private:
   void fit_narrow(int x, int y);
   void fit_wide(int x, int y);
   void fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const;
+  bool is_gloss(const Part& part) const {
+    return &part != &parts_[smooth] && &part != &parts_[straight];
+  }
   std::array<float, 2> weights_of_planes(const Part& part, int x, int y) const;
 
   const Camera& camera_;
@@ -89,7 +96,7 @@ private:
   float narrow_, wide_; ///< radii of the planes [pixels, and steps]
   std::vector<Pixel> pixels_;
   std::vector<float> variance_of_narrow_; ///< of a narrow plane over that of a pixel's own light
-  std::array<Part, part_count> parts_;
+  std::vector<Part> parts_;
 };
 
 constexpr std::size_t SurfaceFit::bytes_per_pixel(std::size_t groups) {

@@ -12,13 +12,12 @@ SurfaceLighting::SurfaceLighting(const EstimatorInput& input, const World& world
 
 GroupedLight SurfaceLighting::reflected(const SurfaceVertex& vertex, const Vec3f& direction,
                                         Rng& rng) const {
-  return by_paths(vertex, direction, rng) + by_photons(vertex, rng);
+  return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false) +
+         by_photons(vertex, rng);
 }
 
-GroupedLight SurfaceLighting::by_paths(const SurfaceVertex& vertex, const Vec3f& direction,
-                                       Rng& rng, GroupedLight* straight) const {
-  return tracer_.from_surface(vertex.hit(), direction, rng, !shows_photons(vertex), false,
-                              straight);
+ReflectedLight SurfaceLighting::by_paths(const SurfaceVertex& vertex, Rng& rng) const {
+  return tracer_.reflected(vertex, rng, !shows_photons(vertex));
 }
 
 GroupedLight SurfaceLighting::added_to_plate(const SurfaceVertex& vertex, const Vec3f& direction,

@@ -21,19 +21,19 @@ public:
   /// the surface itself emits.
   GroupedLight reflected(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
-  /// The two parts of it; `straight`, unless it is null, gets what shadow rays find of the first.
-  GroupedLight by_paths(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng,
-                        GroupedLight* straight = nullptr) const;
+  /// The two parts of it.
+  ReflectedLight by_paths(const SurfaceVertex& vertex, Rng& rng) const;
   GroupedLight by_photons(const SurfaceVertex& vertex, Rng& rng) const;
   /// The light of a shadow catcher that the plate does not have.
   GroupedLight added_to_plate(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
-private:
+public:
   /// Photons bring light to the surface, which it spreads.
   bool shows_photons(const SurfaceVertex& vertex) const {
     return photons_ && vertex.material().takes_photons();
   }
 
+private:
   const World& world_;
   const PhotonMap* photons_;
   WalkTracer tracer_;

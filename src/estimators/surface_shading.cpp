@@ -1,5 +1,6 @@
 #include "estimators/surface_shading.h"
 
+#include "math/mean_of_light.h"
 #include "medium/emission.h"
 #include "medium/optical_depth.h"
 #include "rays/caught_shadow.h"
@@ -123,33 +124,53 @@ SeenSurface SurfaceShading::seen(const CameraRay& camera, const RngKey& key, std
     return seen;
   }
   if (vertex.material().shows_surroundings())
-    return {shown_by(vertex, path_rng, counts)};
-  return matt_.seen(vertex, camera.ray().direction, key, stream);
+    return shown_by(vertex, path_rng, counts);
+  return matt_.seen(vertex, key, stream);
 }
 
 /// Reflected and refracted light of the first surface: the mean over a few paths. Glass sends some
 /// of them either way.
 template <class PathRng>
-GroupedLight SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
-                                      RenderStatistics& counts) const {
+SeenSurface SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                     RenderStatistics& counts) const {
   if (is_frosted(vertex))
-    return shown_by_frosted(vertex, path_rng, counts);
+    return {shown_by_frosted(vertex, path_rng, counts)};
   const SpecularBranches ways = vertex.branches(Carried::radiance);
   const int reflected = reflected_paths(ways), refracted = paths_per_ray - reflected;
+  if (reflected == 0)
+    return shown_one_way(vertex, path_rng, counts);
   GroupedLight sum;
   for (int i = 0; i < paths_per_ray; ++i) {
     Rng rng = path_rng(i);
     Chain chain{rng, counts, vertex.absorbed()};
-    if (reflected == 0) {
-      GroupedLight light = scatter(vertex, chain);
-      light += follow(chain);
-      sum += light / static_cast<float>(paths_per_ray);
-      continue;
-    }
     chain.take_share(vertex, i < reflected ? ways.reflected : ways.refracted);
     sum += follow(chain) / static_cast<float>(i < reflected ? reflected : refracted);
   }
-  return sum;
+  return {sum};
+}
+
+/// Mirrors and metal: each path draws its direction. What metal that is not smooth shows is fitted
+/// over pixels as far as it is noise.
+template <class PathRng>
+SeenSurface SurfaceShading::shown_one_way(const SurfaceVertex& vertex, const PathRng& path_rng,
+                                          RenderStatistics& counts) const {
+  MeanOfLight mean;
+  for (int i = 0; i < paths_per_ray; ++i) {
+    Rng rng = path_rng(i);
+    Chain chain{rng, counts, vertex.absorbed()};
+    GroupedLight light = scatter(vertex, chain);
+    light += follow(chain);
+    mean.add(light);
+  }
+  SeenSurface seen{mean.mean()};
+  seen.gloss_color = vertex.texture();
+  if (vertex.material().is_specular() || !shows_light(seen.gloss_color))
+    return seen;
+  seen.gloss = seen.radiance / seen.gloss_color;
+  seen.gloss_variance = mean_component(mean.variance() / (seen.gloss_color * seen.gloss_color));
+  seen.albedo = Rgb(1);
+  locate(vertex, seen);
+  return seen;
 }
 
 /// Frosted glass: each path draws a facet, at which it goes one way or the other.

@@ -39,8 +39,11 @@ private:
   struct Chain;
 
   template <class PathRng>
-  GroupedLight shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
-                        RenderStatistics& counts) const;
+  SeenSurface shown_by(const SurfaceVertex& vertex, const PathRng& path_rng,
+                       RenderStatistics& counts) const;
+  template <class PathRng>
+  SeenSurface shown_one_way(const SurfaceVertex& vertex, const PathRng& path_rng,
+                            RenderStatistics& counts) const;
   template <class PathRng>
   GroupedLight shown_by_frosted(const SurfaceVertex& vertex, const PathRng& path_rng,
                                 RenderStatistics& counts) const;

@@ -147,7 +147,8 @@ private:
 /// shadow.
 Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSurface& surface,
                  const Rgb& tr) {
-  Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo;
+  Rgb light = surface.radiance.sum() - surface.smooth.sum() * surface.albedo -
+              surface.gloss.sum() * surface.gloss_color;
   if (ray.camera.hit && world.surfaces->material(*ray.camera.hit).is_shadow_catcher())
     light = Rgb(1 - surface.caught.mean);
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();

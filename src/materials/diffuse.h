@@ -31,7 +31,10 @@ public:
     const Vec3f wi{sine * std::cos(phi), sine * std::sin(phi), std::copysign(cosine, wo.z)};
     return {wi, albedo_, cosine / pi, 1};
   }
-  Rgb matt_albedo() const override { return albedo_; }
+  Rgb matt(const Vec3f& wo, const Vec3f& wi) const override { return evaluate(wo, wi); }
+  Rgb matt_albedo(const Vec3f&) const override { return albedo_; }
+  bool is_all_matt() const override { return true; }
+  Rgb guide_albedo() const override { return albedo_; }
   bool is_black() const override { return max_component(albedo_) <= 0; }
 
 private:

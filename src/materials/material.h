@@ -66,10 +66,22 @@ public:
   virtual bool refracts() const { return false; }
   /// Whether its reflected light is estimated from arriving photons.
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
-  /// Albedo of a purely Lambertian surface; 0 for others.
-  virtual Rgb matt_albedo() const { return {}; }
+  /// The part of `evaluate` that is matt: seen from elsewhere it changes by the factor `matt_albedo`
+  /// alone. The rest is glossy.
+  virtual Rgb matt(const Vec3f& wo, const Vec3f& wi) const {
+    static_cast<void>(wo), static_cast<void>(wi);
+    return {};
+  }
+  /// Share of the light that the matt part reflects towards wo, but for a constant factor: the
+  /// albedo of a Lambertian surface.
+  virtual Rgb matt_albedo(const Vec3f& wo) const {
+    static_cast<void>(wo);
+    return {};
+  }
+  /// It has no glossy part.
+  virtual bool is_all_matt() const { return false; }
   /// Its colour, as denoisers want it.
-  virtual Rgb guide_albedo() const { return matt_albedo(); }
+  virtual Rgb guide_albedo() const { return {}; }
   /// Reflects nothing.
   virtual bool is_black() const { return false; }
   /// Radiance that it emits to its front (`front`) or back; to the back the same or nothing.

@@ -136,6 +136,12 @@ public:
     sample.untextured = rest / density;
     return sample;
   }
+  Rgb matt(const Vec3f& wo, const Vec3f& wi) const override {
+    return wo.z * wi.z > 0 ? diffuse(std::abs(wo.z), std::abs(wi.z)) : Rgb();
+  }
+  Rgb matt_albedo(const Vec3f& wo) const override {
+    return base_ * ((1 - metal_) * (1 - glossy_(std::abs(wo.z))));
+  }
   Rgb guide_albedo() const override { return base_; }
   bool shows_surroundings() const override { return narrow_metal_; }
   bool throws_light() const override { return metal_ > 0.5f; }
@@ -157,6 +163,11 @@ private:
     return facets.distribution(h) * facets.masking(wo, wi) / (4 * wo.z);
   }
 
+  /// f |cos(wi)| of the diffuse base, by the cosines of the directions.
+  Rgb diffuse(float mu_o, float mu_i) const {
+    return base_ * ((1 - metal_) * (1 - glossy_(mu_o)) * (1 - glossy_(mu_i)) /
+                    (1 - glossy_.mean()) * mu_i / pi);
+  }
   /// f |cos(wi)|: the part that is proportional to the colour of the base, which a texture
   /// multiplies, and the rest. False where there is neither.
   bool scatter(const Vec3f& wo_, const Vec3f& wi_, Rgb& by_texture, Rgb& rest) const {
@@ -165,9 +176,8 @@ private:
     const Vec3f wo = upwards(wo_), wi = upwards(wi_), h = normalize(wo + wi);
     const float cosine = dot(wo, h), below = (1 - coated_(wo.z)) * (1 - coated_(wi.z));
     const float gloss = below * lobe(gloss_.facets, wo, wi, h);
-    const float diffuse = (1 - glossy_(wo.z)) * (1 - glossy_(wi.z)) / (1 - glossy_.mean());
     const float grazing = fresnel_schlick(Rgb(0), cosine).x; // (1 - cos)^5
-    by_texture = base_ * ((1 - metal_) * diffuse * wi.z / pi + metal_ * gloss * (1 - grazing));
+    by_texture = diffuse(wo.z, wi.z) + base_ * (metal_ * gloss * (1 - grazing));
     const float coat =
         coat_ > 0 ? coat_ * coating_.fresnel(cosine) * lobe(coating_.facets, wo, wi, h) : 0;
     rest = Rgb(coat + gloss * ((1 - metal_) * gloss_.fresnel(cosine) + metal_ * grazing));

@@ -4,6 +4,7 @@
 #include "photonmap/photon_map.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace vdbeam {
 
@@ -24,6 +25,8 @@ QueryCounts query_ray(const MapView& map, const PhotonMap::RayProfile& profile, 
 QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& direction,
                         const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                         Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr);
+/// Adds the numbers of the photons whose spheres contain the point, in a fixed order.
+void find_around(const MapView& map, const Vec3f& point, std::vector<std::size_t>& found);
 
 /// SIMD targets that this binary has and this machine can run, best first, as Highway's bits; and a
 /// way to confine the queries to some of them (0: all), for tests.

@@ -94,36 +94,6 @@ float disc_kernel(KernelShape shape, float s) {
   return 0;
 }
 
-/// Mask of the boxes of a group that may hold a sphere which contains the point.
-std::uint32_t boxes_around(const Vec3f& point, const BoxGroup& group) {
-  std::uint32_t mask = 0;
-  for (unsigned i = 0; i < 8; ++i) {
-    float square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float outside =
-          std::max({group.lower[axis][i] - point[axis], point[axis] - group.upper[axis][i], 0.0f});
-      square += outside * outside;
-    }
-    if (square <= group.radius[i] * group.radius[i])
-      mask |= 1u << i;
-  }
-  return mask;
-}
-
-/// Calls `visit(block)` for the blocks with such boxes, below a group of `level`.
-template <class Visit>
-void visit_blocks(const BlockTree& tree, std::size_t level, std::size_t group, const Vec3f& point,
-                  const Visit& visit) {
-  for (std::uint32_t mask = boxes_around(point, tree.levels[level][group]); mask != 0;
-       mask &= mask - 1) {
-    const std::size_t child = 8 * group + static_cast<unsigned>(std::countr_zero(mask));
-    if (level > 0)
-      visit_blocks(tree, level - 1, child, point, visit);
-    else
-      visit(child);
-  }
-}
-
 void divide_photon(PhotonBlocks& blocks, std::size_t photon, float divisor) {
   for (int c = 0; c < blocks.channels(); ++c)
     blocks.at(photon, PhotonBlocks::power + c) /= divisor;
@@ -270,32 +240,25 @@ QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance,
   return vdbeam::query_ray(data_->view(), profile, radiance, nullptr, groups);
 }
 
-void PhotonMap::visit_disc(const Vec3f& point,
-                           const std::function<void(const DiscPhoton&)>& visit) const {
+void PhotonMap::find_on_disc(const Vec3f& point, std::vector<DiscPhoton>& found) const {
   const PhotonBlocks& blocks = data_->blocks;
-  const BlockTree& tree = data_->tree;
-  if (tree.levels.empty())
-    return;
-  visit_blocks(tree, tree.levels.size() - 1, 0, point, [&](std::size_t block) {
-    const std::size_t begin = block * PhotonBlocks::width;
-    const std::size_t end = std::min(begin + PhotonBlocks::width, blocks.count());
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f to = point - blocks.position(i);
-      const float radius = blocks.at(i, PhotonBlocks::radius), area = radius * radius;
-      const float square = dot(to, to);
-      if (!(square < area))
-        continue;
-      const float kernel = disc_kernel(data_->shape, square / area) / area;
-      const int from = blocks.direction_field(), step = blocks.channels() > 1 ? 1 : 0;
-      const Rgb power(blocks.at(i, PhotonBlocks::power), blocks.at(i, PhotonBlocks::power + step),
-                      blocks.at(i, PhotonBlocks::power + 2 * step));
-      visit({blocks.position(i),
-             {blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)},
-             power * kernel,
-             radius,
-             blocks.groups() > 0 ? static_cast<int>(blocks.at(i, blocks.group_field())) : -1});
-    }
-  });
+  std::vector<std::size_t> photons;
+  find_around(data_->view(), point, photons);
+  found.reserve(photons.size());
+  const int from = blocks.direction_field(), step = blocks.channels() > 1 ? 1 : 0;
+  for (const std::size_t i : photons) {
+    const Vec3f to = point - blocks.position(i);
+    const float radius = blocks.at(i, PhotonBlocks::radius), area = radius * radius;
+    const float kernel = disc_kernel(data_->shape, std::min(1.0f, dot(to, to) / area)) / area;
+    const Rgb power(blocks.at(i, PhotonBlocks::power), blocks.at(i, PhotonBlocks::power + step),
+                    blocks.at(i, PhotonBlocks::power + 2 * step));
+    found.push_back(
+        {blocks.position(i),
+         {blocks.at(i, from), blocks.at(i, from + 1), blocks.at(i, from + 2)},
+         power * kernel,
+         radius,
+         blocks.groups() > 0 ? static_cast<int>(blocks.at(i, blocks.group_field())) : -1});
+  }
 }
 
 QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,

@@ -5,7 +5,6 @@
 #include "photonmap/beam_tile.h"
 #include "photonmap/photon.h"
 
-#include <functional>
 #include <memory>
 
 namespace vdbeam {
@@ -114,9 +113,9 @@ public:
   int groups() const;             ///< number of light groups whose photons are marked; 0: none
   bool has_first_flights() const; ///< photons that come straight from a light
 
-  /// Visits the surface photons whose spheres contain `point`, in a fixed order. Requires photons
-  /// with directions.
-  void visit_disc(const Vec3f& point, const std::function<void(const DiscPhoton&)>& visit) const;
+  /// Adds the surface photons whose spheres contain `point`, in a fixed order. Requires photons with
+  /// directions.
+  void find_on_disc(const Vec3f& point, std::vector<DiscPhoton>& found) const;
 
 private:
   struct Data;

@@ -57,6 +57,29 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
+using D8 = hn::CappedTag<float, 8>;
+
+/// Mask of the boxes of a group that may hold a sphere which contains the point.
+HWY_INLINE std::uint32_t boxes_around(const float* point, const BoxGroup& group) {
+  const D8 d;
+  std::uint32_t mask = 0;
+  for (std::size_t lane = 0; lane < 8; lane += hn::Lanes(d)) {
+    // Squared distance to the box of centres against the greatest radius.
+    auto square = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto x = hn::Set(d, point[axis]);
+      const auto below = hn::Sub(hn::Load(d, group.lower[axis] + lane), x);
+      const auto above = hn::Sub(x, hn::Load(d, group.upper[axis] + lane));
+      const auto outside = hn::Max(hn::Max(below, above), hn::Zero(d));
+      square = hn::MulAdd(outside, outside, square);
+    }
+    const auto radius = hn::Load(d, group.radius + lane);
+    const auto hit = hn::Le(square, hn::Mul(radius, radius));
+    mask |= mask_bits(d, hit) << lane;
+  }
+  return mask;
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace vdbeam
 HWY_AFTER_NAMESPACE();

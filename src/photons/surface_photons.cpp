@@ -80,18 +80,21 @@ GroupedLight SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) co
   std::vector<Near> near;
   const SurfaceHit& hit = vertex.hit();
   float weights = 0, radii = 0;
-  map_.visit_disc(Vec3f(hit.position), [&](const DiscPhoton& photon) {
+  std::vector<DiscPhoton> found;
+  map_.find_on_disc(Vec3f(hit.position), found);
+  near.reserve(found.size());
+  for (const DiscPhoton& photon : found) {
     const float off = std::abs(dot(photon.position - Vec3f(hit.position), hit.normal));
     const float cosine = std::abs(dot(photon.direction, hit.normal));
     if (off > flatness * photon.radius || !(cosine > least_cosine))
-      return;
+      continue;
     const float weight = mean_component(photon.irradiance);
     weights += weight;
     radii += weight * photon.radius;
     const Rgb light = vertex.evaluate(-photon.direction) * photon.irradiance / cosine;
     if (max_component(light) > 0)
       near.push_back({photon.position, light, photon.group});
-  });
+  }
   if (near.empty() || !(weights > 0))
     return {};
   Disc disc;

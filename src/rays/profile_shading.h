@@ -26,18 +26,28 @@ struct SeenSurface {
   Rgb added = {}; ///< radiance that leaves a shadow catcher by light that the plate does not have
   /// The part of `radiance` that the surface emits, as a light with shadow rays.
   GroupedLight lamp = {};
-  // For a matt surface:
-  /// The part of `radiance` that comes by way of other surfaces and the medium, per albedo.
+  // For a surface that is not specular:
+  /// The part of `radiance` that comes by way of other surfaces and the medium and that the matt
+  /// part of the material reflects, per albedo.
   GroupedLight smooth = {};
-  /// The part that shadow rays from the surface find, per albedo, and the variance of this mean
-  /// over them, mean of channels.
+  /// What the matt part reflects of the light that shadow rays from the surface find, per albedo,
+  /// and the variance of this mean over them, mean of channels.
   GroupedLight straight = {};
   float straight_variance = 0;
-  MattSamples samples = {}; ///< of the two
-  Rgb albedo = {};          ///< of the surface
+  /// What the rest of the material reflects by either way, per `gloss_color`, and the variance of
+  /// this mean.
+  GroupedLight gloss = {};
+  float gloss_variance = 0;
+  /// Paths of `smooth` and `gloss`, and shadow rays of `straight`; 0: their number is fixed.
+  MattSamples samples = {};
+  Rgb albedo = {};          ///< of the matt part; 1 where there is none
+  Rgb gloss_color = Rgb(1); ///< of a texture that multiplies all that is reflected
   Vec3f position = {};      ///< render space
   Vec3f normal = {};        ///< on the side that is seen
-  int surface = -1;         ///< -1: not matt
+  int surface = -1;         ///< -1: the light is not fitted
+
+  /// The part of `radiance` that is fitted over pixels.
+  GroupedLight fitted() const { return (smooth + straight) * albedo + gloss * gloss_color; }
 };
 
 /// Contribution of a ray to PassImage::opacity and PassImage::depth.

@@ -58,6 +58,18 @@ Rgb SurfaceVertex::absorbed() const {
   return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
+Rgb SurfaceVertex::matt_share(const Vec3f& wi) const {
+  if (material_.is_all_matt())
+    return Rgb(1);
+  const Rgb all = evaluate(wi);
+  const Rgb matt =
+      sum_of<Rgb>(wi, [&](const Vec3f& local) { return material_.matt(wo_, local) * shown_; });
+  Rgb share;
+  for (int c = 0; c < 3; ++c)
+    share[c] = all[c] > 0 ? std::min(1.0f, matt[c] / all[c]) : 0;
+  return share;
+}
+
 /// How much of the power of a photon goes on, for each unit of radiance that a path would take the
 /// other way: with two normals the cosines do not cancel (Veach, Robust Monte Carlo Methods for
 /// Light Transport Simulation, 1997, eq. 5.17). Bounded: at the horizon little light is at stake.

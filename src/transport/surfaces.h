@@ -54,6 +54,13 @@ struct Surfaces {
     return !solids.empty() && inside_solid(*end, direction) ? 0 : static_cast<float>(end->t);
   }
 
+  /// Some surface is neither only matt nor specular.
+  bool any_gloss() const {
+    return std::any_of(materials.begin(), materials.end(), [](const auto& material) {
+      return !material->is_all_matt() && !material->is_black() && !material->is_specular();
+    });
+  }
+
 private:
   bool inside_solid(SurfaceHit end, const Vec3f& direction) const;
 };
@@ -69,8 +76,12 @@ public:
   bool front() const { return wo_.z > 0; }
   /// Index of the light that the surface is, or -1.
   int light() const { return light_; }
-  Rgb matt_albedo() const { return material_.matt_albedo() * shown_; }
+  /// Albedo of the matt part of the material, for the direction from which the path came.
+  Rgb matt_albedo() const { return material_.matt_albedo(wo_) * shown_; }
+  /// The share of `evaluate` that is the matt part's, per channel.
+  Rgb matt_share(const Vec3f& wi) const;
   Rgb guide_albedo() const { return material_.guide_albedo() * shown_; }
+  Rgb texture() const { return shown_; } ///< its colour; 1 where there is none
   Rgb emitted() const { return material_.emitted(front()) * shown_; }
   /// Transmittance of absorption inside from the path's last event to here.
   Rgb absorbed() const;

@@ -201,6 +201,9 @@ VDBEAM_TUNED(float, most_noise_of_step, 0.3f);
 VDBEAM_TUNED(float, error_of_matt_ray, 5e-4f);
 VDBEAM_TUNED(float, error_of_matt_path, 0.015f);
 VDBEAM_TUNED(int, most_matt_samples, 16);
+/// How many times the variance of its samples a difference of glossy light from a plane may have to
+/// count as noise: few samples of a narrow lobe show less variance than they have.
+VDBEAM_TUNED(float, gloss_tolerance, 4);
 /// Variance that a plane leaves of the noise of the pixels to which it is fitted.
 VDBEAM_TUNED(float, left_by_plane, 0.1f);
 /// Rays that look for lamps behind rough glass and gather nothing else.

@@ -149,6 +149,50 @@ TEST(SurfaceFit, EvensOutTheNoiseOfShadowRaysBesideShadows) {
   EXPECT_LT(far / ((width - 8) * width), 0.3 * noise_variance);
 }
 
+/// Light of two sides of an edge whose samples vary by this, on a glossy surface whose colour
+/// differs from pixel to pixel.
+TEST(SurfaceFit, EvensOutGlossyLightAsFarAsItIsNoise) {
+  MemoryScene scene = plane_scene();
+  MaterialSettings metal = surfaces::of_type(MaterialType::standard);
+  metal.metal = 1;
+  surfaces::add_surface(scene, SurfaceShape::sphere, surfaces::scaled(0.1), metal);
+  const TestFrame frame(scene);
+  const auto light = [](int x, int) { return x < 12 ? 1.0 : 5.0; };
+  const auto color = [](int x, int y) { return (x + y) % 2 == 0 ? 0.2f : 0.8f; };
+  const auto error = [&](double noise) {
+    SurfaceFit fit(frame.input(), 0);
+    PassImage image;
+    image.resize(width, width);
+    const double pixel =
+        frame.camera.pixel_width(width / 2.0, width / 2.0, 10 * frame.world.space.scale);
+    for (int y = 0; y < width; ++y)
+      for (int x = 0; x < width; ++x) {
+        SeenSurface seen;
+        seen.gloss = {Rgb(static_cast<float>(light(x, y) + noise * noise_at(x, y))), -1};
+        seen.gloss_variance = static_cast<float>(noise * noise * noise_variance);
+        seen.gloss_color = Rgb(color(x, y));
+        seen.albedo = Rgb(0.3f);
+        seen.position = Vec3f(Vec3d{x * pixel, y * pixel, 0});
+        seen.normal = {0, 0, 1};
+        seen.surface = 0;
+        const auto i = static_cast<std::size_t>(y * width + x);
+        fit.set(i, seen, Rgb(1));
+        image.background[i] = seen.gloss.sum() * color(x, y);
+      }
+    fit.apply({0, 0, width, width}, image);
+    double sum = 0;
+    for (int y = 0; y < width; ++y)
+      for (int x = 0; x < width; ++x) {
+        const Rgb& value = image.background[static_cast<std::size_t>(y * width + x)];
+        const double off = static_cast<double>(value.x / color(x, y)) - light(x, y);
+        sum += off * off / (width * width);
+      }
+    return sum;
+  };
+  EXPECT_LT(error(0), 1e-9);
+  EXPECT_LT(error(1), 0.35 * noise_variance);
+}
+
 /// A pixel of a region has the bits that it has in the whole picture.
 TEST(SurfaceFit, ARegionIsAPartOfThePicture) {
   MemoryScene scene = plane_scene();

@@ -81,6 +81,28 @@ TEST(Standard, DirectionsCanBeExchanged) {
   }
 }
 
+/// Seen from elsewhere the matt part changes by its albedo alone, and it is no more than the whole.
+TEST(Standard, MattPartChangesByItsAlbedoAlone) {
+  Rng rng({}, RngStage::test, 4);
+  for (const Look& look : looks) {
+    const auto material = standard(look, {0.9f, 0.5f, 0.2f});
+    for (int i = 0; i < 200; ++i) {
+      const float u = rng.uniform(), v = rng.uniform();
+      Vec3f wi = sample_sphere(u, v);
+      wi.z = std::abs(wi.z);
+      const Vec3f a = at_angle(20), b = at_angle(70);
+      for (int c = 0; c < 3; ++c) {
+        const float of_a = material->matt(a, wi)[c], of_b = material->matt(b, wi)[c];
+        EXPECT_LE(of_a, material->evaluate(a, wi)[c] * 1.0001f) << look;
+        EXPECT_NEAR(of_a * material->matt_albedo(b)[c], of_b * material->matt_albedo(a)[c],
+                    1e-5f * of_a)
+            << look;
+      }
+    }
+    EXPECT_EQ(max_component(material->matt_albedo(at_angle(20))) > 0, look.metal < 1) << look;
+  }
+}
+
 /// Sampled reflectance against `evaluate` at uniform directions.
 TEST(Standard, SampledAndEvaluatedReflectanceAgree) {
   for (const Look& look : looks) {

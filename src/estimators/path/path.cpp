@@ -60,7 +60,7 @@ SeenSurface PathEstimator::seen_surface(const RayTask& ray, Scratch& scratch) co
   for (int i = 1; i <= draws.count; ++i) {
     Rng path_rng(ray.key, RngStage::surface, stream + static_cast<std::uint64_t>(i));
     sum += tracer_.from_surface(*ray.camera.hit, ray.camera.ray().direction, path_rng, true, true,
-                                nullptr, &scratch.counts.walk_collisions);
+                                &scratch.counts.walk_collisions);
   }
   return {sum *= draws.weight};
 }

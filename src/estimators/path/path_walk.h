@@ -52,6 +52,16 @@ struct PathWalk : Flight {
   }
 };
 
+/// Light that a surface reflects, by what brings it and by the part of the material that reflects
+/// it (Material::matt).
+struct ReflectedLight {
+  struct Parts {
+    GroupedLight matt, gloss;
+  };
+  Parts straight; ///< that shadow rays from the surface find
+  Parts beyond;   ///< by way of other surfaces and the medium
+};
+
 /// Unbiased path tracing in media and among surfaces, a collision at a time: flights by delta
 /// tracking end at surfaces, which scatter by their materials; next-event estimation at every
 /// vertex that is not specular (sample_shadow_ray), through the medium by ratio tracking, combined
@@ -77,11 +87,13 @@ public:
   /// Radiance that leaves a surface against `direction`, along which a ray meets it.
   /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
   /// the medium, and they on to other surfaces, to which photons bring it.
-  /// `emits`: with what the surface itself emits. `straight`, unless it is null, gets the part that
-  /// shadow rays from the surface find. `steps`, unless it is null, counts the walks' steps.
+  /// `emits`: with what the surface itself emits. `steps`, unless it is null, counts the walks'
+  /// steps.
   GroupedLight from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                             bool all_light = true, bool emits = true,
-                            GroupedLight* straight = nullptr, std::uint64_t* steps = nullptr) const;
+                            std::uint64_t* steps = nullptr) const;
+  /// The same, without what the surface emits, by parts.
+  ReflectedLight reflected(const SurfaceVertex& vertex, Rng& rng, bool all_light) const;
 
   /// Radiance that leaves a shadow catcher against `direction` by light that the plate which it
   /// stands for does not have: light of surfaces that shine, of glowing volumes, and light of the
@@ -91,9 +103,11 @@ public:
 
   /// Next-event estimation at a surface that is not specular: what it reflects of the lights with
   /// shadow rays, weighted against the direction that `vertex` draws or, if it goes on as a walk of
-  /// this tracer does, the walk.
+  /// this tracer does, the walk. `matt`, unless it is null, gets the part that the matt part of the
+  /// material reflects.
   GroupedLight lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
-                                 bool goes_on_as_walk = false, bool in_plate = false) const;
+                                 bool goes_on_as_walk = false, bool in_plate = false,
+                                 GroupedLight* matt = nullptr) const;
   bool samples_light(std::size_t light) const { return shadow_rays_[light]; }
 
   /// Handles the walk's collision and advances to the next one. False where the walk has ended. A
@@ -109,15 +123,17 @@ public:
   bool leave(PathWalk& walk) const;
 
 private:
-  GroupedLight follow_from(const SurfaceVertex& vertex, PathWalk& first, GroupedLight* straight,
+  GroupedLight follow_from(const SurfaceVertex& vertex, PathWalk& first,
                            std::uint64_t* steps) const;
+  GroupedLight follow(PathWalk& first, bool leaves, std::uint64_t* steps) const;
   float roulette_from(const Rgb& throughput) const;
   void sample_lights(PathWalk& walk) const;
   void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;
   void set_out(PathWalk& walk, const Vec3d& origin, const Vec3f& direction) const;
   bool scatter(PathWalk& walk, const Vec3f& direction) const;
   bool meet_surface(PathWalk& walk) const;
-  bool bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first) const;
+  bool bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first,
+              GroupedLight* matt = nullptr) const;
   bool looks_for_emission(const SurfaceVertex& vertex) const;
   float surface_density(const SurfaceVertex& vertex, const Vec3f& wi) const;
   MaterialSample leave_surface(const SurfaceVertex& vertex, Rng& rng) const;

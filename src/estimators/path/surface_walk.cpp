@@ -9,17 +9,36 @@
 namespace vdbeam {
 
 GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                                      bool all_light, bool emits, GroupedLight* straight,
-                                      std::uint64_t* steps) const {
+                                      bool all_light, bool emits, std::uint64_t* steps) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
   GroupedLight sum;
   if (emits)
     sum.add(vertex.emitted(), group_of(world_, vertex));
-  sum += follow_from(vertex, first, straight, steps);
+  sum += follow_from(vertex, first, steps);
   rng = first.rng; // for what the caller draws next
   return sum;
+}
+
+/// The walk's first direction decides which share of the light that comes from there the matt part
+/// reflects.
+ReflectedLight WalkTracer::reflected(const SurfaceVertex& vertex, Rng& rng, bool all_light) const {
+  PathWalk first(rng, vertex.absorbed());
+  first.all_light = all_light;
+  first.least_weight = roulette_from(Rgb(1));
+  ReflectedLight light;
+  const bool leaves = bounce(first, vertex, true, &light.straight.matt);
+  const GroupedLight straight = first.direct;
+  const Rgb share = leaves ? vertex.matt_share(first.segment.ray.direction) : Rgb();
+  const GroupedLight beyond = follow(first, leaves, nullptr) - straight;
+  light.beyond.matt = beyond * share;
+  if (!vertex.material().is_all_matt()) {
+    light.straight.gloss = straight - light.straight.matt;
+    light.beyond.gloss = beyond - light.beyond.matt;
+  }
+  rng = first.rng;
+  return light;
 }
 
 GroupedLight WalkTracer::added_to_plate(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
@@ -28,31 +47,34 @@ GroupedLight WalkTracer::added_to_plate(const SurfaceHit& hit, const Vec3f& dire
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
   first.in_plate = true;
-  const GroupedLight sum = follow_from(vertex, first, nullptr, nullptr);
+  const GroupedLight sum = follow_from(vertex, first, nullptr);
   rng = first.rng;
   return sum;
 }
 
-/// Light of a walk that begins at a surface, and of its branches.
+/// Light of a walk that begins at a surface.
 GroupedLight WalkTracer::follow_from(const SurfaceVertex& vertex, PathWalk& first,
-                                     GroupedLight* straight, std::uint64_t* steps) const {
+                                     std::uint64_t* steps) const {
   first.least_weight = roulette_from(Rgb(1));
+  const bool leaves = bounce(first, vertex, true);
+  return follow(first, leaves, steps);
+}
+
+/// Light of a walk after its first surface, and of its branches, with what it has so far.
+GroupedLight WalkTracer::follow(PathWalk& first, bool leaves, std::uint64_t* steps) const {
   GroupedLight sum;
   std::vector<PathWalk> branches;
-  const auto follow = [&](PathWalk& walk, bool goes_on) {
+  const auto follow_walk = [&](PathWalk& walk, bool goes_on) {
     for (; goes_on; goes_on = step(walk, branches))
       if (steps)
         ++*steps;
     sum += walk.direct + walk.indirect;
   };
-  const bool leaves = bounce(first, vertex, true);
-  if (straight)
-    *straight = first.direct;
-  follow(first, leaves && advance_flight(first, *this));
+  follow_walk(first, leaves && advance_flight(first, *this));
   while (!branches.empty()) {
     PathWalk walk = std::move(branches.back());
     branches.pop_back();
-    follow(walk, true);
+    follow_walk(walk, true);
   }
   return sum;
 }
@@ -75,7 +97,8 @@ bool WalkTracer::meet_surface(PathWalk& walk) const {
 }
 
 /// Scatters the walk at a surface, at its first vertex or a later one. False where it ends.
-bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first) const {
+bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first,
+                        GroupedLight* matt) const {
   const Material& material = vertex.material();
   if (material.is_black())
     return false;
@@ -83,7 +106,9 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   const bool counts_straight =
       !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
   if (counts_straight)
-    walk.add(lights_at_surface(vertex, walk.rng, true, walk.in_plate) * walk.throughput);
+    walk.add(lights_at_surface(vertex, walk.rng, true, walk.in_plate, matt) * walk.throughput);
+  if (matt)
+    *matt *= walk.throughput;
   const MaterialSample next = leave_surface(vertex, walk.rng);
   walk.throughput *= next.weight;
   walk.refraction *= next.refraction;
@@ -135,7 +160,8 @@ MaterialSample WalkTracer::leave_surface(const SurfaceVertex& vertex, Rng& rng) 
 }
 
 GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng,
-                                           bool goes_on_as_walk, bool in_plate) const {
+                                           bool goes_on_as_walk, bool in_plate,
+                                           GroupedLight* matt) const {
   GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     if (!shadow_rays_[i] || (in_plate && vdbeam::in_plate(world_.lights, i)))
@@ -149,11 +175,15 @@ GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng
     const Vec3f& wi = shadow_ray->direction;
     const Rgb value = vertex.evaluate(wi);
     const Vec3d origin = vertex.hit().leave(wi);
-    if (max_component(value) > 0 && unoccluded(world_, origin, wi, shadow_ray->distance))
-      sum.add(shadow_ray->light * value * shadow_ray->weight *
-                  estimate_transmittance(
-                      world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance}, rng.uniform()),
-              world_.lights.group(i));
+    if (!(max_component(value) > 0) || !unoccluded(world_, origin, wi, shadow_ray->distance))
+      continue;
+    const Rgb light =
+        shadow_ray->light * value * shadow_ray->weight *
+        estimate_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance},
+                               rng.uniform());
+    sum.add(light, world_.lights.group(i));
+    if (matt)
+      matt->add(light * vertex.matt_share(wi), world_.lights.group(i));
   }
   return sum;
 }
