@@ -3,7 +3,7 @@ import os
 
 import numpy
 
-from . import camera, layers, meshes, objects, surface_shader, world
+from . import camera, layers, meshes, objects, simulation, surface_shader, world
 
 
 class Options:
@@ -124,17 +124,30 @@ class SceneReader:
                                  **motion})
         return None
 
+    def add_smoke(self, obj, domain, name, matrix, tables):
+        """The domain of a simulation, as a volume."""
+        keys = simulation.volume_table(obj, domain, name, matrix, self.frame, self.options.abspath, self.notes)
+        if keys is None:
+            return
+        if self.options.blur:
+            self.notes.add(name, "the motion of simulated smoke has no counterpart; import its cache as a volume object")
+        if self.options.interpolation != "linear":
+            keys["interpolation"] = self.options.interpolation
+        tables["volume"].append(keys)
+
     def add_mesh(self, obj, name, matrix, tables):
-        """A mesh: a table for each of its materials, or a box of fog."""
+        """A mesh: a table for each of its materials, a box of fog, or smoke."""
+        domain = simulation.domain_of(obj)
+        if domain is not None:
+            return self.add_smoke(obj, domain, name, matrix, tables)
         shaders = {}
         for index, material in enumerate(objects.materials_of(obj) or [None]):
             keys = objects.material_keys(obj, material, self.notes, self.image_path)
             if keys is not None:
                 shaders[index] = keys
         medium, _ = objects.volume_shader_of(obj)
-        self.note_simulation(obj, name)
         if not shaders and medium is None:
-            return
+            return None
         mesh = obj.to_mesh()
         try:
             if medium is not None and (box := objects.mesh_volume(obj, mesh, matrix, medium, self.notes)):
@@ -151,13 +164,7 @@ class SceneReader:
             if shaders[index]["type"] == "emissive" and getattr(obj, "lightgroup", ""):
                 keys["group"] = obj.lightgroup
             tables["mesh"].append(keys)
-
-    def note_simulation(self, obj, name):
-        """Domains of Mantaflow hold their smoke in a cache."""
-        for modifier in obj.modifiers:
-            if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-                self.notes.add(name, "a simulation has no counterpart; bake it as OpenVDB and import the files of "
-                                     f"{modifier.domain_settings.cache_directory} as a volume object")
+        return None
 
     def note_deformation(self, obj, mesh, name):
         """A mesh that modifiers or shape keys change while the shutter is open is that of the first moment."""
