@@ -21,7 +21,7 @@ if blender_runner.inside_blender():
     import bpy
     import numpy
     import scenes
-    from vdbeam_blender import engine, exr, view_engine
+    from vdbeam_blender import engine, exr, mesh_cache, view_engine
 
 DATA = pathlib.Path(FILE).resolve().parents[2] / "data"
 SMOKE = DATA / "smoke" / "smoke.0024.vdb"
@@ -278,6 +278,7 @@ class Engine(unittest.TestCase):
         self.assertTrue(numpy.allclose(pixels[-1, 0], [0.5, 0.5, 0.5, 1], atol=2e-3))  # the world
         self.assertGreater(numpy.abs(pixels - 0.5)[..., :3].max(), 0.1)
         child = engine_of_view.preview.render.child
+        self.edits_gather_what_changed(scene, engine_of_view, context)
         text = (pathlib.Path(engine_of_view.preview.folder) / "scene.toml").read_text(encoding="utf-8")
         self.assertIn("lens_radius", text)
         folder = pathlib.Path(engine_of_view.preview.folder)
@@ -286,6 +287,41 @@ class Engine(unittest.TestCase):
         while folder.exists() and time.monotonic() < end:
             time.sleep(0.05)
         self.assertFalse(folder.exists())
+
+    def edits_gather_what_changed(self, scene, engine_of_view, context):
+        """Edits of a viewport's scene: meshes are read again where they change, and nowhere else."""
+        gathered, gather = [], mesh_cache.gathered
+        self.replace(mesh_cache, "gathered", lambda mesh, *words: (gathered.append(mesh.name), gather(mesh, *words))[1])
+        first, second = scenes.add_plane(scene, 1, location=(0, 3, 0)), scenes.add_plane(scene, 2, location=(0, 3, 1))
+        twin = scenes.add(scene, "twin", second.data, (0, 4, 0))
+        lamp = scenes.add_lamp(scene, "SUN", 1)
+
+        def meshes_after(edit):
+            changed = []
+            note = lambda _scene, depsgraph: changed.extend(  # noqa: E731
+                types.SimpleNamespace(id=types.SimpleNamespace(name=one.id.name), is_updated_geometry=one.is_updated_geometry)
+                for one in depsgraph.updates)
+            bpy.app.handlers.depsgraph_update_post.append(note)
+            edit()
+            bpy.context.view_layer.update()
+            bpy.app.handlers.depsgraph_update_post.remove(note)
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            # A viewport's graph has the updates of the edit; those of the window's are over here.
+            graph = types.SimpleNamespace(scene=depsgraph.scene, object_instances=depsgraph.object_instances, updates=changed)
+            gathered.clear()
+            engine_of_view.view_update(context, graph)
+            return sorted(set(gathered))
+
+        meshes_after(lambda: None)
+        self.assertEqual(len(gathered), 2)  # the twin shares the file of its mesh
+        self.assertEqual(meshes_after(lambda: setattr(lamp.data, "energy", 2)), [])
+        self.assertEqual(meshes_after(lambda: setattr(first, "location", (1, 3, 0))), [])
+        self.assertEqual(meshes_after(lambda: (setattr(first.data.vertices[0].co, "z", 0.5), first.data.update())),
+                         [first.data.name])
+        self.assertEqual(meshes_after(lambda: second.modifiers.new("thick", "SOLIDIFY")), [second.data.name])
+        self.assertEqual(meshes_after(lambda: setattr(twin, "hide_viewport", True)), [])
+        text = engine_of_view.preview.scene
+        self.assertEqual(text.count("[[mesh]]"), 2)
 
     def test_farm_job(self):
         """The job's scene gives the image of F12, frame by frame."""

@@ -6,9 +6,11 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import types
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools" / "blender"), str(ROOT / "tests" / "support")]
@@ -21,7 +23,7 @@ except ImportError as problem:
     requirements.import_failed(problem)
 
 from program import BINARY, InTempFolder  # noqa: E402
-from vdbeam_blender import view_camera, view_draw, viewport  # noqa: E402
+from vdbeam_blender import meshes, temp_folder, view_camera, view_draw, viewport  # noqa: E402
 
 PATIENCE = 120  # seconds, of a machine that does much else
 IDENTITY = [[1.0 if row == column else 0.0 for column in range(4)] for row in range(4)]
@@ -138,6 +140,14 @@ class Programs(unittest.TestCase):
         self.wait(lambda pixels, text: self.preview.written != first)
         self.wait(lambda pixels, text: text == "Done" and not self.preview.is_busy())
 
+    def test_files_of_meshes_go_when_no_scene_names_them(self):
+        for number in range(viewport.KEPT_SCENES + 2):
+            (pathlib.Path(self.preview.folder) / f"{number}.ply").write_bytes(b"")
+            self.preview.shown_files = {f"{number}.ply"}
+            self.preview.sweep()
+        left = sorted(path.name for path in pathlib.Path(self.preview.folder).glob("*.ply"))
+        self.assertEqual(left, [f"{number}.ply" for number in range(2, viewport.KEPT_SCENES + 2)])
+
     def test_mistakes_are_shown_and_mended(self):
         self.preview.show_scene({**SCENE, "render": {"passes": 2, "bogus": 1}}, opaque=True)
         self.preview.show_view(self.view())
@@ -160,6 +170,15 @@ class Programs(unittest.TestCase):
         self.assertFalse(os.path.exists(self.preview.folder))
 
 
+class Rows(unittest.TestCase):
+    def test_distinct_rows(self):
+        table = numpy.random.default_rng(1).integers(0, 3, (2000, 4)).astype(numpy.float32) / 7
+        table[::7, 0] *= -0.0
+        rows, places = meshes.distinct_rows(table)
+        self.assertEqual(len(rows), len(numpy.unique(table, axis=0)))
+        self.assertTrue(numpy.array_equal(rows[places], table))
+
+
 class Children(InTempFolder):
     def test_a_killed_blender_leaves_no_program(self):
         """A Python that stands for Blender is killed: the program ends."""
@@ -175,7 +194,8 @@ time.sleep({PATIENCE})
 """
         blender = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
                                    env={**os.environ, "TMPDIR": self.folder.name})
-        pid = int(blender.stdout.readline().split()[0])
+        pid, folder = blender.stdout.readline().split()
+        pid = int(pid)
         blender.send_signal(signal.SIGKILL)
         blender.wait()
         blender.stdout.close()
@@ -183,6 +203,16 @@ time.sleep({PATIENCE})
         while time.monotonic() < end and self.runs(pid):
             time.sleep(0.05)
         self.assertFalse(self.runs(pid))
+        # The next one removes what it left, but nothing that is in use.
+        left = pathlib.Path(folder)
+        self.assertTrue(left.exists())
+        with unittest.mock.patch.object(tempfile, "tempdir", self.folder.name):
+            first, second = temp_folder.TempFolder(), temp_folder.TempFolder()
+        self.assertFalse(left.exists())
+        self.assertTrue(os.path.exists(first.name))
+        for one in (first, second):
+            one.cleanup()
+            self.assertFalse(os.path.exists(one.name))
 
     def runs(self, pid):
         """Whether a process is there and no zombie."""

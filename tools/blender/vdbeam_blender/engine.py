@@ -1,10 +1,9 @@
 """The render engine: F12, animations and the command line (blender -b -a) render by vdbeam."""
 import os
-import tempfile
 
 import bpy
 
-from . import export, exr, layers, process, read_scene, settings, view_engine
+from . import export, exr, layers, process, read_scene, settings, temp_folder, view_engine
 
 PACKAGE = __package__
 POLL = 0.05  # seconds
@@ -62,7 +61,7 @@ class VdbeamRenderEngine(view_engine.Viewport, bpy.types.RenderEngine):
         self.end_result(self.begin_result(0, 0, *self.size_of(depsgraph.scene)))
         try:
             program = process.find_program(program_path())
-            with tempfile.TemporaryDirectory(prefix="vdbeam_") as folder:
+            with temp_folder.TempFolder() as folder:
                 self.render_in(folder, program, depsgraph)
         except (process.ProgramMissing, ValueError) as problem:
             self.fail(str(problem))

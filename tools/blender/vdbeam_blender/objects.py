@@ -191,9 +191,8 @@ def points_of(mesh):
     return points.reshape(-1, 3)
 
 
-def mesh_volume(obj, mesh, matrix, shader, notes):
-    """A box of a homogeneous medium, as a [[volume]]; None for anything else."""
-    box = meshes.box_of(points_of(mesh)) if len(mesh.vertices) == 8 else None
+def mesh_volume(obj, box, matrix, shader, notes):
+    """A box (lower, upper) of a homogeneous medium, as a [[volume]]; None where the mesh is no box."""
     keys = volume_shader.volume_keys(shader, notes, obj.name)
     if keys is None:
         return None

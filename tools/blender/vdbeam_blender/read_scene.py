@@ -3,7 +3,7 @@ import os
 
 import numpy
 
-from . import camera, layers, meshes, objects, simulation, surface_shader, world
+from . import camera, layers, mesh_cache, objects, simulation, surface_shader, world
 
 
 class Options:
@@ -31,8 +31,8 @@ class SceneReader:
     def __init__(self, options, notes):
         self.options = options
         self.notes = notes
-        self.written = {}  # files and materials of an object, from the first time on
-        self.shapes = {}  # points of deforming meshes, from the first time on
+        self.meshes = mesh_cache.MeshCache(options.folder)
+        self.first_points = {}  # of deforming meshes, at the first time
         self.frame = 1.0
         self.matrices = {}  # of the camera, by time
 
@@ -48,6 +48,7 @@ class SceneReader:
         """The tables without [image] and [camera]."""
         scene = depsgraph.scene
         self.frame = frame
+        self.meshes.begin(keep=not self.options.sequence)  # a scene at another moment has the shapes of the first
         tables = {"volume": [], "mesh": [], "light": []}
         for instance in depsgraph.object_instances:
             if instance.show_self:
@@ -102,7 +103,8 @@ class SceneReader:
         if obj.type == "VOLUME":
             self.add_volume(obj, name, matrix, scene, tables)
         elif obj.type in objects.SURFACES:
-            self.add_mesh(obj, name, matrix, tables)
+            owners = {instance.parent.name} if instance.is_instance and instance.parent is not None else set()
+            self.add_mesh(obj, name, matrix, owners, tables)
         elif obj.type == "LIGHT":
             table, keys = objects.lamp_table(obj, matrix, obj.data, self.notes)
             tables[table].append(keys)
@@ -135,8 +137,8 @@ class SceneReader:
             keys["interpolation"] = self.options.interpolation
         tables["volume"].append(keys)
 
-    def add_mesh(self, obj, name, matrix, tables):
-        """A mesh: a table for each of its materials, a box of fog, or smoke."""
+    def add_mesh(self, obj, name, matrix, owners, tables):
+        """A mesh: a table for each of its materials, a box of fog, or smoke. `owners`: what makes it an instance."""
         domain = simulation.domain_of(obj)
         if domain is not None:
             return self.add_smoke(obj, domain, name, matrix, tables)
@@ -148,16 +150,15 @@ class SceneReader:
         medium, _ = objects.volume_shader_of(obj)
         if not shaders and medium is None:
             return None
-        mesh = obj.to_mesh()
-        try:
-            if medium is not None and (box := objects.mesh_volume(obj, mesh, matrix, medium, self.notes)):
-                tables["volume"].append({"name": name, **box})
-            files = self.mesh_files(mesh, name, shaders, matrix)
-            self.note_deformation(obj, mesh, name)
-        finally:
-            obj.to_mesh_clear()
-        for index, file in files.items():
-            keys = {"name": name if len(files) == 1 else f"{name}.{index}", "file": file,
+        shape = self.meshes.shape(obj, name, shaders, matrix, owners)
+        if medium is not None and (box := objects.mesh_volume(obj, shape.box, matrix, medium, self.notes)):
+            tables["volume"].append({"name": name, **box})
+        self.note_deformation(obj, name)
+        for index, file in shape.files.items():
+            if surface_shader.TINT in shaders[index]:
+                chord = shape.chords[mesh_cache.chord_key(index, matrix)]
+                shaders[index] = surface_shader.tinted_inside(shaders[index], chord, self.notes, name)
+            keys = {"name": name if len(shape.files) == 1 else f"{name}.{index}", "file": file,
                     "transform": objects.transform(matrix), "material": shaders[index]}
             if not obj.visible_camera:
                 keys["visible"] = False
@@ -166,34 +167,17 @@ class SceneReader:
             tables["mesh"].append(keys)
         return None
 
-    def note_deformation(self, obj, mesh, name):
+    def note_deformation(self, obj, name):
         """A mesh that modifiers or shape keys change while the shutter is open is that of the first moment."""
-        if self.options.sequence or not (len(obj.modifiers) or getattr(obj.data, "shape_keys", None)):
+        changes = len(obj.modifiers) or getattr(obj.data, "shape_keys", None)
+        if self.options.sequence or not self.options.blur or not changes:
             return
-        points = objects.points_of(mesh)
-        first = self.shapes.setdefault(name, points)
+        points = objects.points_of(obj.to_mesh())
+        obj.to_mesh_clear()
+        first = self.first_points.setdefault(name, points)
         if first.shape != points.shape or not numpy.allclose(first, points, atol=1e-6):
             self.notes.add(name, "its shape changes while the shutter is open, which has no counterpart; it keeps that "
                                  "of the first moment")
-
-    def mesh_files(self, mesh, name, shaders, matrix):
-        """Files of the triangles by the index of their material, written where needed. Completes their materials."""
-        if not self.options.sequence and name in self.written:  # a moment of the shutter
-            files, materials = self.written[name]
-            shaders.update(materials)
-            return files
-        if len(mesh.polygons) == 0:
-            return {}
-        triangles = objects.Triangles(mesh)
-        files = {}
-        for index in shaders:
-            if (triangles.materials == index).any():
-                part = mesh.name if len(shaders) == 1 else f"{mesh.name}_{index}"
-                files[index] = meshes.write(self.options.folder, part, triangles.of_material(index))
-                chord = meshes.mean_chord(triangles.of_one(index, matrix))
-                shaders[index] = surface_shader.tinted_inside(shaders[index], chord, self.notes, name)
-        self.written[name] = files, {index: shaders[index] for index in files}
-        return files
 
 
 def write_camera(folder, matrices):

@@ -26,12 +26,24 @@ def view_of(context, depsgraph):
             "camera_to_world": objects.rows(view.view_matrix.inverted()), "lens": lens_of(context, depsgraph, size)}
 
 
-def contents_of(folder, depsgraph):
-    """The tables of a scene without [image] and [camera]; files of meshes go into the folder."""
-    scene = depsgraph.scene
-    options = read_scene.Options(folder, bpy.path.abspath, 1, 1, interpolation=scene.vdbeam.interpolation,
-                                 render=settings.viewport_keys(scene.vdbeam))
-    return read_scene.SceneReader(options, notes.Notes()).contents(depsgraph, float(scene.frame_current))
+def changed_in(depsgraph):
+    """Names of the objects and data whose geometry has changed since the last update."""
+    return {update.id.name for update in depsgraph.updates if update.is_updated_geometry}
+
+
+class Contents:
+    """The tables of a viewport's scene without [image] and [camera]. Meshes are gathered again where they change."""
+
+    def __init__(self, folder):
+        self.reader = read_scene.SceneReader(read_scene.Options(folder, bpy.path.abspath, 1, 1), notes.Notes())
+
+    def read(self, depsgraph):
+        """The scene as it is; files of meshes go into the folder."""
+        scene, options = depsgraph.scene, self.reader.options
+        options.interpolation, options.render = scene.vdbeam.interpolation, settings.viewport_keys(scene.vdbeam)
+        self.reader.notes = notes.Notes()
+        self.reader.meshes.forget(changed_in(depsgraph))
+        return self.reader.contents(depsgraph, float(scene.frame_current))
 
 
 def watch(engine, preview):
@@ -65,7 +77,7 @@ class Viewport:
         """The scene has changed."""
         try:
             preview = self.preview_of(depsgraph.scene)
-            preview.show_scene(contents_of(preview.folder, depsgraph), not depsgraph.scene.render.film_transparent)
+            preview.show_scene(self.contents.read(depsgraph), not depsgraph.scene.render.film_transparent)
         except (process.ProgramMissing, ValueError) as problem:
             self.update_stats("", f"vdbeam: {problem}")
 
@@ -92,6 +104,7 @@ class Viewport:
             from . import engine
             threads = scene.render.threads if scene.render.threads_mode == "FIXED" else 0
             self.preview = viewport.Preview(process.find_program(engine.program_path()), threads)
+            self.contents = Contents(self.preview.folder)
             self.drawing = view_draw.Drawing(gpu, draw_texture_2d)
             watch(self, self.preview)
         return self.preview

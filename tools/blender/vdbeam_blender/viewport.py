@@ -3,16 +3,16 @@
 Nothing here waits: events and images are read by a thread.
 """
 import os
-import tempfile
 import threading
 import time
 
 import numpy
 
-from . import exr, process, toml_text, view_camera
+from . import exr, process, temp_folder, toml_text, view_camera
 
 IMAGE = "view.exr"
 SCENE = "scene.toml"
+KEPT_SCENES = 4  # whose files of meshes stay
 LONGEST_WAIT = 0.6  # seconds between two edits, where the program shows none
 
 
@@ -46,11 +46,12 @@ class Preview:
     def __init__(self, program, threads=0):
         self.program = program
         self.threads = threads
-        self.holder = tempfile.TemporaryDirectory(prefix="vdbeam_view_")
+        self.holder = temp_folder.TempFolder()
         self.folder = self.holder.name
         self.lock = threading.Lock()
         self.render = None
-        self.scene = None  # tables without those of the view
+        self.scene = None  # text without the tables of the view
+        self.shown_files, self.last_files = set(), []  # of meshes: of this scene, and of the last ones written
         self.view = None
         self.opaque = True
         self.written = None  # text of the scene file
@@ -69,7 +70,8 @@ class Preview:
 
     def show_scene(self, tables, opaque):
         """Takes another scene, without [image] and [camera]."""
-        self.scene, self.opaque = tables, opaque
+        self.scene, self.opaque = toml_text.scene_text(tables), opaque
+        self.shown_files = {mesh["file"] for mesh in tables.get("mesh", []) if "file" in mesh}
         self.update()
 
     def show_view(self, view):
@@ -86,7 +88,7 @@ class Preview:
         turn = self.turn if lines == self.lines else 1 - self.turn
         # The names of the camera's file take turns: whoever reads the scene finds the place that belongs to it.
         name = f"camera_{turn}.txt"
-        text = toml_text.scene_text({"image": image, "camera": {"file": name, **camera}, **self.scene})
+        text = toml_text.scene_text({"image": image, "camera": {"file": name, **camera}}) + "\n" + self.scene
         if text == self.written:
             return
         if lines != self.lines:
@@ -94,10 +96,19 @@ class Preview:
         self.lines, self.turn = lines, turn
         self.replace(SCENE, text)
         self.written = text
+        self.sweep()
         with self.lock:
             self.wrote_at, self.edit_seen = time.monotonic(), False
         if self.render is None or self.render.child.poll() is not None:
             self.start()
+
+    def sweep(self):
+        """Removes files of meshes that no scene names of those that the program may still read."""
+        self.last_files = [*self.last_files[-KEPT_SCENES + 1:], self.shown_files]
+        kept = set().union(*self.last_files)
+        for name in os.listdir(self.folder):
+            if name.endswith(".ply") and name not in kept:
+                os.remove(os.path.join(self.folder, name))
 
     def is_busy(self):
         """Whether the program is about to show an edit."""
