@@ -61,6 +61,15 @@ class AgainstCycles(unittest.TestCase):
     def test_box_of_fog(self):
         self.check(scenes.box_of_fog(), 128, 64)
 
+    def test_world_of_fog(self):
+        """Walks are long in fog without an end, so the mean of the image is compared, within 2 %."""
+        scene = scenes.world_of_fog()
+        scene.vdbeam.estimator, scene.vdbeam.passes = "path", 24
+        mine = self.blocks(scene, "vdbeam", 1).mean((0, 1))
+        scenes.use_cycles(scene, 128, 1)
+        theirs = self.blocks(scene, "cycles", 1).mean((0, 1))
+        self.assertLess(numpy.abs(mine / theirs - 1).max(), 0.02)
+
     def test_environment_image(self):
         self.check(scenes.surroundings(self.folder), 32, 32)
 

@@ -171,6 +171,21 @@ class Worlds(unittest.TestCase):
         self.assertEqual(self.lights(strength=0.0), [])
         self.assertEqual(world.world_lights(None, None, None), [])
 
+    def test_volume_of_the_world(self):
+        """A box of fifteen mean free paths to each side, of the thinnest channel."""
+        fog = principled_volume(Density=0.5, Color=(1, 0.5, 0, 1), Absorption_Color=(0, 0, 0, 1), Density_Attribute="")
+        output = node("OUTPUT_WORLD", {"Surface": None, "Volume": None}, target="ALL", is_active_output=True)
+        link(fog, output, "Volume")
+        tree = types.SimpleNamespace(nodes=[fog, output])
+        found = notes.Notes()
+        keys = world.world_volume(types.SimpleNamespace(use_nodes=True, node_tree=tree, name="World"), [1, 2, 3], found)
+        self.assertEqual((keys["shape"], keys["name"], keys["extinction"]), ("box", "World", 0.5))
+        self.assertEqual(keys["albedo"], [1.0, 0.5, 0.0])
+        self.assertEqual((keys["box_lower"], keys["box_upper"]), ([-29, -28, -27], [31, 32, 33]))
+        self.assertNotIn("density", keys)
+        self.assertEqual(found.lines, [])
+        self.assertIsNone(world.world_volume(None, [0, 0, 0], found))
+
     def test_environment_image_turns(self):
         mapping = node("MAPPING", {"Rotation": (0, 0, math.radians(30))}, vector_type="POINT")
         texture = node("TEX_ENVIRONMENT", {"Vector": None}, image="sky.exr", projection="EQUIRECTANGULAR")

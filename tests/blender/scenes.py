@@ -193,6 +193,20 @@ def box_of_fog():
     return scene
 
 
+def world_of_fog():
+    """A lamp over a matt plane, everywhere in fog that scatters and absorbs."""
+    scene = empty_scene()
+    add_camera(scene, (0, -6, 2.5), (0, 0, 0.5), lens=35)
+    add_plane(scene)
+    add_lamp(scene, "POINT", 400, (-1, -0.5, 1.8), shadow_soft_size=0)
+    tree, _ = set_world(scene, (0, 0, 0))
+    fog = tree.nodes.new("ShaderNodeVolumePrincipled")
+    for name, value in (("Density", 0.25), ("Color", (0.8, 0.7, 0.6, 1)), ("Anisotropy", 0.3), ("Density Attribute", "")):
+        fog.inputs[name].default_value = value
+    tree.links.new(fog.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_WORLD").inputs["Volume"])
+    return scene
+
+
 def surroundings(folder):
     """A matt plane under an environment image that has no symmetry and is turned."""
     scene = empty_scene()

@@ -34,6 +34,7 @@ class SceneReader:
         self.meshes = mesh_cache.MeshCache(options.folder)
         self.first_points = {}  # of deforming meshes, at the first time
         self.frame = 1.0
+        self.place = None  # of the world's volume
         self.matrices = {}  # of the camera, by time
 
     def read(self, depsgraph, frame):
@@ -53,6 +54,9 @@ class SceneReader:
         for instance in depsgraph.object_instances:
             if instance.show_self:
                 self.add(instance, scene, tables)
+        fog = world.world_volume(scene.world, self.middle(scene), self.notes)
+        if fog is not None:
+            tables["volume"].append(fog)
         lights = world.world_lights(scene.world, self.notes, self.image_path)
         group = getattr(scene.world, "lightgroup", "")
         for light in lights:
@@ -64,6 +68,12 @@ class SceneReader:
         tables["layer"] = layers.layer_tables(self.options.passes)
         tables["render"] = dict(self.options.render)
         return {name: table for name, table in tables.items() if table}
+
+    def middle(self, scene):
+        """The place about which the world's volume lies: that of the camera, the first that it has."""
+        if self.place is None:
+            self.place = [0.0] * 3 if scene.camera is None else [row[3] for row in objects.rows(scene.camera.matrix_world)[:3]]
+        return self.place
 
     def image_path(self, image):
         """The file of an image, or None."""

@@ -1,7 +1,7 @@
 """From the world's nodes to [[light]]: a constant colour, an environment image, a clear sky."""
 import math
 
-from . import nodes
+from . import nodes, volume_shader
 
 # Irradiance of the sun above the air, and optical depth of haze at a dust density of 1, with which an atmosphere has
 # the sunlight and the skylight of Cycles' Nishita sky at the strength 1. Fitted at elevations of 17, 46 and 80 degrees;
@@ -62,14 +62,36 @@ def constant(colour):
     return [{"type": "environment", "radiance": colour}] if max(colour) > 0 else []
 
 
+# Half an edge of the box of a world's volume, in mean free paths of the channel with the longest: light from outside of
+# it counts less than what a float holds of that from inside.
+FAR_AWAY = 15.0
+
+
+def world_volume(world, place, notes):
+    """The [[volume]] of a world's volume, about a place; None without one. Cycles' fills all space, so that nothing of
+    the background and of suns comes through; here it is a box beyond whose edges that is so."""
+    if world is None or not world.use_nodes:
+        return None
+    shader = nodes.shader_of(world.node_tree, "OUTPUT_WORLD", "Volume")
+    keys = volume_shader.volume_keys(shader, notes, world.name) if shader is not None else None
+    if keys is None or keys["extinction"] <= 0:
+        return None
+    if keys.pop("density") or keys.pop("emission", None):
+        notes.add(world.name, "grids and emission of the world's volume have no counterpart; it is homogeneous")
+    keys.pop("mask", None)
+    keys.pop("color_grid", None)
+    thinnest = min(value for value in keys["extinction_scale"] if value > 0) * keys["extinction"]
+    half = FAR_AWAY / thinnest
+    lower, upper = ([value + side * half for value in place] for side in (-1, 1))
+    return {"name": world.name, "shape": "box", "box_lower": lower, "box_upper": upper, **keys}
+
+
 def world_lights(world, notes, image_path):
     """The world's [[light]] tables. `image_path` gives the file of an image, or None."""
     if world is None:
         return []
     if not world.use_nodes:
         return constant([float(value) for value in world.color])
-    if nodes.shader_of(world.node_tree, "OUTPUT_WORLD", "Volume") is not None:
-        notes.add(world.name, "the world's volume has no counterpart; use a mesh box with a volume material")
     shader = nodes.shader_of(world.node_tree, "OUTPUT_WORLD", "Surface")
     if shader is None:
         return []
