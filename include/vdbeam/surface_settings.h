@@ -22,6 +22,7 @@ struct MaterialSettings {
   /// diffuse, standard, shadow_catcher, emissive: image that multiplies albedo or radiance; "":
   /// none
   std::string texture;
+  int texture_image = -1; ///< texture is a glTF, and this one of its images is meant; -1: neither
   TextureWrap texture_wrap = TextureWrap::repeat;
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
   /// conductor, dielectric, standard: alpha of GGX is its square, in [0, 1]; none: 0.2, 0, 0.5.
@@ -60,6 +61,10 @@ struct SurfaceSettings {
   /// file: with the materials of a glTF. A scene that was read has a surface for each of them,
   /// which shows the triangles of one; -1: all.
   bool file_materials = false;
+  double file_fps = 24; ///< file: frames per second of the animation of a glTF; time 0 is frame 0
+  /// file: time of that animation [seconds], which the scene's frame decides; none: the file has
+  /// none.
+  std::optional<double> file_seconds;
   int part = -1;
   MaterialSettings material;
   std::string group;   ///< of a surface that shines, as LightSettings::group

@@ -1,6 +1,7 @@
 #include "geometry/gltf_camera.h"
 
 #include "geometry/gltf_files.h"
+#include "geometry/gltf_motion.h"
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
@@ -28,86 +29,21 @@ namespace {
 /// Enough for hours at any frame rate; what asks for more is damaged.
 constexpr double most_keys = 1e6;
 
-/// A node between the root and the camera, and what moves it; null: nothing does.
-struct Joint {
-  const aiNode* node;
-  const aiNodeAnim* motion = nullptr;
-  double ticks_per_second = 1;
-};
-
-/// The joints from the root to the camera's node.
-std::vector<Joint> joints_of(const aiScene& scene, const aiNode* node) {
-  std::vector<Joint> joints;
-  for (; node; node = node->mParent) {
-    Joint joint{node};
-    for (unsigned a = 0; a < scene.mNumAnimations && !joint.motion; ++a) {
-      const aiAnimation& animation = *scene.mAnimations[a];
-      for (unsigned c = 0; c < animation.mNumChannels && !joint.motion; ++c)
-        if (animation.mChannels[c]->mNodeName == node->mName) {
-          joint.motion = animation.mChannels[c];
-          joint.ticks_per_second = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1000;
-        }
-    }
-    joints.insert(joints.begin(), joint);
-  }
+/// The nodes from the root to the camera's.
+std::vector<const aiNode*> joints_of(const aiNode* node) {
+  std::vector<const aiNode*> joints;
+  for (; node; node = node->mParent)
+    joints.insert(joints.begin(), node);
   return joints;
 }
 
-/// The value of sorted keys at a time; `mix(a, b, share)` interpolates. Requires a key.
-template <class Key, class Mix>
-auto value_at(const Key* keys, unsigned count, double ticks, Mix mix) {
-  const Key* end = keys + count;
-  const Key* after = std::lower_bound(keys, end, ticks,
-                                      [](const Key& key, double time) { return key.mTime < time; });
-  if (after == end)
-    return keys[count - 1].mValue;
-  if (after == keys)
-    return keys[0].mValue;
-  const Key& before = after[-1];
-  const double width = after->mTime - before.mTime;
-  const auto share = static_cast<float>(width > 0 ? (ticks - before.mTime) / width : 1);
-  return mix(before.mValue, after->mValue, share);
-}
-
-aiMatrix4x4 matrix_at(const Joint& joint, double seconds) {
-  if (!joint.motion)
-    return joint.node->mTransformation;
-  aiVector3D scale, position;
-  aiQuaternion rotation;
-  joint.node->mTransformation.Decompose(scale, rotation, position);
-  const double ticks = seconds * joint.ticks_per_second;
-  const aiNodeAnim& motion = *joint.motion;
-  const auto linear = [](const aiVector3D& a, const aiVector3D& b, float share) {
-    return a + (b - a) * share;
-  };
-  if (motion.mNumPositionKeys > 0)
-    position = value_at(motion.mPositionKeys, motion.mNumPositionKeys, ticks, linear);
-  if (motion.mNumScalingKeys > 0)
-    scale = value_at(motion.mScalingKeys, motion.mNumScalingKeys, ticks, linear);
-  if (motion.mNumRotationKeys > 0)
-    rotation = value_at(motion.mRotationKeys, motion.mNumRotationKeys, ticks,
-                        [](const aiQuaternion& a, const aiQuaternion& b, float share) {
-                          aiQuaternion mixed;
-                          aiQuaternion::Interpolate(mixed, a, b, share);
-                          return mixed;
-                        });
-  return aiMatrix4x4(scale, rotation, position);
-}
-
 /// Times [seconds] at which the camera is sampled: all keys, and `rate` per second in between.
-std::vector<double> sample_times(const std::vector<Joint>& joints, double rate) {
-  std::set<double> keys;
-  for (const Joint& joint : joints) {
-    const auto add = [&](const auto* values, unsigned count) {
-      for (unsigned i = 0; i < count; ++i)
-        keys.insert(values[i].mTime / joint.ticks_per_second);
-    };
-    if (!joint.motion)
-      continue;
-    add(joint.motion->mPositionKeys, joint.motion->mNumPositionKeys);
-    add(joint.motion->mRotationKeys, joint.motion->mNumRotationKeys);
-    add(joint.motion->mScalingKeys, joint.motion->mNumScalingKeys);
-  }
+std::vector<double> sample_times(const GltfMotion& motion, const std::vector<const aiNode*>& joints,
+                                 double rate) {
+  std::vector<double> found;
+  for (const aiNode* joint : joints)
+    motion.append_key_times(*joint, found);
+  const std::set<double> keys(found.begin(), found.end());
   if (keys.empty())
     return {0};
   const double length = *keys.rbegin() - *keys.begin();
@@ -169,11 +105,12 @@ void parse(const std::string& path, const std::string& name, double rate, int ou
     throw std::runtime_error("its camera stands nowhere");
   const double fov = fov_of(camera);
   write_all(output, &fov, sizeof fov);
-  const std::vector<Joint> joints = joints_of(*scene, node);
-  for (const double seconds : sample_times(joints, rate)) {
+  const GltfMotion motion(*scene);
+  const std::vector<const aiNode*> joints = joints_of(node);
+  for (const double seconds : sample_times(motion, joints, rate)) {
     aiMatrix4x4 m;
-    for (const Joint& joint : joints)
-      m *= matrix_at(joint, seconds);
+    for (const aiNode* joint : joints)
+      m *= motion.matrix(*joint, seconds);
     const RawKey key{seconds,
                      {double{m.a1}, double{m.a2}, double{m.a3}, double{m.a4}, double{m.b1},
                       double{m.b2}, double{m.b3}, double{m.b4}, double{m.c1}, double{m.c2},

@@ -65,6 +65,15 @@ std::string text_or_nothing(const Read& read) {
   }
 }
 
+/// The JSON of a glTF; empty for other files and for unreadable ones.
+std::string json_text(const std::string& path) {
+  const bool binary = has_extension(path, ".glb");
+  if (!binary && !has_extension(path, ".gltf"))
+    return {};
+  return text_or_nothing(
+      [&] { return binary ? read_glb_text(path) : read_text(path, most_bytes); });
+}
+
 } // namespace
 
 std::string named_by_uri(const std::string& path) {
@@ -72,13 +81,13 @@ std::string named_by_uri(const std::string& path) {
   return std::filesystem::exists(path, failed) ? path : percent_decoded(path);
 }
 
+bool is_animated_gltf(const std::string& path) {
+  return json_text(path).find("\"animations\"") != std::string::npos;
+}
+
 std::vector<std::string> gltf_files(const std::string& path) {
   std::vector<std::string> files;
-  const bool binary = has_extension(path, ".glb");
-  if (!binary && !has_extension(path, ".gltf"))
-    return files;
-  const std::string json =
-      text_or_nothing([&] { return binary ? read_glb_text(path) : read_text(path, most_bytes); });
+  const std::string json = json_text(path);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const std::string key = "\"uri\"";
   for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at + 1))

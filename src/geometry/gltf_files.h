@@ -19,6 +19,9 @@ std::vector<std::string> gltf_files(const std::string& path);
 /// materials at the head of an .obj file.
 std::vector<std::string> files_named_by_model(const std::string& path);
 
+/// Whether a glTF may have moving nodes. False for other files and for unreadable ones.
+bool is_animated_gltf(const std::string& path);
+
 /// Bytes of the files that a .gltf file names, as far as they are there. Throws InputError for what
 /// is not a regular file or may not be read.
 std::uint64_t bytes_of_gltf_files(const std::string& path);

@@ -1,13 +1,11 @@
 #include "geometry/gltf_materials.h"
 
 #include "geometry/gltf_camera.h"
-#include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"
 #include "text/printable.h"
-#include "text/text.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 namespace vdbeam {
@@ -78,7 +75,7 @@ public:
       material.index = static_cast<int>(index);
       material.settings.type = MaterialType::standard;
       if (index < count)
-        fill((*materials)[index], material.settings);
+        fill((*materials)[index], material);
       else
         material.settings.metal = material.settings.roughness.emplace(1);
       result.used.push_back(material);
@@ -107,10 +104,11 @@ private:
     return indices;
   }
 
-  void fill(const Json& json, MaterialSettings& settings) {
+  void fill(const Json& json, GltfMaterial& material) {
     const Json* base = at(json, {"pbrMetallicRoughness"});
     const Json none = Json::object();
     const Json& pbr = base ? *base : none;
+    MaterialSettings& settings = material.settings;
     settings.albedo = color(at(pbr, {"baseColorFactor"}), Rgb(1), 1);
     settings.metal = number(at(pbr, {"metallicFactor"}), 1, 0, 1);
     settings.roughness = number(at(pbr, {"roughnessFactor"}), 1, 0, 1);
@@ -120,59 +118,78 @@ private:
     };
     settings.coat = number(coat("clearcoatFactor"), 0, 0, 1);
     settings.coat_roughness = number(coat("clearcoatRoughnessFactor"), 0, 0, 1);
-    read_texture(at(pbr, {"baseColorTexture", "index"}), settings);
+    use_picture(at(pbr, {"baseColorTexture", "index"}), settings);
+    material.roughness_and_metal = picture_of(at(pbr, {"metallicRoughnessTexture", "index"}));
+    const double transmission = number(
+        at(json, {"extensions", "KHR_materials_transmission", "transmissionFactor"}), 0, 0, 1);
+    if (!become_lamp(json, material) && transmission > 0.5)
+      become_glass(material);
+    note_unused(json, pbr);
+  }
+
+  void note_unused(const Json& json, const Json& pbr) {
+    for (const char* map : {"normalTexture", "occlusionTexture"})
+      if (json.contains(map))
+        note(fmt::format("its {} are not used", map));
+    const Json* mode = at(json, {"alphaMode"});
+    if (mode && mode->is_string() && *mode != "OPAQUE")
+      note(fmt::format("its alphaMode {} is not used: the surfaces are opaque",
+                       as_utf8(mode->get<std::string>())));
+    for (const Json* use : {at(pbr, {"baseColorTexture"}), at(json, {"emissiveTexture"}),
+                            at(pbr, {"metallicRoughnessTexture"})})
+      if (use && at(*use, {"extensions", "KHR_texture_transform"}))
+        note("its texture transforms are not used");
+      else if (use && number(at(*use, {"texCoord"}), 0, 0, 9) > 0)
+        note("its second texture coordinates are not used, but the first in their place");
+  }
+
+  /// Makes a lamp of what glows; false where it does not, or where only parts of something that has
+  /// another texture may.
+  bool become_lamp(const Json& json, GltfMaterial& material) {
     const Json* strength =
         at(json, {"extensions", "KHR_materials_emissive_strength", "emissiveStrength"});
     const Rgb emission = color(at(json, {"emissiveFactor"}), Rgb(0), 1) *
                          static_cast<float>(number(strength, 1, 0, 1e30));
-    const double transmission = number(
-        at(json, {"extensions", "KHR_materials_transmission", "transmissionFactor"}), 0, 0, 1);
-    if (max_component(emission) > 0)
-      become_lamp(emission, settings);
-    else if (transmission > 0.5)
-      become_glass(settings);
-    for (const char* map : {"normalTexture", "occlusionTexture", "emissiveTexture"})
-      if (json.contains(map))
-        note(fmt::format("its {} are not used", map));
-    if (pbr.contains("metallicRoughnessTexture"))
-      note("its metallicRoughnessTexture are not used, only the factors");
+    const Json* map = at(json, {"emissiveTexture", "index"});
+    if (!(max_component(emission) > 0))
+      return false;
+    if (map && at(json, {"pbrMetallicRoughness", "baseColorTexture"})) {
+      note("the glow of materials with an emissiveTexture and a baseColorTexture is not used");
+      return false;
+    }
+    material = {material.index, {}, {}};
+    material.settings.type = MaterialType::emissive;
+    material.settings.radiance = emission;
+    use_picture(map, material.settings);
+    return true;
   }
-
-  static void become_lamp(const Rgb& emission, MaterialSettings& settings) {
-    settings = {};
-    settings.type = MaterialType::emissive;
-    settings.radiance = emission;
-  }
-  static void become_glass(MaterialSettings& settings) {
+  static void become_glass(GltfMaterial& material) {
     MaterialSettings glass;
     glass.type = MaterialType::dielectric;
-    glass.ior = settings.ior;
-    glass.roughness = settings.roughness;
-    settings = glass;
+    glass.ior = material.settings.ior;
+    glass.roughness = material.settings.roughness;
+    material.settings = glass;
   }
 
-  /// The image of a texture that lies beside the file.
-  void read_texture(const Json* index, MaterialSettings& settings) {
+  /// The picture of a texture; without a file where there is none, or none that can be read.
+  GltfPicture picture_of(const Json* index) {
     const Json* texture = element(gltf_, "textures", index);
-    const Json* image = texture ? element(gltf_, "images", at(*texture, {"source"})) : nullptr;
+    const Json* source = texture ? at(*texture, {"source"}) : nullptr;
+    const Json* image = element(gltf_, "images", source);
     if (!image)
-      return;
-    const Json* uri = at(*image, {"uri"});
-    if (!uri || !uri->is_string() || uri->get<std::string>().starts_with("data:")) {
-      note("an image of a base colour lies in the file and is not used: export it as glTF with "
-           "separate textures");
-      return;
-    }
-    const std::string file = named_by_uri(
-        (std::filesystem::path(path_).parent_path() / uri->get<std::string>()).string());
-    const std::string extension = lower_case(std::filesystem::path(file).extension().string());
-    if (extension != ".png" && extension != ".exr" && extension != ".hdr") {
-      note(fmt::format("its image {} is not used: textures are PNG, EXR or HDR images",
-                       as_utf8(uri->get<std::string>())));
-      return;
-    }
-    settings.texture = file;
-    const Json* sampler = element(gltf_, "samplers", at(*texture, {"sampler"}));
+      return {};
+    GltfPicture picture = find_gltf_picture(path_, *image, source->get<int>());
+    if (!picture.issue.empty())
+      note(picture.issue);
+    return picture;
+  }
+
+  void use_picture(const Json* index, MaterialSettings& settings) {
+    const GltfPicture picture = picture_of(index);
+    settings.texture = picture.file;
+    settings.texture_image = picture.image;
+    const Json* texture = element(gltf_, "textures", index);
+    const Json* sampler = texture ? element(gltf_, "samplers", at(*texture, {"sampler"})) : nullptr;
     const double wrap = sampler ? number(at(*sampler, {"wrapS"}), 10497, 0, 1e5) : 10497;
     settings.texture_wrap = wrap == 33071   ? TextureWrap::clamp
                             : wrap == 33648 ? TextureWrap::mirror
@@ -209,6 +226,9 @@ void parse(const std::string& path, int output) {
                               {"coat_roughness", s.coat_roughness},
                               {"radiance", to_json(s.radiance)},
                               {"texture", s.texture},
+                              {"texture_image", s.texture_image},
+                              {"rough_file", material.roughness_and_metal.file},
+                              {"rough_image", material.roughness_and_metal.image},
                               {"wrap", static_cast<int>(s.texture_wrap)}});
   }
   const std::string text = result.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -239,11 +259,13 @@ GltfMaterials read_gltf_materials(const std::string& path) {
          {MaterialType::standard, MaterialType::emissive, MaterialType::dielectric})
       if (one.at("type").get<std::string>() == type.name) // which outlives this text
         s.type = type;
-    if (s.type == MaterialType::standard) {
+    if (s.type == MaterialType::standard)
       s.albedo = to_rgb(one.at("albedo"));
-      s.texture = one.at("texture").get<std::string>();
-      s.texture_wrap = static_cast<TextureWrap>(one.at("wrap").get<int>());
-    }
+    s.texture = one.at("texture").get<std::string>();
+    s.texture_image = one.at("texture_image").get<int>();
+    s.texture_wrap = static_cast<TextureWrap>(one.at("wrap").get<int>());
+    material.roughness_and_metal = {one.at("rough_file").get<std::string>(),
+                                    one.at("rough_image").get<int>(), ""};
     s.metal = one.at("metal").get<double>();
     if (s.type != MaterialType::emissive)
       s.roughness = one.at("roughness").get<double>();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/gltf_images.h"
 #include "vdbeam/surface_settings.h"
 
 #include <string>
@@ -11,6 +12,7 @@ namespace vdbeam {
 struct GltfMaterial {
   int index = 0; ///< by which triangles name it; one beyond the last: of those that name none
   MaterialSettings settings;
+  GltfPicture roughness_and_metal; ///< factors in its green and blue; no file: none
 };
 
 struct GltfMaterials {
@@ -19,8 +21,9 @@ struct GltfMaterials {
 };
 
 /// The materials of a .gltf or .glb file: base colour, metal, roughness, clear coat, index of
-/// refraction, transmission and emission of the metallic-roughness model, and the texture of the
-/// base colour. The file is parsed in a guarded child process. Throws InputError for another
+/// refraction, transmission and emission of the metallic-roughness model, and the textures of base
+/// colour and emission. Something that reflects and glows by a texture reflects only, which a note
+/// says. The file is parsed in a guarded child process. Throws InputError for another
 /// file, FrameError for one that is damaged.
 GltfMaterials read_gltf_materials(const std::string& path);
 

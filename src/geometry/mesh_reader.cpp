@@ -3,6 +3,7 @@
 #include "geometry/gltf_camera.h"
 #include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
+#include "geometry/gltf_motion.h"
 #include "geometry/gltf_parts.h"
 #include "geometry/obj_normals.h"
 #include "geometry/uri_files.h"
@@ -127,23 +128,63 @@ void append_mesh(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
   }
 }
 
-/// `taken`: per material of the scene, whether its triangles are; empty: all are.
-void append_node(const aiScene& scene, const aiNode& node, const Affine& parent,
-                 const std::vector<bool>& taken, RawMesh& raw) {
-  const Affine map = parent.after(to_affine(node.mTransformation));
+/// What append_node takes of a scene, and where.
+struct Selection {
+  const aiScene& scene;
+  std::vector<bool> taken; ///< per material, whether its triangles are; empty: all are
+  GltfMotion motion;
+  std::optional<double> seconds;
+};
+
+void append_node(const Selection& from, const aiNode& node, const Affine& parent, RawMesh& raw) {
+  const aiScene& scene = from.scene;
+  const std::vector<bool>& taken = from.taken;
+  const Affine map = parent.after(
+      to_affine(from.seconds ? from.motion.matrix(node, *from.seconds) : node.mTransformation));
   for (unsigned i = 0; i < node.mNumMeshes; ++i)
     if (node.mMeshes[i] < scene.mNumMeshes)
       if (const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
           taken.empty() || (mesh.mMaterialIndex < taken.size() && taken[mesh.mMaterialIndex]))
         append_mesh(mesh, map, raw);
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    append_node(scene, *node.mChildren[i], map, taken, raw);
+    append_node(from, *node.mChildren[i], map, raw);
 }
 
 struct Counts {
   std::uint64_t positions = 0, uvs = 0, normals = 0, triangles = 0;
   std::uint64_t missing_normals = 0; ///< corners that name one that is not there
+  std::uint64_t unused = 0;          ///< bits of UnusedParts
 };
+
+/// What is not used of a glTF, and the notes about it.
+enum UnusedParts : std::uint64_t { unused_skins = 1, unused_morphs = 2, unused_curves = 4 };
+constexpr std::pair<std::uint64_t, const char*> unused_notes[] = {
+    {unused_skins, "its skins are not applied: its meshes are as they were bound to their bones"},
+    {unused_morphs, "its morph targets are not applied"},
+    {unused_curves, "its animation has steps or splines, which are interpolated linearly"}};
+
+/// What of a glTF is not used, by what its JSON says.
+std::uint64_t unused_parts(const nlohmann::json& gltf, bool animated) {
+  std::uint64_t unused = 0;
+  const auto list = [](const nlohmann::json& json, const char* name) {
+    return json.is_object() && json.contains(name) && json[name].is_array()
+               ? json[name]
+               : nlohmann::json::array();
+  };
+  for (const auto& node : list(gltf, "nodes"))
+    if (node.is_object() && node.contains("skin"))
+      unused |= unused_skins;
+  for (const auto& mesh : list(gltf, "meshes"))
+    for (const auto& primitive : list(mesh, "primitives"))
+      if (!list(primitive, "targets").empty())
+        unused |= unused_morphs;
+  for (const auto& animation : animated ? list(gltf, "animations") : nlohmann::json::array())
+    for (const auto& sampler : list(animation, "samplers"))
+      if (sampler.is_object() && sampler.contains("interpolation") &&
+          sampler["interpolation"] != "LINEAR")
+        unused |= unused_curves;
+  return unused;
+}
 
 /// Corners of an OBJ file that name normals in vain, which left some of its parts without.
 std::uint64_t normals_named_in_vain(const std::string& path, const aiScene& scene) {
@@ -164,30 +205,34 @@ void parse(const std::string& path, const MeshParts& parts, int output) {
     }
   Assimp::Importer importer;
   open_uris(importer);
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              (parts.normals ? 0 : int{aiComponent_NORMALS}) |
-                                  aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                  (parts.uvs ? 0 : int{aiComponent_TEXCOORDS}) |
-                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
+  importer.SetPropertyInteger(
+      AI_CONFIG_PP_RVC_FLAGS,
+      (parts.normals ? 0 : int{aiComponent_NORMALS}) | aiComponent_TANGENTS_AND_BITANGENTS |
+          aiComponent_COLORS | (parts.uvs ? 0 : int{aiComponent_TEXCOORDS}) |
+          aiComponent_BONEWEIGHTS | (parts.seconds ? 0 : int{aiComponent_ANIMATIONS}) |
+          aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   const aiScene* scene = importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate |
                                                      aiProcess_JoinIdenticalVertices);
   if (!scene)
     throw std::runtime_error(importer.GetErrorString());
   RawMesh raw;
-  std::vector<bool> taken;
+  Selection selection{*scene, {}, GltfMotion(*scene), parts.seconds};
   if (parts.material >= 0)
     for (const int index : gltf_material_indices(path, *scene))
-      taken.push_back(index == parts.material);
+      selection.taken.push_back(index == parts.material);
   if (scene->mRootNode)
-    append_node(*scene, *scene->mRootNode, {}, taken, raw);
+    append_node(selection, *scene->mRootNode, {}, raw);
   if (raw.uvs.size() != raw.positions.size())
     raw.uvs.clear();
   if (!raw.normals.empty())
     raw.normals.resize(raw.positions.size());
-  const Counts counts{raw.positions.size(), raw.uvs.size(), raw.normals.size(),
-                      raw.triangles.size(),
-                      parts.normals ? normals_named_in_vain(path, *scene) : 0};
+  const Counts counts{
+      raw.positions.size(),
+      raw.uvs.size(),
+      raw.normals.size(),
+      raw.triangles.size(),
+      parts.normals ? normals_named_in_vain(path, *scene) : 0,
+      is_gltf_file(path) ? unused_parts(read_gltf_json(path), parts.seconds.has_value()) : 0};
   write_all(output, &counts, sizeof counts);
   write_all(output, raw.positions.data(), raw.positions.size() * sizeof raw.positions[0]);
   write_all(output, raw.uvs.data(), raw.uvs.size() * sizeof raw.uvs[0]);
@@ -230,6 +275,9 @@ Mesh read_mesh(const std::string& path, const MeshParts& parts, const MeshLimits
             "{}: {} of its faces' corners name normals that it does not hold: parts with such "
             "corners are shaded by mesh.N.smooth_angle",
             path, counts.missing_normals));
+      for (const auto& [bit, note] : unused_notes)
+        if (counts.unused & bit)
+          mesh.notes.push_back(fmt::format("{}: {}", path, note));
       return mesh;
     }
   }

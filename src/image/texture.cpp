@@ -91,15 +91,19 @@ Rgb Texture::at(const Uv& uv) const {
   return top * (1 - fy) + bottom * fy;
 }
 
-Texture read_texture(const MaterialSettings& material, bool shines,
-                     std::vector<std::string>& notes) {
-  Image image = read_image(material.texture);
+Texture make_texture(Image image, const std::string& name, const MaterialSettings& material,
+                     bool shines, std::vector<std::string>& notes) {
   StopReading::check();
-  add_note(notes, material.texture, make_finite(image),
+  add_note(notes, name, make_finite(image),
            "that are infinite, taken for 65504, or no numbers, taken for 0");
   convert_colors(image, chromaticities_of(material.color_space));
   StopReading::check();
-  return {image, material.texture_wrap, shines ? largest_radiance : 1, material.texture, notes};
+  return {image, material.texture_wrap, shines ? largest_radiance : 1, name, notes};
+}
+
+Texture read_texture(const MaterialSettings& material, bool shines,
+                     std::vector<std::string>& notes) {
+  return make_texture(read_image(material.texture), material.texture, material, shines, notes);
 }
 
 } // namespace vdbeam

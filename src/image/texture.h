@@ -36,9 +36,14 @@ private:
   std::vector<Rgb> texels_;
 };
 
-/// Reads the texture of a material, in the colour space of its settings: of one that shines a
-/// factor of its radiance, of others of the albedo, which is kept to 1. Throws InputError where
-/// there is no such picture.
+/// Makes the texture of a material of an image, in the colour space of its settings: of one that
+/// shines a factor of its radiance, of others of the albedo, which is kept to 1. `name` is that of
+/// the image in notes.
+Texture make_texture(Image image, const std::string& name, const MaterialSettings& material,
+                     bool shines, std::vector<std::string>& notes);
+
+/// Makes the texture of the file that a material names. Throws InputError where there is no such
+/// picture.
 Texture read_texture(const MaterialSettings& material, bool shines,
                      std::vector<std::string>& notes);
 

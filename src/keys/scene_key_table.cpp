@@ -179,6 +179,11 @@ void add_mesh(KeyTable& table) {
       .add("file_materials", &S::file_materials,
            "use the materials of a glTF (metallic-roughness), instead of material")
       .types({"file"});
+  table
+      .add("file_fps", &S::file_fps,
+           "frames per second of the animation of a glTF's nodes; time 0 is frame 0")
+      .types({"file"})
+      .above(0);
   table.add("visible", &S::visible, "visible to the camera; an invisible mesh still blocks light");
   table.add("name", &S::name, R"(name in Cryptomatte; "": mesh0, mesh1, ...)").keeps_world();
   table.add("group", &S::group,

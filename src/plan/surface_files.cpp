@@ -1,8 +1,10 @@
 #include "plan/surface_files.h"
 
+#include "geometry/gltf_images.h"
 #include "geometry/mesh_size.h"
 #include "vdbeam/error.h"
-#include "vdbeam/image_file.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
@@ -45,10 +47,11 @@ std::vector<SurfaceFile> surface_files(const Scene& scene) {
             {surface.file, size.triangles, 0, 0, mesh_bytes(scene, surface.file, size)});
     }
     const std::string& texture = surface.material.texture;
-    if (texture.empty() || !known.insert(texture).second)
+    const int held = surface.material.texture_image;
+    if (texture.empty() || !known.insert(fmt::format("{}|{}", texture, held)).second)
       continue;
     try {
-      const Image image = read_image(texture);
+      const Image image = read_picture({texture, held, ""});
       files.push_back({texture, 0, image.width, image.height,
                        bytes_per_texel * static_cast<std::uint64_t>(image.width) *
                            static_cast<std::uint64_t>(image.height)});

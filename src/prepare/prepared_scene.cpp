@@ -43,6 +43,9 @@ std::string world_settings(const Scene& scene) {
   std::string text = settings_text(scene, [](const SceneKey& key) { return key.changes_world; });
   for (const VolumeSettings& volume : scene.volumes)
     text += volume.present ? "+" : "-";
+  for (const SurfaceSettings& surface : scene.surfaces)
+    text +=
+        fmt::format("{}/{};", surface.file_seconds.value_or(-1), surface.material.texture_image);
   if (light_with_air(scene.lights) >= 0)
     for (const LightSettings& light : lights_at_camera(scene))
       text += fmt::format("{};", light.altitude);

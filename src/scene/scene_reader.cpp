@@ -100,6 +100,7 @@ Scene SceneReader::read(const toml::table& root) {
         one_line(fmt::format("{}: unknown key {}{}", location_of(*child.node), child.name, hint)));
   }
   place_instances();
+  set_file_times();
   use_file_materials();
   add_suns();
   validate_consistency(scene_, [this](const std::string& key) { return locate(key); });

@@ -36,6 +36,7 @@ private:
   void read_rows(std::size_t index, const toml::node& node);
   std::vector<InstanceRow> rows_of(std::size_t index) const;
   void place_instances();
+  void set_file_times();
   void use_file_materials();
   [[noreturn]] void fail_unnamed(std::size_t index) const;
   void note_idle_keys();

@@ -1,4 +1,5 @@
 #include "geometry/gltf_camera.h"
+#include "geometry/gltf_files.h"
 #include "geometry/gltf_materials.h"
 #include "scene/scene_reader.h"
 #include "text/text.h"
@@ -8,6 +9,34 @@
 #include <fmt/format.h>
 
 namespace vdbeam {
+namespace {
+
+/// Multiplies roughness and metal by the means of their picture, which surfaces do not have;
+/// returns the note about it.
+std::string apply_means(GltfMaterial& material) {
+  if (material.roughness_and_metal.file.empty())
+    return {};
+  try {
+    const DataMeans means = means_of_data(material.roughness_and_metal);
+    MaterialSettings& settings = material.settings;
+    settings.roughness = settings.roughness.value_or(1) * means.green;
+    settings.metal *= means.blue;
+    return fmt::format("its metallicRoughnessTexture of material {} counts by its mean: roughness "
+                       "{:.2f}, metal {:.2f}",
+                       material.index, *settings.roughness, settings.metal);
+  } catch (const Error& problem) {
+    return fmt::format("its metallicRoughnessTexture is not used: {}", problem.what());
+  }
+}
+
+} // namespace
+
+/// Gives meshes of animated glTFs the time of the frame.
+void SceneReader::set_file_times() {
+  for (SurfaceSettings& surface : scene_.surfaces)
+    if (surface.shape == SurfaceShape::file && is_animated_gltf(surface.file))
+      surface.file_seconds = frame_.time / surface.file_fps;
+}
 
 /// Divides meshes that have the materials of their files: a surface for each material. The first
 /// takes the mesh's number, the others come after all meshes of the scene file.
@@ -34,6 +63,9 @@ void SceneReader::use_file_materials() {
     }
     for (const std::string& note : materials.notes)
       scene_.notes.push_back(one_line(fmt::format("{}: {}", mesh.file, note)));
+    for (GltfMaterial& material : materials.used)
+      if (const std::string note = apply_means(material); !note.empty())
+        scene_.notes.push_back(one_line(fmt::format("{}: {}", mesh.file, note)));
     for (std::size_t part = 0; part < materials.used.size(); ++part) {
       SurfaceSettings& surface =
           part == 0 ? scene_.surfaces[i] : scene_.surfaces.emplace_back(mesh);

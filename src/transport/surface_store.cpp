@@ -2,8 +2,8 @@
 
 #include "geometry/corner_normals.h"
 #include "geometry/gltf_files.h"
+#include "geometry/gltf_images.h"
 #include "geometry/mesh_reader.h"
-#include "machine/input_file.h"
 #include "machine/stop_reading.h"
 
 #include <fmt/format.h>
@@ -31,18 +31,20 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
                                                     std::vector<std::string>& notes) {
   const bool from_file = surface.shape == SurfaceShape::file, uvs = textured_[surface.file];
   const std::string name =
-      from_file
-          ? fmt::format("{}|{}|{}|{}|{}", model_identity(surface.file), uvs ? "uv" : "",
-                        surface.file_normals ? "normals" : "", surface.smooth_angle, surface.part)
-          : fmt::format("{}", static_cast<int>(surface.shape));
+      from_file ? fmt::format("{}|{}|{}|{}|{}|{}", model_identity(surface.file), uvs ? "uv" : "",
+                              surface.file_normals ? "normals" : "", surface.smooth_angle,
+                              surface.part, surface.file_seconds.value_or(-1))
+                : fmt::format("{}", static_cast<int>(surface.shape));
   if (const KnownShape* known = find(shapes_, name))
     return *known;
   KnownShape made;
   if (const KnownShape* known = previous_ ? find(previous_->shapes_, name) : nullptr) {
     made = *known;
   } else if (from_file) {
-    Mesh mesh = read_mesh(surface.file,
-                          {.uvs = uvs, .normals = surface.file_normals, .material = surface.part});
+    Mesh mesh = read_mesh(surface.file, {.uvs = uvs,
+                                         .normals = surface.file_normals,
+                                         .material = surface.part,
+                                         .seconds = surface.file_seconds});
     ++meshes_read_;
     made.center = mesh.center;
     made.notes = std::move(mesh.notes);
@@ -59,16 +61,18 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
 
 std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material, bool shines,
                                                      std::vector<std::string>& notes) {
-  const std::string name = fmt::format("{}|{}|{}|{}", file_identity(material.texture),
-                                       static_cast<int>(material.texture_wrap),
-                                       static_cast<int>(material.color_space), shines);
+  const std::string name = fmt::format(
+      "{}|{}|{}|{}|{}", model_identity(material.texture), material.texture_image,
+      static_cast<int>(material.texture_wrap), static_cast<int>(material.color_space), shines);
   if (const KnownTexture* known = find(textures_, name))
     return known->texture;
   KnownTexture made;
   if (const KnownTexture* known = previous_ ? find(previous_->textures_, name) : nullptr) {
     made = *known;
   } else {
-    made.texture = std::make_shared<const Texture>(read_texture(material, shines, made.notes));
+    made.texture = std::make_shared<const Texture>(
+        make_texture(read_picture({material.texture, material.texture_image, ""}), material.texture,
+                     material, shines, made.notes));
     ++textures_read_;
   }
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());

@@ -117,7 +117,7 @@ TEST(GltfMaterials, TexturesOfTheBaseColour) {
   const auto with_image = [&](const std::string& image) {
     write_bytes(path, triangles({R"(, "material": 0)"},
                                 R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
-                                    "normalTexture": {"index": 0}})",
+                                    "normalTexture": {"index": 0}, "alphaMode": "MASK"})",
                                 R"(, "textures": [{"source": 0, "sampler": 0}],
                                     "samplers": [{"wrapS": 33071}], "images": [)" +
                                     image + "]"));
@@ -126,14 +126,41 @@ TEST(GltfMaterials, TexturesOfTheBaseColour) {
   write_bytes(folder.file("my wood.png"), "any");
   const GltfMaterials beside = with_image(R"({"uri": "my%20wood.png"})");
   EXPECT_EQ(beside.used[0].settings.texture, folder.file("my wood.png"));
+  EXPECT_EQ(beside.used[0].settings.texture_image, -1);
   EXPECT_EQ(beside.used[0].settings.texture_wrap, TextureWrap::clamp);
-  EXPECT_EQ(beside.notes, std::vector<std::string>{"its normalTexture are not used"});
-  for (const char* image : {R"({"uri": "wood.jpg"})", R"({"bufferView": 0})",
+  EXPECT_EQ(beside.notes,
+            (std::vector<std::string>{"its alphaMode MASK is not used: the surfaces are opaque",
+                                      "its normalTexture are not used"}));
+  for (const char* image : {R"({"bufferView": 0, "mimeType": "image/png"})",
                             R"({"uri": "data:image/png;base64,AAAA"})"}) {
+    const GltfMaterials held = with_image(image);
+    EXPECT_EQ(held.used[0].settings.texture, path) << image;
+    EXPECT_EQ(held.used[0].settings.texture_image, 0) << image;
+    EXPECT_EQ(held.notes.size(), 2u) << image;
+  }
+  for (const char* image :
+       {R"({"uri": "wood.jpg"})", R"({"bufferView": 0, "mimeType": "image/jpeg"})",
+        R"({"uri": "data:image/jpeg;base64,AAAA"})"}) {
     const GltfMaterials without = with_image(image);
     EXPECT_EQ(without.used[0].settings.texture, "") << image;
-    EXPECT_EQ(without.notes.size(), 2u) << image;
+    EXPECT_EQ(without.notes.size(), 3u) << image;
   }
+}
+
+/// What glows by a texture alone is a lamp; what has other textures too is not, and says so.
+TEST(GltfMaterials, TexturesOfEmission) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.gltf");
+  write_bytes(path, triangles({R"(, "material": 0)", R"(, "material": 1)"},
+                              R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}},
+                                 {"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0},
+                                  "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})",
+                              R"(, "textures": [{"source": 0}], "images": [{"uri": "a.png"}])"));
+  const GltfMaterials materials = read_gltf_materials(path);
+  EXPECT_EQ(materials.used[0].settings.type, MaterialType::emissive);
+  EXPECT_EQ(materials.used[0].settings.texture, folder.file("a.png"));
+  EXPECT_EQ(materials.used[1].settings.type, MaterialType::standard);
+  EXPECT_EQ(materials.notes.size(), 1u);
 }
 
 TEST(GltfMaterials, WhatIsWrongIsSaid) {

@@ -1,5 +1,7 @@
 #include "scene_fixture.h"
 
+#include "support/gltf.h"
+
 namespace vdbeam {
 namespace {
 
@@ -32,6 +34,17 @@ TEST_F(MeshKeys, Complaints) {
             std::string::npos);
   EXPECT_NE(error_of(path + "[[mesh]]\nfile = 'gone.obj'\n").find("there is no file"),
             std::string::npos);
+}
+
+/// Animated nodes of a glTF follow the frame; files without an animation are the same in all
+/// frames.
+TEST_F(MeshKeys, AnimationOfTheFile) {
+  write("a.gltf", test::moving_triangle("LINEAR"));
+  write("b.gltf", R"({"meshes": []})");
+  write("s.toml", "[[mesh]]\nfile = 'a.gltf'\nfile_fps = 12\n[[mesh]]\nfile = 'b.gltf'\n");
+  const Scene scene = load_scene(file("s.toml"), FrameTime{18, 18.5});
+  EXPECT_NEAR(scene.surfaces[0].file_seconds.value_or(0), 18.5 / 12, 1e-12);
+  EXPECT_FALSE(scene.surfaces[1].file_seconds.has_value());
 }
 
 /// A surface for each material of the file; the first has the mesh's number.
