@@ -108,13 +108,12 @@ void parse(const std::string& path, const std::string& name, double rate, int ou
   const GltfMotion motion(*scene);
   const std::vector<const aiNode*> joints = joints_of(node);
   for (const double seconds : sample_times(motion, joints, rate)) {
-    aiMatrix4x4 m;
+    Affine m;
     for (const aiNode* joint : joints)
-      m *= motion.matrix(*joint, seconds);
-    const RawKey key{seconds,
-                     {double{m.a1}, double{m.a2}, double{m.a3}, double{m.a4}, double{m.b1},
-                      double{m.b2}, double{m.b3}, double{m.b4}, double{m.c1}, double{m.c2},
-                      double{m.c3}, double{m.c4}}};
+      m = m.after(motion.matrix(*joint, seconds));
+    const auto& [x, y, z] = m.rows;
+    const Vec3d& t = m.translation;
+    const RawKey key{seconds, {x.x, x.y, x.z, t.x, y.x, y.y, y.z, t.y, z.x, z.y, z.z, t.z}};
     write_all(output, &key, sizeof key);
   }
 }

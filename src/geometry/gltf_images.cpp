@@ -116,7 +116,7 @@ private:
   int descriptor_;
 };
 
-/// The number in a PNG of which this is the light, in [0, 1]: PNGs are read as colours.
+/// The number in [0, 1] that a PNG holds for this light: PNGs are read as colours.
 double srgb_code(double light) {
   light = std::clamp(light, 0.0, 1.0);
   return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;

@@ -23,7 +23,18 @@ auto value_at(const Key* keys, unsigned count, double ticks, Mix mix) {
   return mix(before.mValue, after->mValue, share);
 }
 
+Affine to_affine(const aiMatrix4x4& m) {
+  Affine map;
+  map.rows = {Vec3d{m.a1, m.a2, m.a3}, Vec3d{m.b1, m.b2, m.b3}, Vec3d{m.c1, m.c2, m.c3}};
+  map.translation = {m.a4, m.b4, m.c4};
+  return map;
+}
+
 } // namespace
+
+Affine GltfMotion::at_rest(const aiNode& node) {
+  return to_affine(node.mTransformation);
+}
 
 GltfMotion::GltfMotion(const aiScene& scene) {
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
@@ -40,10 +51,10 @@ const GltfMotion::Channel* GltfMotion::find(const aiNode& node) const {
   return found == channels_.end() ? nullptr : &found->second;
 }
 
-aiMatrix4x4 GltfMotion::matrix(const aiNode& node, double seconds) const {
+Affine GltfMotion::matrix(const aiNode& node, double seconds) const {
   const Channel* channel = find(node);
   if (!channel)
-    return node.mTransformation;
+    return at_rest(node);
   aiVector3D scale, position;
   aiQuaternion rotation;
   node.mTransformation.Decompose(scale, rotation, position);
@@ -63,7 +74,7 @@ aiMatrix4x4 GltfMotion::matrix(const aiNode& node, double seconds) const {
                           aiQuaternion::Interpolate(mixed, a, b, share);
                           return mixed;
                         });
-  return aiMatrix4x4(scale, rotation, position);
+  return to_affine(aiMatrix4x4(scale, rotation, position));
 }
 
 void GltfMotion::append_key_times(const aiNode& node, std::vector<double>& seconds) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <assimp/matrix4x4.h>
+#include "math/affine.h"
 
 #include <string>
 #include <unordered_map>
@@ -19,8 +19,10 @@ class GltfMotion {
 public:
   explicit GltfMotion(const aiScene& scene);
 
-  /// From the node to what it hangs from.
-  aiMatrix4x4 matrix(const aiNode& node, double seconds) const;
+  /// From the node to what it hangs from, at rest.
+  static Affine at_rest(const aiNode& node);
+  /// The same at a time.
+  Affine matrix(const aiNode& node, double seconds) const;
   /// Appends the times of the node's keys [seconds], unsorted.
   void append_key_times(const aiNode& node, std::vector<double>& seconds) const;
 

@@ -77,13 +77,6 @@ GuardLimits guard_limits(std::uint64_t file_bytes, const MeshLimits& limits) {
   return guard;
 }
 
-Affine to_affine(const aiMatrix4x4& m) {
-  Affine map;
-  map.rows = {Vec3d{m.a1, m.a2, m.a3}, Vec3d{m.b1, m.b2, m.b3}, Vec3d{m.c1, m.c2, m.c3}};
-  map.translation = {m.a4, m.b4, m.c4};
-  return map;
-}
-
 /// The normals of a part that has been appended; zero where it has none.
 void append_normals(const aiMesh& mesh, const Affine& map, RawMesh& raw) {
   if (!mesh.mNormals)
@@ -139,8 +132,8 @@ struct Selection {
 void append_node(const Selection& from, const aiNode& node, const Affine& parent, RawMesh& raw) {
   const aiScene& scene = from.scene;
   const std::vector<bool>& taken = from.taken;
-  const Affine map = parent.after(
-      to_affine(from.seconds ? from.motion.matrix(node, *from.seconds) : node.mTransformation));
+  const Affine map = parent.after(from.seconds ? from.motion.matrix(node, *from.seconds)
+                                               : GltfMotion::at_rest(node));
   for (unsigned i = 0; i < node.mNumMeshes; ++i)
     if (node.mMeshes[i] < scene.mNumMeshes)
       if (const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];

@@ -1,4 +1,5 @@
 #include "scene/scene_document.h"
+#include "geometry/gltf_files.h"
 
 #include "lights/light_table.h"
 #include "machine/input_file.h"
@@ -123,6 +124,12 @@ bool only_camera_moves(const toml::table& root) {
   return camera && !others;
 }
 
+/// A mesh's own file moves it.
+bool files_move(const Scene& scene) {
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                     [](const SurfaceSettings& s) { return s.file_seconds.has_value(); });
+}
+
 /// A picture with nothing behind the medium is an element for compositing, which needs its A.
 void note_lost_alpha(Scene& scene) {
   if (scene.layers.empty())
@@ -198,12 +205,12 @@ Scene SceneDocument::scene_at(const FrameTime& frame, MissingFile missing) const
   };
   Scene scene = at(frame);
   check_named_files(scene);
-  add_moments(scene, is_animated(root_) || !scene.camera.file.empty(),
+  add_moments(scene, is_animated(root_) || !scene.camera.file.empty() || files_move(scene),
               [&](double time) { return at(FrameTime(frame.number, time)); });
   scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
   note_lost_alpha(scene);
   if (scene.render.thinning == PhotonThinning::automatic && only_camera_moves(root_) &&
-      !has_frame_pattern())
+      !has_frame_pattern() && !files_move(scene))
     scene.render.thinning = PhotonThinning::even;
   constexpr int usual_passes = 64;
   if (!scene.render.passes && !scene.render.time && !scene.render.target_error)
@@ -285,7 +292,12 @@ std::string SceneDocument::first_pattern() const {
 }
 
 bool SceneDocument::depends_on_frame() const {
-  return is_animated(root_) || names_frames(root_) || root_.at_path("camera.file");
+  const auto moves = [](const SceneFile& file) {
+    return file.input == InputKind::mesh && is_animated_gltf(file.pattern);
+  };
+  const std::vector<SceneFile> named = files();
+  return is_animated(root_) || names_frames(root_) || root_.at_path("camera.file") ||
+         std::any_of(named.begin(), named.end(), moves);
 }
 
 bool SceneDocument::has_frame_pattern() const {

@@ -39,8 +39,17 @@ void add_file(ContentHash& hash, InputKind kind, const std::string& path) {
       hash.add_number(hash_file(file));
 }
 
+/// Adds the times of the animations of mesh files.
+void add_file_times(ContentHash& hash, const Scene& scene) {
+  for (const SurfaceSettings& surface : scene.surfaces)
+    if (surface.file_seconds)
+      hash.add_number(std::bit_cast<std::uint64_t>(*surface.file_seconds + 0.0));
+}
+
 /// Adds the scenes of other motion samples; their files are those of the scene itself.
 void add_moments(ContentHash& hash, const std::vector<Scene>& moments) {
+  for (const Scene& moment : moments)
+    add_file_times(hash, moment);
   for (const Scene& moment : moments)
     for (const SceneKey& key : scene_keys())
       for (std::size_t i = 0; key.get && key.changes_picture && key.changes_passes &&
@@ -68,6 +77,7 @@ std::string hash_scene(const Scene& scene, bool of_passes) {
         add(hash, value);
     }
   }
+  add_file_times(hash, scene);
   add_moments(hash, scene.moments);
   add_moments(hash, scene.next);
   for (const std::string& plane : plane_names(scene)) // that passes hold for layers

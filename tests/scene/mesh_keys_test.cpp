@@ -45,6 +45,12 @@ TEST_F(MeshKeys, AnimationOfTheFile) {
   const Scene scene = load_scene(file("s.toml"), FrameTime{18, 18.5});
   EXPECT_NEAR(scene.surfaces[0].file_seconds.value_or(0), 18.5 / 12, 1e-12);
   EXPECT_FALSE(scene.surfaces[1].file_seconds.has_value());
+  // An open shutter sees it at several times.
+  const Scene blurred = load_scene(file("s.toml"), 18, {"camera.shutter_close=1"});
+  ASSERT_FALSE(blurred.moments.empty());
+  EXPECT_GT(blurred.moments.back().surfaces[0].file_seconds.value_or(0),
+            blurred.moments.front().surfaces[0].file_seconds.value_or(0) + 0.5 / 12);
+  EXPECT_NE(scene_hash(scene), scene_hash(load_scene(file("s.toml"), 19)));
 }
 
 /// A surface for each material of the file; the first has the mesh's number.
