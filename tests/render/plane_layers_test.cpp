@@ -128,8 +128,9 @@ TEST_P(PlaneLayers, FireLightsTheCatcher) {
     EXPECT_NEAR(sum, expected, 0.03 * expected) << c;
     EXPECT_GT(added, 0.02 * expected) << c;
   }
-  const std::string wall = "[[mesh]]\ntype = 'quad'\nscale = 100\ntranslate = [0, 0, 8]\nmaterial = "
-                           "{ type = 'holdout' }\n";
+  const std::string wall =
+      "[[mesh]]\ntype = 'quad'\nscale = 100\ntranslate = [0, 0, 8]\nmaterial = "
+      "{ type = 'holdout' }\n";
   const Image behind = image_of("shadow_catcher", fire + wall, 4);
   EXPECT_EQ(at(behind, "catcher_light.R", 12, 9), 0);
 }
