@@ -5,6 +5,7 @@
 #include "photonmap/beam_tile.h"
 #include "photonmap/photon.h"
 
+#include <functional>
 #include <memory>
 
 namespace vdbeam {

@@ -55,9 +55,9 @@ TEST(Atmosphere, TwilightAsBrightAsObserved) {
   EXPECT_LT(sky_at(-6).sky().y * solar_constant, 1.5 * 3.5);
 }
 
-/// Illuminance of a horizontal plane under a clear sky [lx] by the sun's elevation [degrees], a fit
-/// to tables of observations with an error of 0.01 to 0.02 in the logarithm (Seidelmann, ed.,
-/// Explanatory Supplement to the Astronomical Almanac, 1992, section 9.33).
+/// Illuminance of a horizontal plane under a clear sky [lx] by the sun's elevation [degrees]: the
+/// fit of the Explanatory Supplement to the Astronomical Almanac (Seidelmann, ed., 1992), with the
+/// coefficients that public programs have for it.
 double observed_illuminance(double elevation) {
   struct Piece {
     double from, l0, l1, l2, l3;
@@ -74,11 +74,10 @@ double observed_illuminance(double elevation) {
   return 0;
 }
 
-/// From noon to the end of nautical twilight, over seven powers of ten. The observations are of an
-/// average clear sky, with more haze than the default, so the model may be brighter, by up to a
-/// third by day and 0.25 in the logarithm in twilight, where high haze dims what lights the sky. It
-/// has no refraction, which lifts the sun by half a degree at the horizon.
-TEST(Atmosphere, AsBrightAsObservedFromNoonToNight) {
+/// From noon to the end of nautical twilight, over seven powers of ten. The limits were set around
+/// what the model gives (docs/developer/decisions/0022-clear-sky.md), so they guard it against
+/// change; they do not show that it is right.
+TEST(Atmosphere, KeepsItsDistanceFromObservationsFromNoonToNight) {
   for (const double elevation : {80.0, 40.0, 20.0, 5.0, 0.0, -3.0, -6.0, -9.0, -12.0}) {
     const Atmosphere air = sky_at(elevation);
     const double direct = air.sun().y * std::max(0.0, std::sin(elevation * degrees));
