@@ -66,8 +66,8 @@ public:
   virtual bool refracts() const { return false; }
   /// Whether its reflected light is estimated from arriving photons.
   bool takes_photons() const { return !is_black() && !shows_surroundings(); }
-  /// The part of `evaluate` that is matt: seen from elsewhere it changes by the factor `matt_albedo`
-  /// alone. The rest is glossy.
+  /// The part of `evaluate` that is matt: seen from elsewhere it changes by the factor
+  /// `matt_albedo` alone. The rest is glossy.
   virtual Rgb matt(const Vec3f& wo, const Vec3f& wi) const {
     static_cast<void>(wo), static_cast<void>(wi);
     return {};

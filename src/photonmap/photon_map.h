@@ -114,8 +114,8 @@ public:
   int groups() const;             ///< number of light groups whose photons are marked; 0: none
   bool has_first_flights() const; ///< photons that come straight from a light
 
-  /// Adds the surface photons whose spheres contain `point`, in a fixed order. Requires photons with
-  /// directions.
+  /// Adds the surface photons whose spheres contain `point`, in a fixed order. Requires photons
+  /// with directions.
   void find_on_disc(const Vec3f& point, std::vector<DiscPhoton>& found) const;
 
 private:
