@@ -4,6 +4,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -27,8 +28,10 @@ def start(file):
     program = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
     # Debian's Blender takes its modules from the first Python on the PATH, which may lack NumPy.
     environment = {**os.environ, "PATH": os.defpath, "VDBEAM_BINARY": str(pathlib.Path(program).resolve())}
-    sys.exit(subprocess.run([blender, "-b", "--factory-startup", "--python-exit-code", "1", "-P", file],
-                            env=environment, check=False).returncode)
+    with tempfile.TemporaryDirectory() as folder:  # Mantaflow leaves its table of noise in the working directory
+        code = subprocess.run([blender, "-b", "--factory-startup", "--python-exit-code", "1", "-P", file], cwd=folder,
+                              env=environment, check=False).returncode
+    sys.exit(code)
 
 
 def main(file):

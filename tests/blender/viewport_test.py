@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 import types
+import types
 import unittest
 import unittest.mock
 
@@ -154,6 +155,27 @@ class Programs(unittest.TestCase):
         self.wait(lambda pixels, text: "bogus" in text)
         self.preview.show_scene(SCENE, opaque=True)
         self.wait(lambda pixels, text: text == "Done")
+
+    def test_scene_that_is_mended_while_the_program_ends(self):
+        """The program has refused the scene, but still runs when the next one is written."""
+        self.preview.show_scene({**SCENE, "render": {"passes": 2, "bogus": 1}}, opaque=True)
+        self.preview.show_view(self.view())
+        refused = self.preview.render.child
+        refused.wait(PATIENCE)
+        child = types.SimpleNamespace(code=None, poll=lambda: child.code)
+        self.preview.render.child = child
+        self.preview.show_scene(SCENE, opaque=True)
+        child.code = 2
+        self.wait(lambda pixels, text: text == "Done")
+
+    def test_program_that_refuses_its_scene_is_not_started_again(self):
+        self.preview.show_scene({**SCENE, "render": {"passes": 2, "bogus": 1}}, opaque=True)
+        self.preview.show_view(self.view())
+        first = self.preview.render
+        first.child.wait(PATIENCE)
+        for _ in range(3):
+            self.preview.update()
+        self.assertIs(self.preview.render, first)
 
     def test_close_ends_the_program_and_removes_the_folder(self):
         self.preview.show_scene({**SCENE, "render": {"passes": 1000000}}, opaque=True)

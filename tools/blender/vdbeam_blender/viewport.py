@@ -55,6 +55,7 @@ class Preview:
         self.view = None
         self.opaque = True
         self.written = None  # text of the scene file
+        self.began_with = None  # the one that the program found when it began
         self.lines, self.turn = None, 0  # of the camera's file
         self.wrote_at = None  # when an edit was written that no image shows; None: all are shown
         self.edit_seen = False  # by the program
@@ -81,26 +82,35 @@ class Preview:
 
     def update(self):
         """Writes the scene file where it changes, and starts the program where it does not run. While the program
-        has not shown the last edit, the next one waits: else a view that is dragged would never be seen."""
-        if self.scene is None or self.view is None or self.closing or self.is_busy():
+        has not shown the last edit, the next one waits: else a view that is dragged would never be seen. A program
+        that refuses the scene with which it began may still run when the scene is mended, and ends without having
+        read it: then another one is started."""
+        ended = self.render is not None and self.render.child.poll() is not None
+        if self.scene is None or self.view is None or self.closing or (self.is_busy() and not ended):
             return
         image, camera, lines = view_camera.tables(self.view)
         turn = self.turn if lines == self.lines else 1 - self.turn
         # The names of the camera's file take turns: whoever reads the scene finds the place that belongs to it.
         name = f"camera_{turn}.txt"
         text = toml_text.scene_text({"image": image, "camera": {"file": name, **camera}}) + "\n" + self.scene
-        if text == self.written:
+        if text != self.written:
+            self.write(text, lines, name)
+            self.turn = turn
+        elif not ended or self.began_with == text:
             return
+        if self.render is None or self.render.child.poll() is not None:
+            self.start()
+
+    def write(self, text, lines, name):
+        """Writes the scene, and the camera's file, of this name, if it changes."""
         if lines != self.lines:
             self.replace(name, lines)
-        self.lines, self.turn = lines, turn
+        self.lines = lines
         self.replace(SCENE, text)
         self.written = text
         self.sweep()
         with self.lock:
             self.wrote_at, self.edit_seen = time.monotonic(), False
-        if self.render is None or self.render.child.poll() is not None:
-            self.start()
 
     def sweep(self):
         """Removes files of meshes that no scene names of those that the program may still read."""
@@ -124,6 +134,7 @@ class Preview:
 
     def start(self):
         """Starts the program. Throws ProgramMissing."""
+        self.began_with = self.written
         self.render = process.Render(self.command(), self.folder)
         threading.Thread(target=self.follow, args=(self.render,), daemon=True).start()
 
