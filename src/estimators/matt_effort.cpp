@@ -82,8 +82,8 @@ int samples_for(float error, float error_of_one) {
                                                  static_cast<float>(tuning::most_matt_samples))));
 }
 
-/// What the fit will leave of the variance of a sample, where this mean over samples varies by
-/// `spread` from pixel to pixel.
+/// The part of a sample's variance that the fit will leave. `spread`: variance of means over
+/// `samples` from pixel to pixel.
 float left_by_fit(float variance, int samples, float spread, int pass, float tolerance) {
   const float plane =
       SurfaceFit::best_weight(variance / static_cast<float>(samples), spread, pass, tolerance);

@@ -18,9 +18,9 @@ class BlurProbe;
 /// pixel takes it from a plane that is fitted to the pixels around it which show the same surface
 /// (PlaneFit), within fewer pixels from pass to pass: the bias vanishes as the noise does. Then
 /// planes are fitted to the results, three times as wide, and count as far as their difference from
-/// the narrow ones is no more than noise. Light straight from lights has shadows, and what glossy
-/// parts of materials reflect has edges, so the narrow planes count in the same way there, against
-/// the noise of the pixels' own samples.
+/// the narrow ones is no more than noise. Light straight from lights has shadows, and reflections
+/// in glossy materials have edges, so the narrow planes count in the same way there, against the
+/// noise of the pixels' own samples.
 class SurfaceFit {
 public:
   /// Fit for one pass of a world with surfaces. `input` must outlive this.

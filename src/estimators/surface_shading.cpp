@@ -149,8 +149,8 @@ SeenSurface SurfaceShading::shown_by(const SurfaceVertex& vertex, const PathRng&
   return {sum};
 }
 
-/// Mirrors and metal: each path draws its direction. What metal that is not smooth shows is fitted
-/// over pixels as far as it is noise.
+/// Mirrors and metal: each path draws its direction. Reflections in metal that is not smooth are
+/// fitted over pixels as far as they are noise.
 template <class PathRng>
 SeenSurface SurfaceShading::shown_one_way(const SurfaceVertex& vertex, const PathRng& path_rng,
                                           RenderStatistics& counts) const {

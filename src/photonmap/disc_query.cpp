@@ -35,13 +35,8 @@ HWY_INLINE void find_in_block(const PhotonBlocks& blocks, std::size_t block, con
 
 void around_on_target(const MapView& map, const Vec3f& point, std::vector<std::size_t>& found) {
   const float x[3] = {point.x, point.y, point.z};
-  walk_tree(
-      map.tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_around(x, group); },
-      [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
-        for (; mask != 0; mask &= mask - 1)
-          find_in_block(map.blocks, 8 * index + static_cast<unsigned>(std::countr_zero(mask)), x,
-                        found);
-      });
+  walk_around(map.tree, x,
+              [&](std::size_t block) HWY_ATTR { find_in_block(map.blocks, block, x, found); });
 }
 
 } // namespace

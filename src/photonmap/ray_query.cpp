@@ -292,17 +292,12 @@ QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f&
       }
     }
   };
-  walk_tree(
-      map.tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_around(x, group); },
-      [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
-        for (; mask != 0; mask &= mask - 1) {
-          ++counts.blocks;
-          counts.candidates += PhotonBlocks::width;
-          const std::size_t block = 8 * index + static_cast<unsigned>(std::countr_zero(mask));
-          for (std::size_t lane = 0; lane < PhotonBlocks::width; lane += hn::Lanes(d))
-            add_photons({map.blocks, block, lane});
-        }
-      });
+  walk_around(map.tree, x, [&](std::size_t block) HWY_ATTR {
+    ++counts.blocks;
+    counts.candidates += PhotonBlocks::width;
+    for (std::size_t lane = 0; lane < PhotonBlocks::width; lane += hn::Lanes(d))
+      add_photons({map.blocks, block, lane});
+  });
   return counts;
 }
 

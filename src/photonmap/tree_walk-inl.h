@@ -80,6 +80,17 @@ HWY_INLINE std::uint32_t boxes_around(const float* point, const BoxGroup& group)
   return mask;
 }
 
+/// `visit(block)` is called for the blocks that may hold a photon whose sphere contains the point.
+template <class Visit>
+HWY_INLINE void walk_around(const BlockTree& tree, const float* point, const Visit& visit) {
+  walk_tree(
+      tree, [&](const BoxGroup& group) HWY_ATTR { return boxes_around(point, group); },
+      [&](std::uint32_t index, const BoxGroup&, std::uint32_t mask) HWY_ATTR {
+        for (; mask != 0; mask &= mask - 1)
+          visit(std::size_t{8 * index + static_cast<unsigned>(std::countr_zero(mask))});
+      });
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace vdbeam
 HWY_AFTER_NAMESPACE();

@@ -30,15 +30,15 @@ struct SeenSurface {
   /// The part of `radiance` that comes by way of other surfaces and the medium and that the matt
   /// part of the material reflects, per albedo.
   GroupedLight smooth = {};
-  /// What the matt part reflects of the light that shadow rays from the surface find, per albedo,
-  /// and the variance of this mean over them, mean of channels.
+  /// The part that shadow rays from the surface find and that the matt part of the material
+  /// reflects, per albedo, and the variance of this mean over them, mean of channels.
   GroupedLight straight = {};
   float straight_variance = 0;
-  /// What the rest of the material reflects by either way, per `gloss_color`, and the variance of
-  /// this mean.
+  /// The part that the rest of the material reflects, from either source, per `gloss_color`, and
+  /// the variance of this mean.
   GroupedLight gloss = {};
   float gloss_variance = 0;
-  /// Paths of `smooth` and `gloss`, and shadow rays of `straight`; 0: their number is fixed.
+  /// Paths of `smooth` and `gloss`, and shadow rays of `straight`; 0: no more may be added.
   MattSamples samples = {};
   Rgb albedo = {};          ///< of the matt part; 1 where there is none
   Rgb gloss_color = Rgb(1); ///< of a texture that multiplies all that is reflected

@@ -27,33 +27,41 @@ MemoryScene plane_scene() {
   return scene;
 }
 
-/// Sets light(x, y) on a plane that is cut in two surfaces at `cut`, and fits it. `straight`: it is
-/// of lights, by shadow rays with this variance; absent: of surfaces.
-template <class Light>
-PassImage fit_of(const TestFrame& frame, int pass, int cut, const Light& light,
-                 std::optional<float> straight = {}) {
-  const EstimatorInput input = frame.input();
-  SurfaceFit fit(input, pass);
+/// Fits the light of a plane whose pixels are what `pixel(x, y)` returns, seen through `tr`.
+template <class Pixel>
+PassImage fit_of_pixels(const TestFrame& frame, int pass, float tr, const Pixel& pixel) {
+  SurfaceFit fit(frame.input(), pass);
   PassImage image;
   image.resize(width, width);
-  const double pixel =
+  const double step =
       frame.camera.pixel_width(width / 2.0, width / 2.0, 10 * frame.world.space.scale);
   for (int y = 0; y < width; ++y)
     for (int x = 0; x < width; ++x) {
-      SeenSurface seen;
-      const GroupedLight own(Rgb(static_cast<float>(light(x, y))), -1);
-      (straight ? seen.straight : seen.smooth) = own;
-      seen.straight_variance = straight.value_or(0);
-      seen.albedo = Rgb(0.5f);
-      seen.position = Vec3f(Vec3d{x * pixel, y * pixel, 0});
+      SeenSurface seen = pixel(x, y);
+      seen.position = Vec3f(Vec3d{x * step, y * step, 0});
       seen.normal = {0, 0, 1};
-      seen.surface = x < cut ? 0 : 1;
       const auto i = static_cast<std::size_t>(y * width + x);
-      fit.set(i, seen, Rgb(0.8f));
-      image.background[i] = own.sum() * 0.4f;
+      fit.set(i, seen, Rgb(tr));
+      image.background[i] = seen.fitted().sum() * tr;
     }
   fit.apply({0, 0, width, width}, image);
   return image;
+}
+
+/// The same with light(x, y) on a plane that is cut in two surfaces at `cut`. `straight`: it is of
+/// lights, by shadow rays with this variance; absent: of surfaces.
+template <class Light>
+PassImage fit_of(const TestFrame& frame, int pass, int cut, const Light& light,
+                 std::optional<float> straight = {}) {
+  return fit_of_pixels(frame, pass, 0.8f, [&](int x, int y) {
+    SeenSurface seen;
+    (straight ? seen.straight : seen.smooth) =
+        GroupedLight(Rgb(static_cast<float>(light(x, y))), -1);
+    seen.straight_variance = straight.value_or(0);
+    seen.albedo = Rgb(0.5f);
+    seen.surface = x < cut ? 0 : 1;
+    return seen;
+  });
 }
 
 TEST(SurfaceFit, KeepsWhatChangesSteadilyAndEdgesBetweenSurfaces) {
@@ -160,26 +168,15 @@ TEST(SurfaceFit, EvensOutGlossyLightAsFarAsItIsNoise) {
   const auto light = [](int x, int) { return x < 12 ? 1.0 : 5.0; };
   const auto color = [](int x, int y) { return (x + y) % 2 == 0 ? 0.2f : 0.8f; };
   const auto error = [&](double noise) {
-    SurfaceFit fit(frame.input(), 0);
-    PassImage image;
-    image.resize(width, width);
-    const double pixel =
-        frame.camera.pixel_width(width / 2.0, width / 2.0, 10 * frame.world.space.scale);
-    for (int y = 0; y < width; ++y)
-      for (int x = 0; x < width; ++x) {
-        SeenSurface seen;
-        seen.gloss = {Rgb(static_cast<float>(light(x, y) + noise * noise_at(x, y))), -1};
-        seen.gloss_variance = static_cast<float>(noise * noise * noise_variance);
-        seen.gloss_color = Rgb(color(x, y));
-        seen.albedo = Rgb(0.3f);
-        seen.position = Vec3f(Vec3d{x * pixel, y * pixel, 0});
-        seen.normal = {0, 0, 1};
-        seen.surface = 0;
-        const auto i = static_cast<std::size_t>(y * width + x);
-        fit.set(i, seen, Rgb(1));
-        image.background[i] = seen.gloss.sum() * color(x, y);
-      }
-    fit.apply({0, 0, width, width}, image);
+    const PassImage image = fit_of_pixels(frame, 0, 1, [&](int x, int y) {
+      SeenSurface seen;
+      seen.gloss = {Rgb(static_cast<float>(light(x, y) + noise * noise_at(x, y))), -1};
+      seen.gloss_variance = static_cast<float>(noise * noise * noise_variance);
+      seen.gloss_color = Rgb(color(x, y));
+      seen.albedo = Rgb(0.3f);
+      seen.surface = 0;
+      return seen;
+    });
     double sum = 0;
     for (int y = 0; y < width; ++y)
       for (int x = 0; x < width; ++x) {
