@@ -115,10 +115,10 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
        of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
        paths_per_ray * (tuning::time_of_light_collision * plan.collisions_per_path +
                         tuning::time_of_photon * plan.stored_per_path));
-  const double of_photons =
-      choices.gathers_finally(0)
-          ? choices.gather->error_after(tuning::passes_compared_for_auto)
-          : choices.trial->model.error(plan.neighbours, tuning::passes_compared_for_auto);
+  double of_photons = choices.trial->model.error(plan.neighbours, tuning::passes_compared_for_auto);
+  if (choices.gathers_finally(0))
+    of_photons =
+        std::min(of_photons, choices.gather->error_after(tuning::passes_compared_for_auto));
   const double beam_error = of_photons + beside / tuning::passes_compared_for_auto;
   const double path_error =
       path_spread * path_time / (tuning::passes_compared_for_auto * beam_time);

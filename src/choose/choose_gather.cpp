@@ -80,8 +80,6 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   const double of_photons =
       in_trial * trial.neighbours / (tuning::neighbours_of_gather * plan.neighbours);
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
-  if (input.world.surfaces)
-    gather.time_of_walks = tuning::time_of_walks_among_surfaces;
   if (forces_final_gather(kind, input.settings))
     return gather;
   for (int first = 0; first <= tuning::most_passes_before_gather;
@@ -89,7 +87,8 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
     const int passes = tuning::passes_compared_for_gather * std::max(1, first);
     const double error = gather.error_after(passes);
     gather.first = first;
-    if (error > 0 && error < choices.trial->model.error(plan.neighbours, passes))
+    const double without = choices.trial->model.error(plan.neighbours, passes);
+    if (error > 0 && error < tuning::preference_for_gather * without)
       return gather;
   }
   return std::nullopt;

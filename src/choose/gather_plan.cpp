@@ -1,6 +1,7 @@
 #include "choose/gather_plan.h"
 
 #include "estimators/gather/regression.h"
+#include "tuning/constants.h"
 
 namespace vdbeam {
 
@@ -19,7 +20,7 @@ double RegressionTrial::blur_of(std::size_t radius) const {
 
 double GatherPlan::error_after(double passes_along, std::size_t radius) const {
   const double of_most = walks_of(RegressionTrial::radii[radius]) / static_cast<double>(most_walks);
-  const double passes = passes_along / (1 + time_of_walks * of_most);
+  const double passes = passes_along / (1 + tuning::time_of_walks * of_most);
   return (photons_noise + noise / of_most * regression.noise[radius]) / passes +
          regression.blur_of(radius);
 }

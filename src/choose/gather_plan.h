@@ -1,5 +1,4 @@
 #pragma once
-#include "tuning/constants.h"
 
 #include <array>
 #include <cstddef>
@@ -24,8 +23,6 @@ struct GatherPlan {
   double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
   RegressionTrial regression;
-  /// Time that `most_walks` take over that of a pass that gathers along camera rays.
-  double time_of_walks = tuning::time_of_walks_in_the_open;
 
   /// Mean square error of the photons' light after the time of `passes_along` passes that gather
   /// along camera rays; with the best radius, or with one of the trial's.

@@ -30,10 +30,8 @@ VDBEAM_TUNED(double, time_of_light_collision, 150);
 VDBEAM_TUNED(double, time_of_photon, 2000);
 /// Factor of a pass of photons by these, which overestimate it against a pass of `path`.
 VDBEAM_TUNED(double, time_of_photon_pass, 0.56);
-/// Time of the most walks of final gathering over that of a pass that gathers along camera rays: in
-/// the open, and where walks meet surfaces, from which paths go on.
-VDBEAM_TUNED(double, time_of_walks_in_the_open, 0.7);
-VDBEAM_TUNED(double, time_of_walks_among_surfaces, 1.5);
+/// Time of the most walks of final gathering over that of a pass that gathers along camera rays.
+VDBEAM_TUNED(double, time_of_walks, 1.2);
 
 // Light paths and photons.
 
@@ -155,6 +153,9 @@ VDBEAM_TUNED(int, fewest_passes_before_gather, 4);
 VDBEAM_TUNED(int, most_passes_before_gather, 512);
 /// Forecasts are compared at this multiple of the passes before the switch.
 VDBEAM_TUNED(int, passes_compared_for_gather, 8);
+/// Final gathering is used unless its forecast error is this factor above that without: its forecast
+/// comes from few pixels, and leaves out that walks even out other noise, too.
+VDBEAM_TUNED(double, preference_for_gather, 2);
 
 // Forward peaks (delta-M): bias against noise.
 
