@@ -13,6 +13,7 @@ vdbeam_find(assimp CONFIG)
 vdbeam_find(PkgConfig)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 
 # OpenVDB ships find modules instead of a package config, and its folder's FindTBB and FindOpenEXR

@@ -29,7 +29,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvdbeam-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libopenvdb-dev, libtbb-dev, libopenexr-dev, libimath-dev, libpng-dev, zlib1g-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libhwy-dev, libxxhash-dev, libembree-dev, libassimp-dev, libopencolorio-dev")
+    "libopenvdb-dev, libtbb-dev, libopenexr-dev, libimath-dev, libpng-dev, libturbojpeg0-dev, zlib1g-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libhwy-dev, libxxhash-dev, libembree-dev, libassimp-dev, libopencolorio-dev")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vdbeam)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -9,7 +9,7 @@ packages=(
   # OpenVDB; its development package does not pull in all that its headers and find module need
   libopenvdb-dev libboost-iostreams-dev libblosc-dev zlib1g-dev
   # the other libraries
-  libtbb-dev libopenexr-dev libimath-dev libpng-dev libfmt-dev libtomlplusplus-dev
+  libtbb-dev libopenexr-dev libimath-dev libpng-dev libturbojpeg0-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libhwy-dev libxxhash-dev libembree-dev libassimp-dev
   libopencolorio-dev
   # the Python module

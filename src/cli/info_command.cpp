@@ -147,7 +147,7 @@ int run_info(const InfoOptions& options) {
 CommandRun add_info(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
   app.add_option("files", options->files,
-                 "VDBs, meshes (OBJ, PLY, glTF), images (EXR, HDR, PNG), folders of VDBs, or "
+                 "VDBs, meshes (OBJ, PLY, glTF), images (EXR, HDR, PNG, JPEG), folders of VDBs, or "
                  "sequences like smoke.####.vdb")
       ->required()
       ->option_text("FILE...");

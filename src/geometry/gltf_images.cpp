@@ -2,6 +2,7 @@
 
 #include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
+#include "image/srgb.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"
@@ -116,14 +117,8 @@ private:
   int descriptor_;
 };
 
-/// The number in [0, 1] that a PNG holds for this light: PNGs are read as colours.
-double srgb_code(double light) {
-  light = std::clamp(light, 0.0, 1.0);
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
 bool can_be_read(const std::string& kind) {
-  return kind == "png" || kind == "exr" || kind == "hdr";
+  return kind == "png" || kind == "jpeg" || kind == "jpg" || kind == "exr" || kind == "hdr";
 }
 
 } // namespace
@@ -150,7 +145,7 @@ GltfPicture find_gltf_picture(const std::string& path, const Json& image, int in
   }
   if (!can_be_read(kind))
     picture = {"", -1,
-               fmt::format("its {} is not used: textures are PNG, EXR or HDR images", name)};
+               fmt::format("its {} is not used: textures are PNG, JPEG, EXR or HDR images", name)};
   return picture;
 }
 
@@ -195,11 +190,13 @@ DataMeans means_of_data(const GltfPicture& picture) {
   const Image image = read_picture(picture);
   const std::string ending = lower_case(std::filesystem::path(picture.file).extension().string());
   const bool linear = ending == ".exr" || ending == ".hdr";
+  // PNG and JPEG images are read as colours.
   const auto mean = [&](const char* name) {
     const ImageChannel* channel = image.find(name);
     double sum = 0;
     for (const float value : channel ? channel->data : std::vector<float>{1})
-      sum += linear ? std::clamp(double{value}, 0.0, 1.0) : srgb_code(double{value});
+      sum += linear ? std::clamp(double{value}, 0.0, 1.0)
+                    : srgb_of_light(std::clamp(double{value}, 0.0, 1.0));
     return sum / static_cast<double>(channel ? std::max<std::size_t>(channel->data.size(), 1) : 1);
   };
   const DataMeans means{mean("G"), mean("B")};

@@ -28,6 +28,10 @@ Image read_hdr(const std::string& path);
 /// its own. Alpha is left out. Throws InputError.
 Image read_png(const std::string& path);
 
+/// A JPEG in grey or colour, its codes read as sRGB: colour profiles and the orientation that a
+/// camera has noted are ignored. Throws InputError.
+Image read_jpeg(const std::string& path);
+
 /// The version of OpenEXR, e.g. "3.1.5".
 std::string exr_library_version();
 

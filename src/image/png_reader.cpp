@@ -1,11 +1,12 @@
 #include "image/image_readers.h"
+#include "image/srgb.h"
 #include "machine/input_file.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
 #include <png.h>
 
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -20,12 +21,6 @@ using PngPtr = std::unique_ptr<png_image, FreePng>;
 
 [[noreturn]] void damaged(const std::string& path, const std::string& reason) {
   throw InputError(fmt::format("{}: not a readable PNG: {}", path, reason));
-}
-
-/// Linear value of an 8-bit sRGB value (IEC 61966-2-1).
-float decode_srgb(unsigned value) {
-  const double x = value / 255.0;
-  return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
 }
 
 template <class T>
@@ -67,13 +62,11 @@ Image read_png(const std::string& path) {
                 : static_cast<float>(pixels[4 * i + c]) / static_cast<float>(pixels[4 * i + 3]);
     return image;
   }
-  std::vector<float> table;
-  for (unsigned value = 0; value < 256; ++value)
-    table.push_back(decode_srgb(value));
+  const std::array<float, 256> light = light_of_bytes();
   const auto pixels = read_pixels<unsigned char>(png, PNG_FORMAT_RGBA, path);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      image.channels[c].data[i] = table[pixels[4 * i + c]];
+      image.channels[c].data[i] = light[pixels[4 * i + c]];
   return image;
 }
 

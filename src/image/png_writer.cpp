@@ -1,4 +1,5 @@
 #include "image/color_conversion.h"
+#include "image/srgb.h"
 #include "image/view_transform.h"
 #include "machine/atomic_file.h"
 #include "vdbeam/error.h"
@@ -24,15 +25,12 @@ double dither(std::size_t x, std::size_t y) {
   return fraction(52.9829189 * fraction(ramp) + 0.5);
 }
 
-/// The sRGB encoding of IEC 61966-2-1, to 8 bits: rounded down after `noise` is added. NaN and
+/// The sRGB code of 8 bits: rounded down after `noise` is added. NaN and
 /// negative values are black.
 unsigned char encode_srgb(double linear, double noise) {
   if (!(linear > 0))
     return 0;
-  const double value = std::min(linear, 1.0);
-  const double encoded =
-      value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-  return static_cast<unsigned char>(std::floor(encoded * 255 + noise));
+  return static_cast<unsigned char>(std::floor(srgb_of_light(std::min(linear, 1.0)) * 255 + noise));
 }
 
 std::vector<unsigned char> encode_pixels(const Image& image, const std::string& path,

@@ -20,6 +20,7 @@ constexpr InputFormat input_formats[] = {
     {"\x76\x2f\x31\x01", read_exr},
     {"#?", read_hdr},
     {"\x89PNG", read_png},
+    {"\xff\xd8\xff", read_jpeg},
 };
 
 } // namespace
@@ -41,7 +42,7 @@ Image read_image(const std::string& path) {
   for (const InputFormat& format : input_formats)
     if (start.starts_with(format.magic))
       return read_guarded_picture(path, format.read);
-  throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr image, nor a PNG");
+  throw InputError(path + ": neither an OpenEXR file, nor a Radiance .hdr image, a PNG or a JPEG");
 }
 
 } // namespace vdbeam

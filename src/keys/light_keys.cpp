@@ -76,7 +76,7 @@ void add_light_keys(KeyTable& table) {
   table
       .add("image", &L::image,
            "of an environment a lat-long EXR or HDR image, empty: constant; of a spot light an "
-           "EXR, HDR or PNG image that it projects, its shorter side as wide as the cone")
+           "EXR, HDR, PNG or JPEG image that it projects, its shorter side as wide as the cone")
       .file(InputKind::picture);
   table
       .add("rotation", &L::rotation,

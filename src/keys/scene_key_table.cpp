@@ -198,7 +198,8 @@ void add_mesh(KeyTable& table) {
       .absent("auto");
   table
       .add("texture", &M::texture,
-           "EXR, HDR or PNG image that multiplies albedo or radiance, placed by the surface's UV")
+           "EXR, HDR, PNG or JPEG image that multiplies albedo or radiance, placed by the "
+           "surface's UV")
       .file(InputKind::picture);
   table.add("texture_wrap", &M::texture_wrap, "texture lookup beyond the edges of the image");
   table.add("reflectance", &M::reflectance, "reflectance at normal incidence").within(0, 1);

@@ -36,7 +36,7 @@ std::string read_scene_text(const std::string& path) {
   std::string text = read_text(path, longest_scene_file);
   for (const auto& [magic, kind] :
        {std::pair("\x76\x2f\x31\x01", "an OpenEXR image"), std::pair("\x89PNG", "a PNG image"),
-        std::pair("#?RADIANCE", "a Radiance image")})
+        std::pair("\xff\xd8\xff", "a JPEG image"), std::pair("#?RADIANCE", "a Radiance image")})
     if (text.starts_with(magic))
       throw InputError(one_line(fmt::format("{}: is {}, not a scene file or VDB", path, kind)));
   return text;

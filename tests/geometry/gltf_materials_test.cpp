@@ -132,15 +132,15 @@ TEST(GltfMaterials, TexturesOfTheBaseColour) {
             (std::vector<std::string>{"its alphaMode MASK is not used: the surfaces are opaque",
                                       "its normalTexture are not used"}));
   for (const char* image : {R"({"bufferView": 0, "mimeType": "image/png"})",
-                            R"({"uri": "data:image/png;base64,AAAA"})"}) {
+                            R"({"uri": "data:image/jpeg;base64,AAAA"})"}) {
     const GltfMaterials held = with_image(image);
     EXPECT_EQ(held.used[0].settings.texture, path) << image;
     EXPECT_EQ(held.used[0].settings.texture_image, 0) << image;
     EXPECT_EQ(held.notes.size(), 2u) << image;
   }
   for (const char* image :
-       {R"({"uri": "wood.jpg"})", R"({"bufferView": 0, "mimeType": "image/jpeg"})",
-        R"({"uri": "data:image/jpeg;base64,AAAA"})"}) {
+       {R"({"uri": "wood.webp"})", R"({"bufferView": 0, "mimeType": "image/webp"})",
+        R"({"uri": "data:image/webp;base64,AAAA"})"}) {
     const GltfMaterials without = with_image(image);
     EXPECT_EQ(without.used[0].settings.texture, "") << image;
     EXPECT_EQ(without.notes.size(), 3u) << image;
