@@ -1,7 +1,5 @@
 #include "medium/optical_depth.h"
 
-#include "tuning/constants.h"
-
 namespace vdbeam {
 
 LayeredSegment::LayeredSegment(const Volume& volume, const Segment& segment)
@@ -67,14 +65,15 @@ Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken
   return transmittance_of(optical_depth(medium, segment, opaque_optical_depth, weakest, taken_out));
 }
 
-Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u, Rgb* taken_out) {
-  const float limit = std::min(tuning::certain_depth - std::log1p(-u), opaque_optical_depth);
+Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u, Rgb* taken_out,
+                           float certain_depth) {
+  const float limit = std::min(certain_depth - std::log1p(-u), opaque_optical_depth);
   float weakest = 0;
   const Rgb tau = optical_depth(medium, segment, limit, weakest, taken_out);
   if (weakest >= limit)
     return Rgb(0);
-  // exp(-tau) over the chance exp(tuning::certain_depth - weakest) to get here.
-  const float given = std::max(0.0f, weakest - tuning::certain_depth);
+  // exp(-tau) over the chance exp(certain_depth - weakest) to get here.
+  const float given = std::max(0.0f, weakest - certain_depth);
   return transmittance_of(tau - Rgb(given));
 }
 

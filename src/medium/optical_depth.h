@@ -1,6 +1,7 @@
 #pragma once
 
 #include "medium/bounded_tracking.h"
+#include "tuning/constants.h"
 
 namespace vdbeam {
 
@@ -171,11 +172,12 @@ void for_each_piece(const Volume& volume, const Segment& segment, const Visit& v
 /// forward peak that was taken out of the medium (PeakTakenOut).
 Rgb exact_transmittance(const Medium& medium, const Segment& segment, Rgb* taken_out = nullptr);
 
-/// Unbiased estimate of the same for shadow rays, `u` uniform in [0, 1): exact where the optical
-/// depth is small; beyond, the ray goes on with a chance of exp(-optical depth) and is weighted by
-/// its inverse (Russian roulette), so that it seldom crosses the dark side of a cloud.
+/// Unbiased estimate of the same for shadow rays, `u` uniform in [0, 1): exact up to an optical
+/// depth of `certain_depth`; beyond, the ray goes on with a chance of exp(-further optical depth)
+/// and is weighted by its inverse (Russian roulette), so that it seldom crosses the dark side of a
+/// cloud.
 Rgb estimate_transmittance(const Medium& medium, const Segment& segment, float u,
-                           Rgb* taken_out = nullptr);
+                           Rgb* taken_out = nullptr, float certain_depth = tuning::certain_depth);
 
 /// Unbiased estimate of the same by ratio tracking (Novak et al. 2014), with Russian roulette where
 /// little is left, a collision at a time, and by the exact integral over what is left of the

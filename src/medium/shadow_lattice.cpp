@@ -80,7 +80,7 @@ Vec3f ShadowLattice::point(const Vec3<int>& index) const {
   return axes_[0] * along.x + axes_[1] * along.y + axes_[2] * along.z;
 }
 
-float ShadowLattice::transmittance(const Vec3f& point) const {
+float ShadowLattice::depth(const Vec3f& point) const {
   const std::size_t strides[3] = {static_cast<std::size_t>(counts_.y) * counts_.z,
                                   static_cast<std::size_t>(counts_.z), 1};
   std::size_t corner = 0;
@@ -101,7 +101,7 @@ float ShadowLattice::transmittance(const Vec3f& point) const {
     return a + f.y * (along_z(at + strides[1]) - a);
   };
   const float a = along_y(corner);
-  return std::exp(-(a + f.x * (along_y(corner + strides[0]) - a)));
+  return a + f.x * (along_y(corner + strides[0]) - a);
 }
 
 } // namespace vdbeam

@@ -2,6 +2,7 @@
 
 #include "medium/medium.h"
 
+#include <cmath>
 #include <vector>
 
 namespace vdbeam {
@@ -17,8 +18,9 @@ public:
   /// Memory of such a lattice over a medium with these bounds [bytes].
   static std::uint64_t bytes(const Boxf& bounds, const Vec3f& towards, double rays);
 
-  /// Transmittance from the point to the light, of the clearest channel.
-  float transmittance(const Vec3f& point) const;
+  /// Optical depth and transmittance from the point to the light, of the clearest channel.
+  float depth(const Vec3f& point) const;
+  float transmittance(const Vec3f& point) const { return std::exp(-depth(point)); }
   /// Distance of lattice points, along the axis where it is least.
   float step() const { return step_; }
   const Vec3<int>& counts() const { return counts_; }

@@ -52,43 +52,6 @@ private:
   }
 };
 
-/// Radiance that one light scatters at a point into the ray, per unit of weight.
-Rgb scattered_light(const World& world, std::size_t index, const SinglePhase& single,
-                    const Vec3f& point, const Vec3f& direction, Rng& rng,
-                    std::uint64_t& shadow_rays) {
-  const Light& light = world.lights[index];
-  const bool surrounds = world.lights.traits(index).surrounds;
-  const PhaseFunction& phase = single.phase;
-  Rgb sum;
-  if (const auto shadow_ray = sample_shadow_ray(
-          light, point, rng, [&](const Vec3f& wi) { return phase.evaluate(dot(direction, wi)); })) {
-    const Vec3f& wi = shadow_ray->direction;
-    const float cosine = dot(direction, wi), p = phase.evaluate(cosine), mis = shadow_ray->weight;
-    if (p * mis > 0 && unoccluded(world, Vec3d(point), wi, shadow_ray->distance)) {
-      ++shadow_rays;
-      Rgb taken_out;
-      const Rgb through = estimate_transmittance(
-          world.medium, {{point, wi}, 0, shadow_ray->distance}, rng.uniform(), &taken_out);
-      sum += shadow_ray->light * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
-    }
-  }
-  if (light.is_delta())
-    return sum;
-  const float u_lobe = rng.uniform(), u2 = rng.uniform(), v2 = rng.uniform();
-  const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
-  const LightHit hit = light.emitted_radiance({{point, wi}});
-  if (max_component(hit.radiance) > 0 && unoccluded(world, Vec3d(point), wi, hit.distance)) {
-    const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
-    ++shadow_rays;
-    Rgb taken_out;
-    const Rgb through = estimate_transmittance(world.medium, {{point, wi}, 0, hit.distance},
-                                               rng.uniform(), &taken_out);
-    sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
-           (p + light.incident_pdf(point, wi));
-  }
-  return sum;
-}
-
 /// Single scattering along one camera ray.
 class RayLighting {
 public:
@@ -101,7 +64,7 @@ public:
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampling.sampled[l])
         continue;
-      lights_.push_back({l, near_light(world.lights[l]), {}});
+      lights_.push_back({l, near_light(world.lights[l]), nullptr, {}});
       if (sampling.shadows && l < sampling.shadows->size() && (*sampling.shadows)[l])
         weigh_pieces(*(*sampling.shadows)[l], lights_.back());
     }
@@ -148,8 +111,10 @@ public:
           distances_.sample(std::min((before.opacity + within * seen) / opacity, 1.0f), 0);
       // By the medium alone, the piece is drawn with its share of the opacity.
       const float share = seen / opacity, drawn = weight / light.pieces.back().weight;
+      // Where a point is drawn since light is expected there, chance is not to take it away.
+      const float certain = tuning::certain_depth + light.shadow->depth(point.position);
       if (point.pdf > 0)
-        add(sum, light, take_down(point, scattered(point, light.index, share / drawn)));
+        add(sum, light, take_down(point, scattered(point, light.index, share / drawn, certain)));
     }
     return sum;
   }
@@ -177,7 +142,8 @@ private:
   struct SampledLight {
     std::size_t index;
     std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
-    std::vector<Piece> pieces;       ///< pieces by the shadow lattice; empty without one
+    const ShadowLattice* shadow;     ///< null without one
+    std::vector<Piece> pieces;       ///< by the lattice; empty without one
   };
 
   void add(GroupedLight& sum, const SampledLight& light, const Rgb& found) const {
@@ -200,6 +166,7 @@ private:
 
   /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
   void weigh_pieces(const ShadowLattice& shadow, SampledLight& light) {
+    light.shadow = &shadow;
     const float opacity = distances_.opacity(0);
     const std::size_t last = profile_.knots() - 1;
     float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
@@ -229,7 +196,8 @@ private:
 
   /// Times a factor. Balance heuristic (Veach and Guibas 1995): the point's weights hold
   /// 1 / point.pdf already.
-  Rgb scattered(const ScatterPoint& point, std::size_t light, float factor) {
+  Rgb scattered(const ScatterPoint& point, std::size_t light, float factor,
+                float certain_depth = tuning::certain_depth) {
     const Medium& medium = world_.medium;
     Rgb sum;
     for (std::size_t i = 0; i < point.weights->size(); ++i) {
@@ -238,13 +206,52 @@ private:
         continue;
       const std::size_t v = profile_.volume(i);
       const Rgb radiance =
-          weight * scattered_light(world_, light,
-                                   single_phase(medium.volumes[v].phase_index, point.t),
-                                   point.position, ray_.direction, rng_, shadow_rays_);
+          weight * scattered_light(light, single_phase(medium.volumes[v].phase_index, point.t),
+                                   point.position, certain_depth);
       sink_.volumes.add(medium.volumes[v].setting, radiance * (factor * share_));
       sum += radiance;
     }
     return sum * factor;
+  }
+
+  /// Radiance that one light scatters at a point into the ray, per unit of weight.
+  /// `certain_depth`: optical depth before which no shadow ray ends at random.
+  Rgb scattered_light(std::size_t index, const SinglePhase& single, const Vec3f& point,
+                      float certain_depth) {
+    const Vec3f& direction = ray_.direction;
+    const Light& light = world_.lights[index];
+    const bool surrounds = world_.lights.traits(index).surrounds;
+    const PhaseFunction& phase = single.phase;
+    Rgb sum;
+    if (const auto shadow_ray = sample_shadow_ray(light, point, rng_, [&](const Vec3f& wi) {
+          return phase.evaluate(dot(direction, wi));
+        })) {
+      const Vec3f& wi = shadow_ray->direction;
+      const float cosine = dot(direction, wi), p = phase.evaluate(cosine), mis = shadow_ray->weight;
+      if (p * mis > 0 && unoccluded(world_, Vec3d(point), wi, shadow_ray->distance)) {
+        ++shadow_rays_;
+        Rgb taken_out;
+        const Rgb through =
+            estimate_transmittance(world_.medium, {{point, wi}, 0, shadow_ray->distance},
+                                   rng_.uniform(), &taken_out, certain_depth);
+        sum += shadow_ray->light * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
+      }
+    }
+    if (light.is_delta())
+      return sum;
+    const float u_lobe = rng_.uniform(), u2 = rng_.uniform(), v2 = rng_.uniform();
+    const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
+    const LightHit hit = light.emitted_radiance({{point, wi}});
+    if (max_component(hit.radiance) > 0 && unoccluded(world_, Vec3d(point), wi, hit.distance)) {
+      const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
+      ++shadow_rays_;
+      Rgb taken_out;
+      const Rgb through = estimate_transmittance(world_.medium, {{point, wi}, 0, hit.distance},
+                                                 rng_.uniform(), &taken_out, certain_depth);
+      sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
+             (p + light.incident_pdf(point, wi));
+    }
+    return sum;
   }
 
   SinglePhase single_phase(int index, float t) const {

@@ -19,7 +19,7 @@ SCENES = [
     ("cloud", ["--estimator", "path"], "path", set(), ("shadow lattice", "the estimator traces no photons")),
     ("smoke", ["-f", "8"], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("sunlit_cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
-    ("fire", ["-f", "14"], "beam", VIEW | {"forward peak", "shadow lattice", "boundary correction"},
+    ("fire", ["-f", "14"], "gather", GATHER,
      ("hidden lights", "shadow rays reach every light")),
     ("ball_in_smoke", [], "gather", GATHER,
      ("hidden lights", "shadow rays reach every light")),

@@ -15,8 +15,8 @@ BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
 SOURCE = Path(__file__).resolve().parents[2]
 
 # What the library is made of (docs/developer/architecture.md); header-only libraries leave no trace.
-LIBRARIES = {"openvdb", "tbb", "OpenEXR", "Imath", "png16", "z", "fmt", "tomlplusplus", "hwy", "xxhash",
-             "embree3", "assimp", "OpenColorIO"}
+LIBRARIES = {"openvdb", "tbb", "OpenEXR", "Imath", "png16", "turbojpeg", "z", "fmt", "tomlplusplus", "hwy",
+             "xxhash", "embree3", "assimp", "OpenColorIO"}
 RUNTIME = {"stdc++", "m", "gcc_s", "c", "ld-linux-x86-64", "ld-linux-aarch64", "atomic"}
 SANITIZERS = {"asan", "ubsan", "tsan"}
 
