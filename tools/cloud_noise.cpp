@@ -70,18 +70,33 @@ float fractal_noise(Vec3f p, int octaves, std::uint32_t seed) {
 }
 
 float billow_noise(const Vec3f& p, std::uint32_t seed) {
-  const int cx = static_cast<int>(std::floor(p[0])), cy = static_cast<int>(std::floor(p[1])),
-            cz = static_cast<int>(std::floor(p[2]));
+  constexpr float inset = 0.1f; // centres keep away from the faces of their cells
+  int cell[3];
+  float t[3];
+  float gap[3][3]; // least squared distance along each axis to centres in cells -1, 0 and 1
+  for (int axis = 0; axis < 3; ++axis) {
+    const float floor = std::floor(p[axis]);
+    cell[axis] = static_cast<int>(floor);
+    t[axis] = p[axis] - floor;
+    const float below = t[axis] + inset, above = 1 - t[axis] + inset;
+    gap[axis][0] = below * below;
+    gap[axis][1] = 0;
+    gap[axis][2] = above * above;
+  }
+  // The cell of the point first: most of the others are then too far away.
+  static constexpr int order[3] = {1, 0, 2};
   float nearest = 4;
   for (int i = 0; i < 27; ++i) {
-    const int x = cx + i % 3 - 1, y = cy + i / 3 % 3 - 1, z = cz + i / 9 - 1;
-    const std::uint32_t h = mix(x, y, z, seed);
+    const int x = order[i % 3], y = order[i / 3 % 3], z = order[i / 9];
+    if (gap[0][x] + gap[1][y] + gap[2][z] >= nearest)
+      continue;
+    const std::uint32_t h = mix(cell[0] + x - 1, cell[1] + y - 1, cell[2] + z - 1, seed);
     const auto jitter = [h](int shift) {
-      return 0.1f + 0.8f * static_cast<float>((h >> shift) & 1023u) / 1023.0f;
+      return inset + (1 - 2 * inset) * static_cast<float>((h >> shift) & 1023u) / 1023.0f;
     };
-    const Vec3f to_centre(static_cast<float>(x) + jitter(0) - p[0],
-                          static_cast<float>(y) + jitter(10) - p[1],
-                          static_cast<float>(z) + jitter(20) - p[2]);
+    const Vec3f to_centre(static_cast<float>(x - 1) + jitter(0) - t[0],
+                          static_cast<float>(y - 1) + jitter(10) - t[1],
+                          static_cast<float>(z - 1) + jitter(20) - t[2]);
     nearest = std::min(nearest, to_centre.lengthSqr());
   }
   return std::max(1 - nearest, 0.0f);

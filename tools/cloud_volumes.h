@@ -12,7 +12,7 @@ namespace vdbeam {
 /// A fair-weather cumulus; its greatest density is near the top.
 openvdb::FloatGrid::Ptr cumulus(const VolumeOptions& options);
 
-/// A storm with an anvil, 0.8 of `extent` high.
+/// A storm with an anvil, 0.7 of `extent` high.
 openvdb::FloatGrid::Ptr storm(const VolumeOptions& options);
 
 /// Several dozen small cumuli in streets over a square; about 0.08 of `extent` high.

@@ -33,9 +33,16 @@ fill_leaves(float voxel, const std::vector<Coord>& leaves, float least,
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setSaveFloatAsHalf(true);
-  for (std::unique_ptr<Leaf>& leaf : filled)
-    if (leaf)
+  for (std::unique_ptr<Leaf>& leaf : filled) {
+    if (!leaf)
+      continue;
+    float same = 0;
+    bool active = false;
+    if (leaf->isConstant(same, active))
+      grid->tree().addTile(1, leaf->origin(), same, active);
+    else
       grid->tree().addLeaf(leaf.release());
+  }
   return grid;
 }
 
