@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Renders pictures of docs/gallery.md: makes the volumes and meshes that a scene needs, then renders it.
+"""Renders the images of docs/gallery.md: makes the volumes and meshes that a scene needs, then renders it.
 
 Usage: gallery.py [NAME...] [--draft] [--list]
 
 NAME is a scene of data/gallery (storm, silver, ...). Without a name all are rendered, one after the other. Images go to
-out/gallery/NAME.exr, .png and .json (the report). --draft renders two passes at a quarter of the size. The program is
-build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from build/release, or VDBEAM_BUILD. The simulated volumes,
+out/gallery/NAME.exr, .png and .json (the report); orbit is a sequence and becomes NAME.webp too. --draft renders two
+passes at a quarter of the size. The program is build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from build/release, or VDBEAM_BUILD. The simulated volumes,
 plume.vdb and explosion.vdb, need Blender and some minutes (tools/simulate_volumes.py).
 """
 import os
@@ -23,12 +23,25 @@ BINARY = os.environ.get("VDBEAM_BINARY", str(BUILD / "vdbeam"))
 
 # Arguments of make_volumes for each cloud.
 CLOUDS = {
-    "storm.vdb": ["storm", "--size", "480", "--extent", "20", "--seed", "1"],
-    "cumulus.vdb": ["cumulus", "--size", "400", "--extent", "4", "--seed", "4"],
+    "storm.vdb": ["storm", "--size", "900", "--extent", "23", "--seed", "1"],
+    "cumulus.vdb": ["cumulus", "--size", "700", "--extent", "4", "--seed", "2"],
+    "orbit.vdb": ["cumulus", "--size", "300", "--extent", "4", "--seed", "3"],
     "fogbank.vdb": ["fogbank", "--size", "320", "--extent", "40"],
-    "field.vdb": ["field", "--size", "1400", "--extent", "40"],
+    "field.vdb": ["field", "--size", "2000", "--extent", "40"],
 }
-SIMULATED = {"plume.vdb": "plume", "explosion.vdb": "explosion"}
+# Options of the 8-bit images. "srgb" clips, which gives more contrast than the default view.
+VIEWS = {
+    "storm": ["--view", "srgb", "--exposure", "-0.3"],
+    "silver": ["--view", "srgb", "--exposure", "-0.4"],
+    "field": ["--view", "srgb", "--exposure", "-0.3"],
+    "windows": ["--view", "srgb", "--exposure", "-0.2"],
+    "lighthouse": ["--view", "srgb", "--exposure", "-0.3"],
+    "explosion": ["--exposure", "0.5"],
+    "orbit": ["--view", "srgb", "--exposure", "-0.3"],
+    "water": ["--view", "srgb", "--exposure", "-0.2"],
+}
+SEQUENCES = {"orbit": "1-48"}
+SIMULATED = {"plume.vdb": ["plume", "192"], "explosion.vdb": ["explosion", "256"]}
 
 
 def needed_files(scene):
@@ -47,7 +60,8 @@ def make(name):
         kind, *options = CLOUDS[name]
         run([BUILD / "tools" / "make_volumes", kind, target, *options])
     elif name in SIMULATED:
-        run([sys.executable, ROOT / "tools" / "simulate_volumes.py", SIMULATED[name], target])
+        kind, resolution = SIMULATED[name]
+        run([sys.executable, ROOT / "tools" / "simulate_volumes.py", kind, target, resolution])
     else:
         run([sys.executable, ROOT / "tools" / "make_props.py", VOLUMES])
 
@@ -61,13 +75,31 @@ def run(command):
         sys.exit(code)
 
 
+def animate(base, frames):
+    """Joins the previews of a sequence to an animated WebP, where Pillow is installed."""
+    try:
+        from PIL import Image
+    except ImportError:
+        print("gallery.py: no animation without Pillow; install it with: apt install python3-pil")
+        return
+    images = [Image.open(f"{base}.{frame:04d}.png").convert("RGB") for frame in frames]
+    images[0].save(f"{base}.webp", save_all=True, append_images=images[1:], duration=83, loop=0, quality=70, method=6)
+
+
 def render(scene, draft):
     for name in needed_files(scene):
         make(name)
     OUT.mkdir(parents=True, exist_ok=True)
-    base = OUT / scene.stem
-    size = ["--passes", "2", "--resolution", "480x270"] if draft else []
-    run([BINARY, "render", scene, "-o", f"{base}.exr", "--preview", f"{base}.png", "--report", f"{base}.json", *size])
+    base, options = OUT / scene.stem, list(VIEWS.get(scene.stem, []))
+    if draft:
+        options += ["--passes", "2", "--resolution", "480x270"]
+    if scene.stem not in SEQUENCES:
+        run([BINARY, "render", scene, "-o", f"{base}.exr", "--preview", f"{base}.png", "--report", f"{base}.json", *options])
+        return
+    run([BINARY, "render", scene, "-f", SEQUENCES[scene.stem], "-o", f"{base}.####.exr", "--preview", f"{base}.####.png",
+         "--report", f"{base}.####.json", *options])
+    first, last = map(int, SEQUENCES[scene.stem].split("-"))
+    animate(base, range(first, last + 1))
 
 
 def main():
