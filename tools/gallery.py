@@ -32,7 +32,7 @@ CLOUDS = {
 # Options of the 8-bit images. "srgb" clips, which gives more contrast than the default view.
 VIEWS = {
     "storm": ["--view", "srgb", "--exposure", "-0.3"],
-    "silver": ["--view", "srgb", "--exposure", "-0.4"],
+    "silver": ["--view", "srgb", "--exposure", "-0.1"],
     "field": ["--view", "srgb", "--exposure", "-0.3"],
     "windows": ["--view", "srgb", "--exposure", "-0.2"],
     "lighthouse": ["--view", "srgb", "--exposure", "-0.3"],
@@ -83,7 +83,7 @@ def animate(base, frames):
         print("gallery.py: no animation without Pillow; install it with: apt install python3-pil")
         return
     images = [Image.open(f"{base}.{frame:04d}.png").convert("RGB") for frame in frames]
-    images[0].save(f"{base}.webp", save_all=True, append_images=images[1:], duration=83, loop=0, quality=70, method=6)
+    images[0].save(f"{base}.webp", save_all=True, append_images=images[1:], duration=83, loop=0, quality=82, method=6)
 
 
 def render(scene, draft):
