@@ -15,7 +15,7 @@ openvdb::FloatGrid::Ptr cumulus(const VolumeOptions& options);
 /// A storm with an anvil, 0.7 of `extent` high.
 openvdb::FloatGrid::Ptr storm(const VolumeOptions& options);
 
-/// Several dozen small cumuli in streets over a square; about 0.08 of `extent` high.
+/// Many small cumuli in streets over a square; about 0.08 of `extent` high.
 openvdb::FloatGrid::Ptr cumulus_field(const VolumeOptions& options);
 
 /// A bank of fog with an uneven top, about 0.1 of `extent` high, thinner with height.

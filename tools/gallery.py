@@ -36,7 +36,7 @@ VIEWS = {
     "field": ["--view", "srgb", "--exposure", "-0.3"],
     "windows": ["--view", "srgb", "--exposure", "-0.2"],
     "lighthouse": ["--view", "srgb", "--exposure", "-0.3"],
-    "explosion": ["--exposure", "0.5"],
+    "explosion": ["--exposure", "0.8"],
     "orbit": ["--view", "srgb", "--exposure", "-0.3"],
     "water": ["--view", "srgb", "--exposure", "-0.2"],
 }

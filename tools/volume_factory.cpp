@@ -347,9 +347,9 @@ const std::vector<Recipe>& recipes() {
        [](const VolumeOptions& o) { return components(sphere(o)); }},
       {"colored", "a box and its colours, as a grid of vectors and as three of numbers", colored},
       {"simulation", "grids density, temperature and velocity", simulation},
-      single("cumulus", "a fair-weather cumulus, from 300 voxels for pictures", cumulus),
-      single("storm", "a storm tower with an anvil, from 400 voxels for pictures", storm),
-      single("field", "several dozen cumuli, from 800 voxels for pictures", cumulus_field),
+      single("cumulus", "a fair-weather cumulus, from 300 voxels for images", cumulus),
+      single("storm", "a storm tower with an anvil, from 500 voxels for images", storm),
+      single("field", "many cumuli, from 1500 voxels for images", cumulus_field),
       single("fogbank", "a bank of fog with an uneven top", fog_bank),
   };
   return all;
