@@ -34,7 +34,7 @@ VIEWS = {
     "storm": ["--view", "srgb", "--exposure", "-0.3"],
     "silver": ["--view", "srgb", "--exposure", "-0.1"],
     "field": ["--view", "srgb", "--exposure", "-0.3"],
-    "windows": ["--view", "srgb", "--exposure", "-0.2"],
+    "windows": ["--view", "srgb", "--exposure", "0.1"],
     "lighthouse": ["--view", "srgb", "--exposure", "-0.3"],
     "explosion": ["--exposure", "0.8"],
     "orbit": ["--view", "srgb", "--exposure", "-0.3"],
