@@ -35,7 +35,7 @@ VIEWS = {
     "silver": ["--view", "srgb", "--exposure", "-0.1"],
     "field": ["--view", "srgb", "--exposure", "-0.3"],
     "windows": ["--view", "srgb", "--exposure", "0.1"],
-    "lighthouse": ["--view", "srgb", "--exposure", "-0.3"],
+    "lighthouse": ["--view", "srgb", "--exposure", "-0.2"],
     "explosion": ["--exposure", "0.8"],
     "orbit": ["--view", "srgb", "--exposure", "-0.3"],
     "water": ["--view", "srgb", "--exposure", "-0.2"],
