@@ -36,6 +36,7 @@ VIEWS = {
     "field": ["--view", "srgb", "--exposure", "-0.3"],
     "windows": ["--view", "srgb", "--exposure", "0.1"],
     "lighthouse": ["--view", "srgb", "--exposure", "-0.2"],
+    "stacks": ["--exposure", "0.3"],
     "explosion": ["--exposure", "0.8"],
     "orbit": ["--view", "srgb", "--exposure", "-0.3"],
     "water": ["--view", "srgb", "--exposure", "-0.2"],
