@@ -5,8 +5,9 @@ Usage: gallery.py [NAME...] [--draft] [--list]
 
 NAME is a scene of data/gallery (storm, silver, ...). Without a name all are rendered, one after the other. Images go to
 out/gallery/NAME.exr, .png and .json (the report); orbit is a sequence and becomes NAME.webp too. --draft renders two
-passes at a quarter of the size. The program is build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from build/release, or VDBEAM_BUILD. The simulated volumes,
-plume.vdb and explosion.vdb, need Blender and some minutes (tools/simulate_volumes.py).
+passes at a quarter of the size. The program is build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from
+build/release, or VDBEAM_BUILD. The simulated volumes, plume.vdb and explosion.vdb, need Blender and some minutes
+(tools/simulate_volumes.py).
 """
 import os
 import pathlib

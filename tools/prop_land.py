@@ -1,4 +1,4 @@
-"""Meshes of the gallery: land, sea, and what is in the sea."""
+"""Meshes of the gallery: land, sea, a ruin and fish."""
 import math
 import random
 

@@ -66,6 +66,21 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
   return sum;
 }
 
+/// Share of lamps in the medium in the power of all lights. Their light on walks has no bound: its
+/// brightest values are rare, and the forecast may lack them.
+double share_of_lamps_inside(const World& world) {
+  const Boxf& box = world.medium.bounds;
+  double inside = 0, all = 0;
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    const double power{max_component(world.lights[i].power())};
+    all += power;
+    const Vec3d* const lamp = world.lights[i].position();
+    if (lamp && min(max(*lamp, Vec3d(box.lower)), Vec3d(box.upper)) == *lamp)
+      inside += power;
+  }
+  return all > 0 ? inside / all : 0;
+}
+
 } // namespace
 
 std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
@@ -82,13 +97,15 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
   if (forces_final_gather(kind, input.settings))
     return gather;
+  const double preference =
+      1 + (tuning::preference_for_gather - 1) * (1 - share_of_lamps_inside(input.world));
   for (int first = 0; first <= tuning::most_passes_before_gather;
        first = std::max(tuning::fewest_passes_before_gather, 2 * first)) {
     const int passes = tuning::passes_compared_for_gather * std::max(1, first);
     const double error = gather.error_after(passes);
     gather.first = first;
     const double without = choices.trial->model.error(plan.neighbours, passes);
-    if (error > 0 && error < tuning::preference_for_gather * without)
+    if (error > 0 && error < preference * without)
       return gather;
   }
   return std::nullopt;

@@ -23,22 +23,17 @@ struct HdrHeader {
   bool flip_x = false, flip_y = false;
 };
 
-/// The reason may quote the file, whose control characters would break the line.
-[[noreturn]] void damaged(const std::string& path, std::string reason) {
-  for (char& c : reason)
-    c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-  throw InputError(fmt::format("{}: not a readable Radiance image: {}", path, reason));
-}
+constexpr char kind[] = "Radiance image";
 
 std::string header_line(std::istream& file, const std::string& path) {
   std::string line;
   for (char c; file.get(c) && c != '\n';) {
     if (line.size() > 4096)
-      damaged(path, "a header line is too long");
+      not_readable(path, kind, "a header line is too long");
     line += c;
   }
   if (!file)
-    damaged(path, "its header ends too early");
+    not_readable(path, kind, "its header ends too early");
   if (!line.empty() && line.back() == '\r')
     line.pop_back();
   return line;
@@ -54,7 +49,7 @@ void parse_resolution(const std::string& line, const std::string& path, HdrHeade
     return s.size() == 2 && (s[0] == '+' || s[0] == '-') && (s[1] == 'X' || s[1] == 'Y');
   };
   if (!words || !is_axis(first) || !is_axis(second) || first[1] == second[1])
-    damaged(path, "its resolution line is not like \"-Y 512 +X 1024\"");
+    not_readable(path, kind, "its resolution line is not like \"-Y 512 +X 1024\"");
   header.columns_first = first[1] == 'X';
   const std::string& x = header.columns_first ? first : second;
   const std::string& y = header.columns_first ? second : first;
@@ -67,21 +62,22 @@ void parse_resolution(const std::string& line, const std::string& path, HdrHeade
 HdrHeader read_header(std::istream& file, const std::string& path) {
   HdrHeader header;
   if (header_line(file, path).substr(0, 2) != "#?")
-    damaged(path, "it does not begin with \"#?\"");
+    not_readable(path, kind, "it does not begin with \"#?\"");
   for (std::string line = header_line(file, path); !line.empty(); line = header_line(file, path)) {
     if (line.rfind("FORMAT=", 0) == 0 && line != "FORMAT=32-bit_rle_rgbe")
-      damaged(path, line + " is not supported; convert it to 32-bit_rle_rgbe");
+      not_readable(path, kind, line + " is not supported; convert it to 32-bit_rle_rgbe");
     if (line.rfind("EXPOSURE=", 0) == 0) // several multiply
       header.exposure *= std::strtod(line.c_str() + 9, nullptr);
   }
   if (!(header.exposure > 0) || !std::isfinite(header.exposure))
-    damaged(path, "its EXPOSURE is not a positive number");
+    not_readable(path, kind, "its EXPOSURE is not a positive number");
   parse_resolution(header_line(file, path), path, header);
   const bool positive = header.width > 0 && header.height > 0;
   if (!positive || header.width > max_image_side || header.height > max_image_side ||
       header.width * header.height > max_image_pixels)
-    damaged(path, fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels",
-                              header.width, header.height));
+    not_readable(path, kind,
+                 fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels", header.width,
+                             header.height));
   // A scanline takes 4 bytes at least, and where pixels repeat these may stand for thousands.
   constexpr double pixels_per_byte = 4096;
   check_size_fits_file(path, static_cast<double>(header.width * header.height), pixels_per_byte);
@@ -99,7 +95,7 @@ public:
     const std::size_t coded = static_cast<std::size_t>(start[2]) << 8 | start[3];
     if (start[0] == 2 && start[1] == 2 && start[2] < 128) {
       if (coded != line.size())
-        damaged(path_, "a scanline has a wrong length");
+        not_readable(path_, kind, "a scanline has a wrong length");
       read_planes(line);
     } else {
       read_old(line, start);
@@ -110,7 +106,7 @@ private:
   unsigned char byte() {
     const int c = file_.get();
     if (c == std::char_traits<char>::eof())
-      damaged(path_, "it ends too early");
+      not_readable(path_, kind, "it ends too early");
     return static_cast<unsigned char>(c);
   }
   Rgbe pixel() {
@@ -128,7 +124,7 @@ private:
         const bool is_run = code > 128;
         const std::size_t count = is_run ? code - 128 : code;
         if (count == 0 || count > line.size() - x)
-          damaged(path_, "a run leaves its scanline");
+          not_readable(path_, kind, "a run leaves its scanline");
         const unsigned char value = is_run ? byte() : 0;
         for (std::size_t i = 0; i < count; ++i)
           line[x++][component] = is_run ? value : byte();
@@ -143,7 +139,7 @@ private:
       if (current[0] == 1 && current[1] == 1 && current[2] == 1) {
         const std::size_t count = shift > 24 ? line.size() + 1 : std::size_t{current[3]} << shift;
         if (x == 0 || count > line.size() - x)
-          damaged(path_, "a run leaves its scanline");
+          not_readable(path_, kind, "a run leaves its scanline");
         for (std::size_t i = 0; i < count; ++i, ++x)
           line[x] = line[x - 1];
         shift += 8;

@@ -12,6 +12,10 @@ inline constexpr std::int64_t max_image_side = std::int64_t{1} << 20;
 inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 28;
 inline constexpr std::int64_t max_image_values = std::int64_t{1} << 30;
 
+/// Throws InputError: this file is no readable image of this kind. The reason may quote the file.
+[[noreturn]] void not_readable(const std::string& path, const char* kind,
+                               const std::string& reason);
+
 /// Refuses an image of `bytes` bytes of pixels if its file cannot hold them, a byte of the file
 /// standing for at most `most_per_byte` of them. Throws InputError.
 void check_size_fits_file(const std::string& path, double bytes, double most_per_byte);

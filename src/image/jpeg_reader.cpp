@@ -19,10 +19,6 @@ struct FreeDecoder {
 };
 using Decoder = std::unique_ptr<void, FreeDecoder>;
 
-[[noreturn]] void damaged(const std::string& path, const std::string& reason) {
-  throw InputError(fmt::format("{}: not a readable JPEG: {}", path, reason));
-}
-
 } // namespace
 
 Image read_jpeg(const std::string& path) {
@@ -34,11 +30,12 @@ Image read_jpeg(const std::string& path) {
     throw FrameError("there is no memory for a JPEG decoder");
   int width = 0, height = 0, sampling = 0, space = 0;
   if (tjDecompressHeader3(decoder.get(), start, file.size(), &width, &height, &sampling, &space))
-    damaged(path, tjGetErrorStr2(decoder.get()));
+    not_readable(path, "JPEG", tjGetErrorStr2(decoder.get()));
   if (space == TJCS_CMYK || space == TJCS_YCCK)
-    damaged(path, "it is in CMYK; save it in RGB");
+    not_readable(path, "JPEG", "it is in CMYK; save it in RGB");
   if (std::int64_t{width} * height > max_image_pixels)
-    damaged(path, fmt::format("its size of {} x {} pixels is above 2^28 pixels", width, height));
+    not_readable(path, "JPEG",
+                 fmt::format("its size of {} x {} pixels is above 2^28 pixels", width, height));
   // A block of 16 x 16 pixels needs six codes of a bit each.
   check_size_fits_file(path, static_cast<double>(width) * height, 512);
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -46,7 +43,7 @@ Image read_jpeg(const std::string& path) {
   // A warning, as of a file that ends early, is an error, too: half of such an image is grey.
   if (tjDecompress2(decoder.get(), start, file.size(), pixels.data(), width, 0, height, TJPF_RGB,
                     TJFLAG_ACCURATEDCT))
-    damaged(path, tjGetErrorStr2(decoder.get()));
+    not_readable(path, "JPEG", tjGetErrorStr2(decoder.get()));
   Image image;
   image.width = width;
   image.height = height;

@@ -19,16 +19,12 @@ struct FreePng {
 };
 using PngPtr = std::unique_ptr<png_image, FreePng>;
 
-[[noreturn]] void damaged(const std::string& path, const std::string& reason) {
-  throw InputError(fmt::format("{}: not a readable PNG: {}", path, reason));
-}
-
 template <class T>
 std::vector<T> read_pixels(png_image& png, png_uint_32 format, const std::string& path) {
   png.format = format;
   std::vector<T> pixels(static_cast<std::size_t>(png.width) * png.height * 4);
   if (!png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr))
-    damaged(path, png.message);
+    not_readable(path, "PNG", png.message);
   return pixels;
 }
 
@@ -40,10 +36,11 @@ Image read_png(const std::string& path) {
   png.version = PNG_IMAGE_VERSION;
   const PngPtr freed(&png);
   if (!png_image_begin_read_from_file(&png, path.c_str()))
-    damaged(path, png.message);
+    not_readable(path, "PNG", png.message);
   if (std::int64_t(png.width) * png.height > max_image_pixels)
-    damaged(path, fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels", png.width,
-                              png.height));
+    not_readable(path, "PNG",
+                 fmt::format("its size of {} x {} pixels is outside 1 to 2^28 pixels", png.width,
+                             png.height));
   // Deflate packs 1032 to 1 at best, and a byte holds eight pixels where there are two colours.
   check_size_fits_file(path, static_cast<double>(png.width) * png.height / 8, 1032);
   Image image;

@@ -1,6 +1,7 @@
 #include "image/image_readers.h"
 #include "image/picture_guard.h"
 #include "machine/input_file.h"
+#include "text/printable.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
 
@@ -24,6 +25,10 @@ constexpr InputFormat input_formats[] = {
 };
 
 } // namespace
+
+void not_readable(const std::string& path, const char* kind, const std::string& reason) {
+  throw InputError(fmt::format("{}: not a readable {}: {}", path, kind, printable_line(reason)));
+}
 
 void check_size_fits_file(const std::string& path, double bytes, double most_per_byte) {
   const auto size = static_cast<double>(std::filesystem::file_size(path));

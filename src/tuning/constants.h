@@ -153,8 +153,9 @@ VDBEAM_TUNED(int, fewest_passes_before_gather, 4);
 VDBEAM_TUNED(int, most_passes_before_gather, 512);
 /// Forecasts are compared at this multiple of the passes before the switch.
 VDBEAM_TUNED(int, passes_compared_for_gather, 8);
-/// Final gathering is used unless its forecast error is this factor above that without: its
-/// forecast comes from few pixels, and leaves out that walks even out other noise, too.
+/// Final gathering is used unless its forecast error is this factor above that without (1 where all
+/// light comes from lamps in the medium): its forecast comes from few pixels, and leaves out that
+/// walks even out other noise, too.
 VDBEAM_TUNED(double, preference_for_gather, 2);
 
 // Forward peaks (delta-M): bias against noise.

@@ -45,7 +45,7 @@ std::string problem_of(const std::string& path) {
   return "";
 }
 
-/// Whatever its name: the first bytes decide. Codes are rounded twice, in YCbCr and in RGB.
+/// The first bytes decide, not the name. Codes are rounded twice, in YCbCr and in RGB.
 TEST(ReadJpeg, CodesAreSrgb) {
   const TempFolder folder;
   const std::string path = folder.file("wood.png");
