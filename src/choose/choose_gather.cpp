@@ -66,8 +66,8 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
   return sum;
 }
 
-/// Share of lamps in the medium in the power of all lights. Their light on walks has no bound: its
-/// brightest values are rare, and the forecast may lack them.
+/// Share of lamps in the medium in the power of all lights. The few walks that come near them are
+/// far brighter than all others, and the forecast may lack them.
 double share_of_lamps_inside(const World& world) {
   const Boxf& box = world.medium.bounds;
   double inside = 0, all = 0;
@@ -98,7 +98,7 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   if (forces_final_gather(kind, input.settings))
     return gather;
   const double preference =
-      1 + (tuning::preference_for_gather - 1) * (1 - share_of_lamps_inside(input.world));
+      tuning::preference_for_gather * (1 - share_of_lamps_inside(input.world));
   for (int first = 0; first <= tuning::most_passes_before_gather;
        first = std::max(tuning::fewest_passes_before_gather, 2 * first)) {
     const int passes = tuning::passes_compared_for_gather * std::max(1, first);

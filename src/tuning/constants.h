@@ -153,9 +153,9 @@ VDBEAM_TUNED(int, fewest_passes_before_gather, 4);
 VDBEAM_TUNED(int, most_passes_before_gather, 512);
 /// Forecasts are compared at this multiple of the passes before the switch.
 VDBEAM_TUNED(int, passes_compared_for_gather, 8);
-/// Final gathering is used unless its forecast error is this factor above that without (1 where all
-/// light comes from lamps in the medium): its forecast comes from few pixels, and leaves out that
-/// walks even out other noise, too.
+/// Final gathering is used unless its forecast error is this factor above that without, times the
+/// share of light that does not come from lamps in the medium: its forecast comes from few pixels,
+/// and leaves out that walks even out other noise, too.
 VDBEAM_TUNED(double, preference_for_gather, 2);
 
 // Forward peaks (delta-M): bias against noise.
@@ -182,6 +182,10 @@ VDBEAM_TUNED(float, certain_depth, 3);
 /// what the lattice may have missed.
 VDBEAM_TUNED(float, shadow_pieces, 32);
 VDBEAM_TUNED(float, lit_everywhere, 0.05f);
+/// Radius of the shell around a lamp in which flights of walks look for its light (LampShells): in
+/// optical depth, and at most this part of the medium's radius.
+VDBEAM_TUNED(double, depth_of_lamp_shell, 0.5);
+VDBEAM_TUNED(double, widest_lamp_shell, 0.25);
 /// A light that shines on less than this part of a ray is sampled by its nearness.
 VDBEAM_TUNED(float, small_lit_part, 0.5f);
 

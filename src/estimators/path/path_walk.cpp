@@ -77,7 +77,7 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
 void WalkTracer::sample_lights(PathWalk& walk) const {
   const Ray& ray = walk.segment.ray;
   for (; walk.light < world_.lights.size(); ++walk.light) {
-    if (!shadow_rays_[walk.light])
+    if (!shadow_rays_[walk.light] || shells_.holds(walk.light, ray.origin))
       continue;
     const auto shadow_ray =
         sample_shadow_ray(world_.lights[walk.light], ray.origin, walk.rng,
@@ -132,7 +132,17 @@ bool WalkTracer::scatter(PathWalk& walk, const Vec3f& direction) const {
     if (!outlives_roulette(walk))
       return false;
   }
+  look_into_shells(walk);
   return advance_flight(walk, *this);
+}
+
+/// Light of lamps that the flight passes, as its next collision would bring it.
+void WalkTracer::look_into_shells(PathWalk& walk) const {
+  if (!shells_.any() || !walk.all_light || (max_bounces_ && walk.bounces >= *max_bounces_))
+    return;
+  std::uint64_t uncounted = 0;
+  walk.indirect +=
+      shells_.along(walk.segment, world_.medium.phases, walk.rng, uncounted) * walk.throughput;
 }
 
 /// Russian roulette on what the walk's flight is about to bring.

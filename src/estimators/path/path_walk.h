@@ -4,6 +4,7 @@
 #include "math/grouped_light.h"
 #include "medium/flight.h"
 #include "medium/optical_depth.h"
+#include "rays/lamp_shells.h"
 #include "transport/world.h"
 #include "tuning/constants.h"
 
@@ -77,7 +78,7 @@ public:
   WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()),
-        light_branches_(world, shadow_rays_) {}
+        light_branches_(world, shadow_rays_), shells_(world, shadow_rays_) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -130,6 +131,7 @@ private:
   void sample_lights(PathWalk& walk) const;
   void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;
   void set_out(PathWalk& walk, const Vec3d& origin, const Vec3f& direction) const;
+  void look_into_shells(PathWalk& walk) const;
   bool scatter(PathWalk& walk, const Vec3f& direction) const;
   bool meet_surface(PathWalk& walk) const;
   bool bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_first,
@@ -147,6 +149,7 @@ private:
   std::optional<int> max_bounces_;
   bool meets_light_; ///< flights may meet light before they end
   LightBranches light_branches_;
+  LampShells shells_;
 };
 
 } // namespace vdbeam

@@ -119,6 +119,7 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   walk.skips_sampled = false;
   walk.from_surface = counts_straight;
   set_out(walk, vertex.hit().leave(next.wi), next.wi);
+  look_into_shells(walk);
   return true;
 }
 

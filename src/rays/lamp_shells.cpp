@@ -1,0 +1,113 @@
+#include "rays/lamp_shells.h"
+
+#include "medium/equi_angular.h"
+#include "medium/optical_depth.h"
+#include "transport/next_event.h"
+#include "tuning/constants.h"
+
+#include <cmath>
+
+namespace vdbeam {
+
+namespace {
+
+/// Extinction of all volumes at a point, of the strongest channel [per render unit].
+float extinction_at(const Medium& medium, const Vec3f& point) {
+  float sum = 0;
+  medium.for_each_at(point, [&](std::size_t v) {
+    sum += medium.volumes[v].density(point) * medium.volumes[v].extinction;
+  });
+  return sum;
+}
+
+/// Scattering coefficient times phase function, of all volumes at a point.
+Rgb scattering_at(const Medium& medium, const Vec3f& point, float cosine,
+                  const std::vector<PhaseFunction>& phases) {
+  Rgb sum;
+  medium.for_each_at(point, [&](std::size_t v) {
+    const Volume& volume = medium.volumes[v];
+    if (const float density = volume.density(point); density > 0)
+      sum += volume.albedo_at(point) * volume.channel_scale *
+             (density * volume.extinction *
+              phases[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
+  });
+  return sum;
+}
+
+/// The part of the segment inside of a ball; empty where it misses.
+Segment part_in_ball(const Segment& segment, const Vec3d& center, double radius) {
+  const Vec3d to_center = center - Vec3d(segment.ray.origin), direction(segment.ray.direction);
+  const double nearest = dot(to_center, direction);
+  const Vec3d across = to_center - direction * nearest;
+  const double half_squared = radius * radius - dot(across, across);
+  if (!(half_squared > 0))
+    return {segment.ray, 0, 0};
+  const double half = std::sqrt(half_squared);
+  return {segment.ray, std::max(segment.t_begin, static_cast<float>(nearest - half)),
+          std::min(segment.t_end, static_cast<float>(nearest + half))};
+}
+
+} // namespace
+
+LampShells::LampShells(const World& world, const std::vector<bool>& sampled) : world_(world) {
+  if (world.medium.empty())
+    return;
+  const Boxf& box = world.medium.bounds;
+  const double size{0.5f * length(box.upper - box.lower)};
+  for (std::size_t l = 0; l < world.lights.size(); ++l) {
+    const Vec3d* const lamp = world.lights[l].position();
+    if (!lamp || !sampled[l] || !world.lights[l].is_delta())
+      continue;
+    const double extinction{extinction_at(world.medium, Vec3f(*lamp))};
+    double radius = tuning::widest_lamp_shell * size;
+    if (extinction * radius > tuning::depth_of_lamp_shell)
+      radius = tuning::depth_of_lamp_shell / extinction;
+    const Vec3d nearest = min(max(*lamp, Vec3d(box.lower)), Vec3d(box.upper));
+    if (length(nearest - *lamp) < radius)
+      shells_.push_back({l, *lamp, radius});
+  }
+}
+
+bool LampShells::holds(std::size_t light, const Vec3f& point) const {
+  for (const Shell& shell : shells_)
+    if (shell.light == light)
+      return length(Vec3d(point) - shell.center) < shell.radius;
+  return false;
+}
+
+GroupedLight LampShells::along(const Segment& flight, const std::vector<PhaseFunction>& phases,
+                               Rng& rng, std::uint64_t& shadow_rays) const {
+  GroupedLight sum;
+  for (const Shell& shell : shells_) {
+    const Segment crossing =
+        world_.lights[shell.light].lit_part(part_in_ball(flight, shell.center, shell.radius));
+    if (!crossing.empty())
+      sum.add(sample(shell, crossing, phases, rng, shadow_rays), world_.lights.group(shell.light));
+  }
+  return sum;
+}
+
+Rgb LampShells::sample(const Shell& shell, const Segment& crossing,
+                       const std::vector<PhaseFunction>& phases, Rng& rng,
+                       std::uint64_t& shadow_rays) const {
+  const Medium& medium = world_.medium;
+  const EquiAngular distances(crossing.ray, shell.center, crossing.t_begin, crossing.t_end);
+  const float t = distances.sample(rng.uniform()), density = distances.pdf(t);
+  const Vec3f point = crossing.ray.at(t);
+  const auto shadow_ray = // these lights are found in no other way
+      sample_shadow_ray(world_.lights[shell.light], point, rng, [](const Vec3f&) { return 0.0f; });
+  if (!shadow_ray || !(density > 0))
+    return {};
+  const Vec3f& wi = shadow_ray->direction;
+  const Rgb scattered = scattering_at(medium, point, dot(crossing.ray.direction, wi), phases);
+  if (scattered == Rgb() || !unoccluded(world_, Vec3d(point), wi, shadow_ray->distance))
+    return {};
+  ++shadow_rays;
+  Rgb through = estimate_transmittance(medium, {crossing.ray, 0, t}, rng.uniform());
+  if (max_component(through) > 0)
+    through *=
+        estimate_transmittance(medium, {{point, wi}, 0, shadow_ray->distance}, rng.uniform());
+  return shadow_ray->light * scattered * through / density;
+}
+
+} // namespace vdbeam

@@ -1,0 +1,121 @@
+// Flights find the light of lamps in the medium: against quadrature, and with bounded noise.
+#include "support/fog_scene.h"
+#include "support/render_passes.h"
+#include "support/statistics.h"
+#include "support/test_frame.h"
+
+#include "rays/lamp_shells.h"
+
+#include <gtest/gtest.h>
+
+namespace vdbeam {
+namespace {
+
+using namespace test;
+
+/// A lamp in the middle of a box of fog, two mean free paths from its faces.
+MemoryScene lamp_in_fog(double albedo = 0.8) {
+  MemoryScene scene;
+  VolumeSettings volume = fog(VolumeShape::box, Vec3d(-1), Vec3d(1), 2);
+  volume.albedo = Rgb(static_cast<float>(albedo));
+  volume.phase = henyey_greenstein(0.5);
+  add_fog(scene, volume);
+  scene.add_light(LightType::point);
+  scene.look({0.3, 0.2, 4}, {0, 0, 0}, 40, 12, 12);
+  return scene;
+}
+
+class LampShellsTest : public ::testing::Test {
+protected:
+  /// A flight that passes the lamp at this distance, in parts of the distance of its origin.
+  Segment flight_past(double offset) const {
+    const Vec3d from = lamp_ + Vec3d(-0.1, 0, 0) * world().space.scale;
+    const Vec3f direction(normalize(Vec3d(1, offset, 0)));
+    std::optional<SurfaceHit> end;
+    return world().medium.clip(flight_segment(world(), from, direction, end));
+  }
+  /// Light that the flight's collisions within the shell scatter against it, by the midpoint rule.
+  double by_quadrature(const Segment& flight) const {
+    const Volume& volume = world().medium.volumes.front();
+    const Light& light = world().lights[0];
+    constexpr int steps = 1 << 20;
+    const double step = static_cast<double>(flight.t_end) / steps;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+      const double t = (i + 0.5) * step;
+      const Vec3d point = Vec3d(flight.ray.origin) + Vec3d(flight.ray.direction) * t;
+      if (!shells_.holds(0, Vec3f(point)))
+        continue;
+      const double distance = length(lamp_ - point);
+      const Vec3f wi((lamp_ - point) / distance);
+      const auto p =
+          static_cast<double>(world().medium.phases[0].evaluate(dot(flight.ray.direction, wi)));
+      const auto sigma = static_cast<double>(volume.extinction);
+      const auto irradiance =
+          static_cast<double>(light.sample_incident(Vec3f(point), 0.5f, 0.5f).value.x);
+      sum += step * static_cast<double>(volume.albedo.x) * sigma * p * irradiance *
+             std::exp(-sigma * (t + distance));
+    }
+    return sum;
+  }
+  Samples by_sampling(const Segment& flight) const {
+    Samples samples;
+    std::uint64_t rays = 0;
+    Rng rng({}, RngStage::walk, 1);
+    for (int i = 0; i < 20000; ++i)
+      samples.add(
+          static_cast<double>(shells_.along(flight, world().medium.phases, rng, rays).sum().x));
+    return samples;
+  }
+  const World& world() const { return frame_.world; }
+
+  TestFrame frame_{lamp_in_fog()};
+  LampShells shells_{frame_.world, {true}};
+  Vec3d lamp_ = *frame_.world.lights[0].position();
+};
+
+TEST_F(LampShellsTest, AgreeWithQuadrature) {
+  for (const double offset : {0.9, 0.1, 0.01}) {
+    const Segment flight = flight_past(offset);
+    const Samples samples = by_sampling(flight);
+    const double expected = by_quadrature(flight);
+    expect_power(samples, 0.01 * expected);
+    expect_mean(samples, expected, 1e-4 * expected);
+  }
+}
+
+/// The density of the samples cancels 1 / r^2, however near the flight passes. The variance of
+/// points where flights collide would grow as the inverse of the distance. The phase function
+/// alone, which is 27 times as high forwards as backwards, has nearly the square of its mean.
+TEST_F(LampShellsTest, AreAsQuietNearTheLamp) {
+  for (const double offset : {0.1, 1e-3, 1e-5}) {
+    const Samples samples = by_sampling(flight_past(offset));
+    EXPECT_LT(samples.variance(), 4 * samples.mean() * samples.mean()) << offset;
+  }
+}
+
+/// A lamp beyond the medium, or one that shadow rays do not look for, has no shell.
+TEST_F(LampShellsTest, AreAroundLampsInTheMediumOnly) {
+  EXPECT_TRUE(shells_.any());
+  EXPECT_FALSE(LampShells(world(), {false}).any());
+  MemoryScene scene = lamp_in_fog();
+  scene.scene.lights[0].position = {0, 0, 5};
+  const TestFrame far(scene);
+  EXPECT_FALSE(LampShells(far.world, {true}).any());
+}
+
+/// Where a path may scatter twice at most, its flights look for lamps only before the second event.
+TEST(LampShellsOfPath, KeepTheLimitOfBounces) {
+  for (const int limit : {1, 2, 3}) {
+    MemoryScene scene = lamp_in_fog();
+    scene.scene.render.max_bounces = limit;
+    const PassMeans path = render_passes(scene, EstimatorType::path, 192);
+    const PassMeans march = render_passes(scene, EstimatorType::march, 48);
+    SCOPED_TRACE(limit);
+    expect_same_mean(path.indirect[0], march.indirect[0], 0.02 * march.indirect[0].mean());
+    expect_power(path.indirect[0], 0.02 * march.total[0].mean());
+  }
+}
+
+} // namespace
+} // namespace vdbeam
