@@ -2,6 +2,7 @@
 import importlib.util
 import os
 import pathlib
+import signal
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -19,3 +20,5 @@ def require():
         print("skipped: NumPy is missing")
         sys.exit(77)
     sys.path.insert(0, str(PACKAGE))
+    # A shell starts programs in the background with SIGINT ignored, and a test that sends it would wait for ever.
+    signal.signal(signal.SIGINT, signal.default_int_handler)

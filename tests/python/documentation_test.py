@@ -1,4 +1,4 @@
-"""Every Python block of docs/how-to/python.md runs as it stands and writes what it says."""
+"""Every Python block of docs/how-to/python.md runs as it stands, in smaller images, and writes what it says."""
 import os
 import pathlib
 import re
@@ -10,7 +10,10 @@ import built_module
 
 built_module.require()
 
-blocks = re.findall(r"```python\n(.*?)```", (built_module.ROOT / "docs/how-to/python.md").read_text(), re.DOTALL)
+SIZE = re.compile(r'("(?:image\.)?(?:width|height)": )(\d+)')
+page, sizes = SIZE.subn(lambda size: f"{size[1]}{int(size[2]) // 4}", (built_module.ROOT / "docs/how-to/python.md").read_text())
+assert sizes >= 8, "the page gives sizes in another way"
+blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
 assert len(blocks) >= 3, "the page has lost its examples"
 with tempfile.TemporaryDirectory() as folder:
     os.symlink(built_module.ROOT / "data", pathlib.Path(folder) / "data")

@@ -1,5 +1,6 @@
 """Tests that run the program."""
 import os
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -7,6 +8,10 @@ from pathlib import Path
 
 BINARY = os.environ.get("VDBEAM_BINARY", "build/release/vdbeam")
 DATA = Path(__file__).resolve().parents[2] / "data"
+
+# A shell starts programs in the background with SIGINT ignored, programs hand that on to those that they start, and a
+# test that sends it would wait for ever.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def run(*command):
