@@ -16,7 +16,7 @@ protected:
   /// A scene of frames 1 to 3 and 5, all the same volume.
   void write_sequence() {
     for (const char* name : {"c.0001.vdb", "c.0002.vdb", "c.0003.vdb", "c.0005.vdb"})
-      std::filesystem::copy_file(cloud_vdb, folder_ / name);
+      std::filesystem::copy_file(fog_vdb, folder_ / name);
     write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
   }
   ProgramResult render_frames(const std::string& frames, const Names& more = {}) {
@@ -138,7 +138,7 @@ TEST_F(BatchCommand, NotesACameraThatLooksPastTheVolume) {
 TEST_F(BatchCommand, ABareFileHasTheNumberInItsName) {
   for (const auto& [name, frame] : {std::pair("c.0020.vdb", 20), std::pair("c_0021.vdb", 21),
                                     std::pair("c_v22.vdb", 1), std::pair("c23.vdb", 1)}) {
-    std::filesystem::copy_file(cloud_vdb, folder_ / name);
+    std::filesystem::copy_file(fog_vdb, folder_ / name);
     const auto result = render({name, "--passes", "1", "-o", "o.exr"});
     ASSERT_EQ(result.code, 0) << result.error;
     EXPECT_EQ(read_image(file("o.exr")).numbers.at("vdbeam:frame"), frame) << name;
@@ -198,7 +198,7 @@ TEST_F(BatchCommand, PartialImagesMerge) {
 
 TEST_F(BatchCommand, MemoryIsThatOfTwoFrames) {
   for (int frame = 1; frame <= 7; ++frame)
-    std::filesystem::copy_file(cloud_vdb, folder_ / fmt_name("c", frame, "vdb"));
+    std::filesystem::copy_file(fog_vdb, folder_ / fmt_name("c", frame, "vdb"));
   write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
   ASSERT_EQ(render({"s.toml", "-f", "1-7", "--passes", "1", "-q", "--report", "r.####.json"}).code,
             0);
@@ -266,7 +266,7 @@ TEST_F(BatchCommand, AFinishedFrameLeavesNothingBesideIt) {
   const std::string begin = "\x76\x2f\x31\x01 vdbeam:sceneHash ";
   write("o.0001.checkpoint.exr", begin + "vdbeam:film");
   write("o.0001.snapshot.exr", begin + "vdbeam:stoppedBy");
-  ASSERT_EQ(render({cloud_vdb, "-f", "1", "-o", "o.####.exr", "--passes", "1", "-q"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-f", "1", "-o", "o.####.exr", "--passes", "1", "-q"}).code, 0);
   EXPECT_EQ(files(), Names{"o.0001.exr"});
 }
 

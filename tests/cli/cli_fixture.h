@@ -140,6 +140,8 @@ protected:
 
   const std::string cloud = VDBEAM_SOURCE_DIR "/data/cloud.toml";
   const std::string cloud_vdb = VDBEAM_SOURCE_DIR "/data/cloud.vdb";
+  /// A small volume, since most of a short render of the cloud is reading it.
+  const std::string fog_vdb = VDBEAM_SOURCE_DIR "/data/fog.vdb";
   const std::string smoke_pattern = VDBEAM_SOURCE_DIR "/data/smoke/smoke.####.vdb";
   std::filesystem::path folder_;
 };

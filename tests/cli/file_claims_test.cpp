@@ -19,9 +19,9 @@ protected:
     CliTest::SetUp();
     fs::create_directory(folder_ / "sub");
     for (const char* name : {"c.0001.vdb", "c.0002.vdb", "c.0009.vdb"})
-      fs::copy_file(cloud_vdb, folder_ / name);
+      fs::copy_file(fog_vdb, folder_ / name);
     write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
-    ASSERT_EQ(render({cloud_vdb, "-o", "sky.exr", "--passes", "1", "-q"}).code, 0);
+    ASSERT_EQ(render({fog_vdb, "-o", "sky.exr", "--passes", "1", "-q"}).code, 0);
   }
   /// The bytes of every file in the folder.
   std::string everything() const {
@@ -106,8 +106,8 @@ TEST_F(FileClaims, OtherCommandsKeepToItToo) {
   expect_refused(farm({"c.0002.vdb"}), "--job", "volume.0.file");
   expect_refused(farm({"o.0002.exr"}), "--job", "-o");
   expect_refused(farm({"o.0002.passes_2-3.exr", "--splits", "2"}), "--job", "a part of -o");
-  const Names part{"render", cloud_vdb, "--pass-range", "0",    "-o",
-                   "a.exr",  "-q",      "--resolution", "32x18"};
+  const Names part{"render", fog_vdb, "--pass-range", "0",    "-o",
+                   "a.exr",  "-q",    "--resolution", "32x18"};
   ASSERT_EQ(run(part).code, 0);
   expect_refused({"merge", "-o", "a.exr", "a.exr"}, "-o a.exr", "the partial image a.exr");
   expect_refused({"merge", "-o", "b.exr", "--partial", "./a.exr", "a.exr"}, "--partial ./a.exr",
@@ -166,7 +166,7 @@ TEST_F(FileClaims, WhatFilesNameIsAnInputToo) {
 
 TEST_F(FileClaims, MergeKeepsItsPartials) {
   const auto part = [&](const char* range, const char* name) {
-    return render({cloud_vdb, "--pass-range", range, "-o", name, "-q"}).code;
+    return render({fog_vdb, "--pass-range", range, "-o", name, "-q"}).code;
   };
   ASSERT_EQ(part("0", "shot.deep.exr"), 0);
   ASSERT_EQ(part("1", "p1.exr"), 0);
@@ -200,45 +200,45 @@ TEST_F(FileClaims, SideFilesOfOthersStay) {
   for (const char* name : {"a.snapshot.exr", "b.checkpoint.exr"})
     fs::copy_file(folder_ / "sky.exr", folder_ / name);
   const std::string sky = read("sky.exr");
-  ASSERT_EQ(render({cloud_vdb, "-o", "a.exr", "--passes", "1", "-q"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-o", "a.exr", "--passes", "1", "-q"}).code, 0);
   EXPECT_EQ(read("a.snapshot.exr"), sky);
-  ASSERT_EQ(render({cloud_vdb, "-o", "a.exr", "--passes", "1", "-q", "--skip-existing"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-o", "a.exr", "--passes", "1", "-q", "--skip-existing"}).code, 0);
   EXPECT_EQ(read("a.snapshot.exr"), sky);
-  expect_refused({"render", cloud_vdb, "-o", "b.exr", "--passes", "1"},
+  expect_refused({"render", fog_vdb, "-o", "b.exr", "--passes", "1"},
                  "b.checkpoint.exr: is no checkpoint by vdbeam", "-o b.exr needs its name");
   // A planted link leads nowhere.
   fs::create_symlink("sky.exr", folder_ / "c.checkpoint.exr");
-  expect_refused({"render", cloud_vdb, "-o", "c.exr", "--passes", "1"},
-                 "c.checkpoint.exr: is a link", "-o c.exr");
+  expect_refused({"render", fog_vdb, "-o", "c.exr", "--passes", "1"}, "c.checkpoint.exr: is a link",
+                 "-o c.exr");
   EXPECT_EQ(read("sky.exr"), sky);
   // Nothing is lost with what is empty, and a partial image begins a frame.
   write("d.checkpoint.exr", "");
-  EXPECT_EQ(render({cloud_vdb, "-o", "d.exr", "--passes", "1", "-q"}).code, 0);
-  ASSERT_EQ(render({cloud_vdb, "-o", "e.checkpoint.exr", "--pass-range", "0", "-q"}).code, 0);
-  EXPECT_EQ(render({cloud_vdb, "-o", "e.exr", "--passes", "1", "-q"}).code, 0);
+  EXPECT_EQ(render({fog_vdb, "-o", "d.exr", "--passes", "1", "-q"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-o", "e.checkpoint.exr", "--pass-range", "0", "-q"}).code, 0);
+  EXPECT_EQ(render({fog_vdb, "-o", "e.exr", "--passes", "1", "-q"}).code, 0);
   EXPECT_FALSE(exists("e.checkpoint.exr"));
 }
 
 TEST_F(FileClaims, NamesThatAreTooLongAreRefusedBeforeRendering) {
   const auto refused = [&](const std::string& name, const std::string& text) {
-    const auto result = render({cloud_vdb, "--passes", "1", "-o", name});
+    const auto result = render({fog_vdb, "--passes", "1", "-o", name});
     EXPECT_EQ(result.code, 2) << result.error;
     EXPECT_EQ(result.error_lines(), 1u) << result.error;
     EXPECT_NE(result.error.find(text), std::string::npos) << result.error;
   };
   refused(std::string(260, 'x') + ".exr", "-o: a name of 264 bytes is too long, 255 are possible");
   refused(std::string(245, 'x') + ".exr", "the checkpoint of -o: a name of 260 bytes is too long");
-  EXPECT_EQ(render({cloud_vdb, "--passes", "1", "-o", std::string(240, 'x') + ".exr"}).code, 0);
+  EXPECT_EQ(render({fog_vdb, "--passes", "1", "-o", std::string(240, 'x') + ".exr"}).code, 0);
 }
 
 TEST_F(FileClaims, InputsMayBeTheSameFile) {
-  ASSERT_EQ(render({cloud_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
   const auto result =
-      render({cloud_vdb, "-o", "a.exr", "--passes", "1", "--reference", "ref.exr", "--set",
+      render({fog_vdb, "-o", "a.exr", "--passes", "1", "--reference", "ref.exr", "--set",
               "light.2.type=environment", "--set", "light.2.image=ref.exr"});
   EXPECT_EQ(result.code, 0) << result.error;
   // Rendering again over what is there is what outputs are for.
-  EXPECT_EQ(render({cloud_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
+  EXPECT_EQ(render({fog_vdb, "-o", "ref.exr", "--passes", "1", "-q"}).code, 0);
 }
 
 TEST_F(FileClaims, DashIsTheStandardOutput) {
@@ -256,7 +256,7 @@ TEST_F(FileClaims, DashIsTheStandardOutput) {
 }
 
 TEST_F(FileClaims, APartialImageIsAnExr) {
-  ASSERT_EQ(render({cloud_vdb, "-o", "p.exr", "-q", "--pass-range", "0-0"}).code, 0);
+  ASSERT_EQ(render({fog_vdb, "-o", "p.exr", "-q", "--pass-range", "0-0"}).code, 0);
   const auto result = run({"merge", "-o", "m.exr", "--partial", "p.png", "p.exr"});
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.error, "--partial p.png: a partial image must be an .exr\n");
@@ -266,11 +266,11 @@ TEST_F(FileClaims, APartialImageIsAnExr) {
 /// Each frame has four files that are compared with each other. Before folders were listed and
 /// claims kept without their texts, it took 20 s of processor time.
 TEST_F(FileClaims, HundredsOfThousandsOfFramesTakeSeconds) {
-  const auto result = run({"farm", "slurm", cloud_vdb, "-f", "1-300000", "--chunk", "1000", "-o",
+  const auto result = run({"farm", "slurm", fog_vdb, "-f", "1-300000", "--chunk", "1000", "-o",
                            "o.####.exr", "--job", "job.sh"});
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_LT(result.processor_seconds, 10);
-  const auto clash = run({"farm", "slurm", cloud_vdb, "-f", "1-300000", "--chunk", "1000", "-o",
+  const auto clash = run({"farm", "slurm", fog_vdb, "-f", "1-300000", "--chunk", "1000", "-o",
                           "o.####.exr", "--job", "O.299999.checkpoint.EXR"});
   EXPECT_EQ(clash.code, 2);
   EXPECT_NE(clash.error.find("is the same file as"), std::string::npos) << clash.error;

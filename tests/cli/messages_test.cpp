@@ -96,7 +96,7 @@ TEST_F(Messages, LastLineTellsWhatThePictureShows) {
 
 TEST_F(Messages, ControlCharactersOfNamesDoNotReachTheTerminal) {
   const std::string name = "a\x1b[31m\r.vdb";
-  std::filesystem::copy_file(cloud_vdb, file(name));
+  std::filesystem::copy_file(fog_vdb, file(name));
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"info", name}, {"plan", name}, {"render", name + "x"}}) {
     const auto result = run(words);

@@ -15,7 +15,7 @@ protected:
   void SetUp() override {
     CliTest::SetUp();
     for (const char* frame : {"1", "2", "3"})
-      std::filesystem::copy_file(cloud_vdb, file(std::string("c.000") + frame + ".vdb"));
+      std::filesystem::copy_file(fog_vdb, file(std::string("c.000") + frame + ".vdb"));
     write("c.0002.vdb", "no VDB & <no> \"HTML\"");
     std::ifstream scene(cloud);
     std::stringstream text;
@@ -84,7 +84,7 @@ TEST_F(PageTest, TasksOfAFarmAreMergedByFrame) {
             0);
   EXPECT_TRUE(page_has("page/index.html", "<b>2 of 3</b>"));
   // A later task renders the failed frame; the order of the files does not matter.
-  std::filesystem::copy_file(cloud_vdb, file("c.0002.vdb"),
+  std::filesystem::copy_file(fog_vdb, file("c.0002.vdb"),
                              std::filesystem::copy_options::overwrite_existing);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100)); // dates have seconds
   ASSERT_EQ(batch({"-f", "2", "--summary", "later.json"}).code, 0);
@@ -143,7 +143,7 @@ TEST_F(PageTest, OutputsOfThePageReplaceNoInput) {
   };
   std::filesystem::create_directory(file("page"));
   std::filesystem::copy_file(file("s.toml"), file("page/index.html"));
-  std::filesystem::copy_file(cloud_vdb, file("page/c.0001.vdb"));
+  std::filesystem::copy_file(fog_vdb, file("page/c.0001.vdb"));
   expect_refused({"render", "page/index.html", "-f", "1", "-o", "o.exr", "--html", "page"},
                  "--html page/index.html: is the same file as the scene");
   expect_refused({"render", "s.toml", "-f", "1", "-o", "page/frame.####.png", "--html", "page"},
@@ -160,7 +160,7 @@ TEST_F(PageTest, OutputsOfThePageReplaceNoInput) {
   // Images that a summary names are inputs.
   write("evil.json", R"({"scene": "s.toml", "frames_asked": [1], "frames": [{"frame": 1,
         "status": "done", "output": "page/frame.0001.png"}]})");
-  std::filesystem::copy_file(cloud_vdb, file("page/frame.0001.png"));
+  std::filesystem::copy_file(fog_vdb, file("page/frame.0001.png"));
   expect_refused({"summary", "evil.json", "--html", "page"}, "the image of frame 1");
   std::filesystem::create_hard_link(file("evil.json"), file("page/linked.json"));
   std::filesystem::remove(file("page/index.html"));

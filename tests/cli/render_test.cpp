@@ -103,9 +103,9 @@ TEST_F(RenderCommand, WrongReferenceSizeIsRefusedBeforeRendering) {
 }
 
 TEST_F(RenderCommand, BareVdbAndDefaultName) {
-  const auto result = render({cloud_vdb, "--passes", "1"});
+  const auto result = render({fog_vdb, "--passes", "1"});
   ASSERT_EQ(result.code, 0) << result.error;
-  EXPECT_TRUE(exists("cloud.exr"));
+  EXPECT_TRUE(exists("fog.exr"));
   EXPECT_NE(result.error.find("extinction"), std::string::npos); // what was chosen is said
 }
 
@@ -129,7 +129,7 @@ TEST_F(RenderCommand, FramesThatAreAllMissingAreToldAtOnce) {
 
 TEST_F(RenderCommand, OneBadFrameDoesNotStopTheOthers) {
   for (const char* name : {"c.0001.vdb", "c.0003.vdb"})
-    std::filesystem::copy_file(cloud_vdb, folder_ / name);
+    std::filesystem::copy_file(fog_vdb, folder_ / name);
   write("c.0002.vdb", "not a volume");
   write("s.toml", "[[volume]]\nfile = 'c.####.vdb'\n[[light]]\ntype = 'environment'\n");
   const auto result = render({"s.toml", "-f", "1-3", "--passes", "1"});

@@ -12,7 +12,7 @@ class SplitJob : public test::CliTest {
 protected:
   void SetUp() override {
     CliTest::SetUp();
-    fs::copy_file(cloud_vdb, folder_ / "c.vdb");
+    fs::copy_file(fog_vdb, folder_ / "c.vdb");
     write("s.toml", "[[volume]]\nfile = 'c.vdb'\nextinction = 40\n[[light]]\ntype = "
                     "'environment'\n[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
   }
@@ -137,7 +137,7 @@ TEST_F(SplitJob, StalePartsAreNotMerged) {
 
 TEST_F(SplitJob, FarmTellsAtOnceWhichFramesHaveNoVolume) {
   for (const char* name : {"v.0001.vdb", "v.0002.vdb", "v.0005.vdb"})
-    fs::copy_file(cloud_vdb, folder_ / name);
+    fs::copy_file(fog_vdb, folder_ / name);
   const auto farm = [&](const std::string& frames, const Names& more = {}) {
     Names words{"farm", "slurm", "v.toml", "-f", frames, "-o", "o.####.exr", "--job", "job.sh"};
     words.insert(words.end(), more.begin(), more.end());
