@@ -80,7 +80,7 @@ TEST(ForwardPeakBeam, FurnaceOfLumpsByFinalGathering) {
     scene.scene.render.final_gather = FinalGathering::always;
     scene.scene.render.photons = 40000;
     scene.scene.render.neighbours = 300;
-    const Picture picture = render(scene, 96);
+    const Picture picture = render(scene, 48);
     double mean = 0, worst = 0;
     for (std::size_t i = 0; i < picture.mean.size(); ++i) {
       EXPECT_NEAR(picture.mean[i], 1, 5 * std::sqrt(picture.variance[i]) + 0.03) << i;

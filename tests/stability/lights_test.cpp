@@ -10,8 +10,8 @@ using namespace test;
 /// to a light are rare and bright, so there are many.
 void expect_same_picture(MemoryScene scene, const std::string& what, double bias) {
   scene.scene.render.photons = 20000;
-  const PassMeans beam = render_sound(scene, EstimatorType::beam, 72, what);
-  const PassMeans path = render_sound(scene, EstimatorType::path, 6000, what);
+  const PassMeans beam = render_sound(scene, EstimatorType::beam, 48, what);
+  const PassMeans path = render_sound(scene, EstimatorType::path, 3000, what);
   SCOPED_TRACE(what);
   expect_power(beam.total[0], 0.025 * path.total[0].mean());
   expect_power(path.total[0], 0.025 * path.total[0].mean());
