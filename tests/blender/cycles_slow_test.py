@@ -53,28 +53,28 @@ class AgainstCycles(unittest.TestCase):
         self.assertLess(apart, TOLERANCE + 4 * error)
 
     def test_lamps(self):
-        self.check(scenes.lamps_on_plane(), 64, 64)
+        self.check(scenes.lamps_on_plane(), 16, 16)
 
     def test_smoke(self):
-        self.check(scenes.smoke(), 64, 8)
+        self.check(scenes.smoke(), 24, 4)
 
     def test_box_of_fog(self):
-        self.check(scenes.box_of_fog(), 128, 64)
+        self.check(scenes.box_of_fog(), 24, 16)
 
     def test_world_of_fog(self):
         """Walks are long in fog without an end, so the mean of the image is compared, within 2 %."""
         scene = scenes.world_of_fog()
-        scene.vdbeam.estimator, scene.vdbeam.passes = "path", 24
+        scene.vdbeam.estimator, scene.vdbeam.passes = "path", 12
         mine = self.blocks(scene, "vdbeam", 1).mean((0, 1))
-        scenes.use_cycles(scene, 128, 1)
+        scenes.use_cycles(scene, 64, 1)
         theirs = self.blocks(scene, "cycles", 1).mean((0, 1))
         self.assertLess(numpy.abs(mine / theirs - 1).max(), 0.02)
 
     def test_environment_image(self):
-        self.check(scenes.surroundings(self.folder), 32, 32)
+        self.check(scenes.surroundings(self.folder), 12, 16)
 
     def test_lens(self):
-        self.check(scenes.lens(), 32, 32)
+        self.check(scenes.lens(), 12, 16)
 
 
 if __name__ == "__main__":
