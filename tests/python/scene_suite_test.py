@@ -14,7 +14,7 @@ TOOLS = built_module.ROOT / "tools"
 
 # Scenes with the lead over path that they must keep at this size.
 LEADS = {"cumulus": 3, "tower": 3, "shell": 2}
-SIZE = ["--width", "96", "--passes", "6", "--path-passes", "6", "--reference-passes", "96"]
+SIZE = ["--width", "64", "--passes", "6", "--path-passes", "6", "--reference-passes", "96"]
 
 
 def run(*words):

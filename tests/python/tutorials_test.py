@@ -1,4 +1,5 @@
-"""Every command block of docs/tutorials runs as it stands in the page, and leaves what the page says it does."""
+"""Every command block of docs/tutorials runs as it stands in the page, the largest images smaller, and leaves what the page
+says it does."""
 import json
 import os
 import pathlib
@@ -48,6 +49,13 @@ class Tutorials(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         return result.stdout + result.stderr
 
+    def smaller(self, script, sizes):
+        """The script with other sizes of images, {size: other}."""
+        for size, other in sizes.items():
+            self.assertIn(size, script)
+            script = script.replace(size, other)
+        return script
+
     def has(self, *names):
         for name in names:
             self.assertGreater((self.folder / "out" / name).stat().st_size, 0, name)
@@ -72,7 +80,8 @@ class Tutorials(unittest.TestCase):
         self.assertEqual(list((self.folder / "out/farm/frames").glob("*.checkpoint.exr")), [])
 
     def test_hero_cloud(self):
-        self.run_script(blocks("hero-cloud", "sh"))
+        self.run_script(self.smaller(blocks("hero-cloud", "sh"), {"width = 320\nheight = 180": "width = 128\nheight = 72",
+                                                                  "128x72": "48x27"}))
         self.has(*(f"dusk/{name}.png" for name in ("first", "extinction_15", "extinction_150", "droplets", "late", "dusk")))
         report = json.loads((self.folder / "out/dusk/dusk.json").read_text(encoding="utf-8"))
         self.assertIn(report["stopped_by"], ("target_error", "time"))  # of a busy machine
@@ -92,7 +101,7 @@ class Tutorials(unittest.TestCase):
         self.needs("blender", "oiiotool")
         self.environment.update(BLENDER_USER_CONFIG=str(self.folder / "config"),
                                 BLENDER_USER_SCRIPTS=str(self.folder / "scripts"))
-        self.run_script(blocks("blender-comp", "sh"))
+        self.run_script(self.smaller(blocks("blender-comp", "sh"), {"240, 180": "120, 90", "240x180": "120x90"}))
         self.has("blender/element.0016.exr", "blender/frame.0014.exr", "blender/page/index.html", "blender/comp.png")
 
     def test_pages_are_short_and_linked(self):
