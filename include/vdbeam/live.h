@@ -22,9 +22,10 @@ struct LiveImage {
 
 /// What a LiveSession did with a scene that it was given.
 struct LiveEdit {
-  int edit = 0;                     ///< its number, from 1
-  std::vector<std::string> changed; ///< keys that differ from the last scene, if any
-  bool mixed = false;               ///< nothing is rendered anew: only strengths of lights changed
+  int edit = 0; ///< its number, from 1
+  /// Keys that differ from the last scene, if any; of a table that was added or removed its name.
+  std::vector<std::string> changed;
+  bool mixed = false; ///< nothing is rendered anew: strengths of lights, or outputs, have changed
   /// Counts what was read and built for it; everything else was kept.
   std::uint64_t grids_read = 0, meshes_read = 0, trees_built = 0;
 };

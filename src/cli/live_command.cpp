@@ -1,40 +1,32 @@
 #include "batch/file_claims.h"
 #include "cli/commands.h"
-#include "cli/preview_writer.h"
+#include "cli/live_view.h"
 #include "cli/scene_options.h"
 #include "cli/scene_watch.h"
 #include "cli/view_option.h"
-#include "console/display.h"
 #include "console/events.h"
 #include "console/signals.h"
-#include "console/streams.h"
-#include "console/terminal.h"
 #include "image/output_formats.h"
-#include "text/text.h"
 #include "vdbeam/error.h"
 #include "vdbeam/live.h"
 
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <fmt/format.h>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
-#include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace vdbeam::cli {
 namespace {
 
 constexpr std::chrono::milliseconds watch_interval{10};
-/// How long a scene file that cannot be read may stay so before the error is printed: editors
-/// write in steps.
+/// How long a file that cannot be read may stay so before the error is printed: editors and
+/// simulations write in steps.
 constexpr std::chrono::milliseconds patience{250};
-/// How long the render waits until the look at an edit is in its file.
-constexpr std::chrono::milliseconds longest_wait{100};
-/// And how long it waits for the last image.
-constexpr std::chrono::milliseconds longest_wait_in_the_end{5000};
 
 struct LiveOptions {
   SceneOptions scene;
@@ -44,133 +36,41 @@ struct LiveOptions {
   bool quiet = false, end_with_stdin = false;
 };
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+LiveViewOptions view_options(const LiveOptions& options) {
+  return {.name = std::filesystem::path(options.scene.path()).filename().string(),
+          .preview = options.preview,
+          .display = options.display,
+          .view = options.view,
+          .exposure = options.exposure,
+          .quiet = options.quiet};
 }
 
-/// What the user sees of a live session: the preview, the viewer, the log and events.
-class LiveView {
+/// An error that may pass: files that are read while they are written look damaged.
+class PendingError {
 public:
-  explicit LiveView(const LiveOptions& options)
-      : options_(options), name_(std::filesystem::path(options.scene.path()).filename().string()),
-        status_line_(!options.quiet && is_smart_terminal(STDERR_FILENO)) {
-    if (!options.display.empty())
-      display_ = std::make_unique<Display>(options.display);
-    if (!options.preview.empty())
-      writer_ = std::make_unique<PreviewWriter>(
-          options.preview,
-          WriteOptions{
-              .exposure = options.exposure, .view = options.view, .life = ImageLife::passing},
-          [this](const std::string& line) { report_error(line); });
+  void set(int edit, const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    edit_ = edit;
+    line_ = line;
+    since_ = std::chrono::steady_clock::now();
   }
-  ~LiveView() { end_status(); }
-
-  LiveHooks hooks() {
-    LiveHooks hooks;
-    hooks.on_image = [this](LiveImage& image) { show(image); };
-    hooks.on_edit = [this](const LiveEdit& edit) { report(edit); };
-    hooks.on_error = [this](int, const std::string& line) { report_error(line); };
-    hooks.on_finished = [this](int edit) {
-      end_status();
-      if (writer_)
-        writer_->wait(longest_wait_in_the_end); // the last image comes before this event
-      send_event("finished", {{"edit", edit}});
-      if (!options_.quiet)
-        log("finished; waiting for edits, Ctrl+C ends");
-    };
-    return hooks;
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    line_.reset();
   }
-
-  void report_error(const std::string& line) {
-    end_status();
-    log_error(fmt::format("error: {}", line));
-    send_event("message", {{"level", "error"}, {"text", line}});
+  /// Returns the error of the latest edit, once, if it has lasted that long.
+  std::optional<std::string> take(int latest_edit, std::chrono::milliseconds age) {
+    const std::lock_guard lock(mutex_);
+    if (!line_ || edit_ < latest_edit || std::chrono::steady_clock::now() < since_ + age)
+      return std::nullopt;
+    return std::exchange(line_, std::nullopt);
   }
 
 private:
-  void show(LiveImage& shown) {
-    if (display_)
-      display_->show(name_, shown.image);
-    const nlohmann::ordered_json event = image_event(shown);
-    if (writer_)
-      writer_->write(std::move(shown.image), [event] { send_event("image", event); });
-    else
-      send_event("image", event);
-    if (writer_ && shown.passes == 0 && !shown.mixed) // else passes would take its processors
-      writer_->wait(longest_wait);
-    status(shown);
-  }
-
-  nlohmann::ordered_json image_event(const LiveImage& shown) const {
-    nlohmann::ordered_json event{{"edit", shown.edit},
-                                 {"passes", shown.passes},
-                                 {"mixed", shown.mixed},
-                                 {"seconds", shown.seconds}};
-    if (shown.record) {
-      event["error"] = number(shown.record->error_estimate);
-      event["error_low"] = number(shown.record->error_low);
-      event["error_high"] = number(shown.record->error_high);
-    }
-    if (writer_)
-      event["path"] = std::filesystem::absolute(options_.preview).string();
-    return event;
-  }
-
-  void report(const LiveEdit& edit) {
-    send_event("edit", {{"edit", edit.edit},
-                        {"changed", edit.changed},
-                        {"mixed", edit.mixed},
-                        {"grids_read", edit.grids_read},
-                        {"meshes_read", edit.meshes_read},
-                        {"trees_built", edit.trees_built}});
-    end_status();
-    if (!options_.quiet)
-      log("edit {}: {}", edit.edit, description(edit));
-  }
-
-  static std::string description(const LiveEdit& edit) {
-    constexpr std::size_t most_keys = 4;
-    std::string keys;
-    for (std::size_t i = 0; i < std::min(most_keys, edit.changed.size()); ++i)
-      keys += (i > 0 ? ", " : "") + edit.changed[i];
-    if (edit.changed.size() > most_keys)
-      keys += fmt::format(" and {} more", edit.changed.size() - most_keys);
-    if (edit.edit == 1)
-      keys = "the scene";
-    else if (keys.empty())
-      keys = "files of the scene";
-    if (edit.mixed)
-      return keys + "; mixed from the images of the lights, the render goes on";
-    return fmt::format("{}; read {} grids and {} meshes, built {} trees, kept the rest", keys,
-                       edit.grids_read, edit.meshes_read, edit.trees_built);
-  }
-
-  /// On a terminal, one line that changes; in a log nothing, or it would fill.
-  void status(const LiveImage& shown) {
-    if (!status_line_)
-      return;
-    std::string text = shown.passes == 0 ? "quick look" : fmt::format("{} passes", shown.passes);
-    if (shown.record && std::isfinite(shown.record->error_estimate)) {
-      // Half of the error takes twice the passes.
-      text += fmt::format(", error {:.3g} ({:.3g} to {:.3g}), half of it in {}",
-                          shown.record->error_estimate, shown.record->error_low,
-                          shown.record->error_high, format_duration(shown.record->seconds));
-    }
-    const auto columns = static_cast<std::size_t>(terminal_columns(STDERR_FILENO));
-    log_text("\r\033[K" + text.substr(0, columns > 1 ? columns - 1 : 1));
-    status_shown_ = true;
-  }
-  void end_status() {
-    if (status_shown_)
-      log_text("\r\033[K");
-    status_shown_ = false;
-  }
-
-  const LiveOptions& options_;
-  std::string name_;
-  std::unique_ptr<Display> display_;
-  bool status_line_, status_shown_ = false;
-  std::unique_ptr<PreviewWriter> writer_; ///< the last member: it uses the others
+  std::mutex mutex_;
+  int edit_ = 0;
+  std::optional<std::string> line_;
+  std::chrono::steady_clock::time_point since_;
 };
 
 /// Reads the scene again where its files change, and shows it.
@@ -178,10 +78,10 @@ class LiveLoop {
 public:
   /// `watch` has begun before the document was read.
   LiveLoop(const LiveOptions& options, int frame, const SceneDocument& document, SceneWatch watch)
-      : options_(options), frame_(frame), watch_(std::move(watch)), view_(options),
-        session_(view_.hooks()) {
+      : options_(options), frame_(frame), watch_(std::move(watch)), view_(view_options(options)),
+        session_(hooks()) {
     watch_.name_files(document, frame_);
-    session_.show(document.scene_at(frame_));
+    edit_ = session_.show(document.scene_at(frame_));
   }
 
   void run() {
@@ -189,21 +89,33 @@ public:
       std::this_thread::sleep_for(watch_interval);
       if (const std::vector<std::string> changed = watch_.changed(); !changed.empty())
         load(changed);
-      else if (unread_ && std::chrono::steady_clock::now() > unread_->since + patience)
-        view_.report_error(std::exchange(unread_, std::nullopt)->line);
+      else
+        report_error(patience);
     }
+    report_error({});
   }
 
 private:
-  struct Unread {
-    std::string line;
-    std::chrono::steady_clock::time_point since;
-  };
+  LiveHooks hooks() {
+    LiveHooks hooks;
+    hooks.on_image = [this](LiveImage& image) { view_.show(image); };
+    hooks.on_edit = [this](const LiveEdit& edit) { view_.report(edit); };
+    hooks.on_error = [this](int edit, const std::string& line) { error_.set(edit, line); };
+    hooks.on_finished = [this](int edit) { view_.report_end(edit); };
+    return hooks;
+  }
+
+  void report_error(std::chrono::milliseconds age) {
+    if (const std::optional<std::string> line = error_.take(edit_, age)) {
+      view_.report_error(*line);
+      mistaken_ = true;
+    }
+  }
 
   void load(const std::vector<std::string>& changed) {
     files_changed_ = files_changed_ || !watch_.only_scene(changed) ||
                      is_vdb_file(options_.scene.path()); // which is a scene, and its volume
-    unread_.reset();
+    error_.clear();
     try {
       watch_.look_again(); // before reading: what changes meanwhile is read once more
       if (std::error_code no_size;
@@ -215,9 +127,13 @@ private:
       FileClaims claims;
       claims.scene(document, options_.scene.path(), {frame_});
       claims.output("--preview", options_.preview);
-      session_.show(std::move(scene), std::exchange(files_changed_, false));
+      const int edit = session_.show(std::move(scene), std::exchange(files_changed_, false));
+      if (edit == edit_ && mistaken_)
+        view_.report_repaired();
+      edit_ = edit;
+      mistaken_ = false;
     } catch (const InputError& error) {
-      unread_ = Unread{error.what(), std::chrono::steady_clock::now()};
+      error_.set(edit_, error.what());
     }
   }
 
@@ -225,9 +141,11 @@ private:
   int frame_;
   SceneWatch watch_;
   LiveView view_;
-  LiveSession session_;
+  PendingError error_;
   bool files_changed_ = false;
-  std::optional<Unread> unread_;
+  bool mistaken_ = false; ///< the last message is an error
+  int edit_ = 0;          ///< that is shown
+  LiveSession session_;   ///< the last member: it calls back
 };
 
 int run_live(LiveOptions& options) {

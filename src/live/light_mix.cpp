@@ -1,6 +1,7 @@
 #include "live/light_mix.h"
 
 #include "lights/light_table.h"
+#include "live/scene_changes.h"
 #include "materials/material_table.h"
 #include "volume/blackbody.h"
 
@@ -19,6 +20,31 @@ std::string group_of_light(std::size_t i) {
 }
 std::string group_of_mesh(std::size_t i) {
   return fmt::format("mesh{}", i);
+}
+
+/// Drops what shapes the file of a render, but no pixel of R, G, B and A.
+void drop_outputs(Scene& scene) {
+  const ImageSettings given = scene.image;
+  scene.image = {.width = given.width,
+                 .height = given.height,
+                 .fps = {},
+                 .pixel_aspect = given.pixel_aspect,
+                 .overscan = given.overscan,
+                 .filter = given.filter,
+                 .filter_width = given.filter_width,
+                 .working_space = given.working_space,
+                 .output_space = given.output_space};
+}
+
+/// The scene with the groups and layers of another one, and without outputs of its own.
+Scene with_groups_of(const Scene& other, Scene scene) {
+  drop_outputs(scene);
+  scene.layers = other.layers;
+  for (std::size_t i = 0; i < std::min(scene.lights.size(), other.lights.size()); ++i)
+    scene.lights[i].group = other.lights[i].group;
+  for (std::size_t i = 0; i < std::min(scene.surfaces.size(), other.surfaces.size()); ++i)
+    scene.surfaces[i].group = other.surfaces[i].group;
+  return scene;
 }
 
 /// What scales the light of a source. Empty where that is not known.
@@ -72,6 +98,7 @@ bool is_key_of(const std::string& path, const std::string& table,
 } // namespace
 
 Scene LightMix::with_groups(Scene scene) {
+  drop_outputs(scene);
   std::size_t shining = 0;
   bool catches_shadows = false; // whose alpha depends on all lights together
   for (SurfaceSettings& surface : scene.surfaces) {
@@ -94,8 +121,7 @@ Scene LightMix::with_groups(Scene scene) {
   return scene;
 }
 
-std::optional<LightMix> LightMix::between(const Scene& rendered, const Scene& edited,
-                                          const std::vector<std::string>& changed) {
+std::optional<LightMix> LightMix::between(const Scene& rendered, const Scene& edited) {
   const auto is_strength = [&](const std::string& path, std::size_t lights, std::size_t meshes) {
     for (std::size_t i = 0; i < lights; ++i)
       if (is_key_of(path, fmt::format("light.{}.", i),
@@ -107,7 +133,7 @@ std::optional<LightMix> LightMix::between(const Scene& rendered, const Scene& ed
         return true;
     return false;
   };
-  for (const std::string& path : changed)
+  for (const std::string& path : changed_keys(rendered, with_groups_of(rendered, edited)))
     if (!is_strength(path, rendered.lights.size(), rendered.surfaces.size()))
       return std::nullopt;
   LightMix mix;

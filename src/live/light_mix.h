@@ -13,14 +13,14 @@ namespace vdbeam {
 /// light adds up.
 class LightMix {
 public:
-  /// The scene with a group for each light, each surface that shines and all volumes that glow; as
-  /// it is where groups are impossible (render.clamp) or too many.
+  /// The scene with a group for each light, each surface that shines and all volumes that glow, and
+  /// without groups, layers, deep samples and settings of files of its own. It has no groups where
+  /// they are impossible (render.clamp) or too many.
   static Scene with_groups(Scene scene);
 
-  /// Factors, by group name, that make images of `rendered` (with_groups) images of `edited`, which
-  /// differs from it by the keys `changed`; nothing where factors cannot do that.
-  static std::optional<LightMix> between(const Scene& rendered, const Scene& edited,
-                                         const std::vector<std::string>& changed);
+  /// Factors, by group name, that make images of `rendered` (with_groups) images of `edited`;
+  /// nothing where factors cannot do that.
+  static std::optional<LightMix> between(const Scene& rendered, const Scene& edited);
 
   bool changes_nothing() const { return factors_.empty(); }
   /// R, G, B and A of an image with light groups, under the new strengths. Nothing where a light

@@ -47,7 +47,7 @@ public:
     given_ = Clock::now();
     shown_ = std::move(scene);
     if (edits_ > 1 && !files_changed && !next_ && !failed_)
-      if (auto mix = LightMix::between(grouped_, shown_, changed_keys(base_, shown_))) {
+      if (auto mix = LightMix::between(grouped_, shown_)) {
         mix_ = std::move(*mix);
         edit.mixed = true;
         const bool finished = finished_;

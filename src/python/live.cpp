@@ -246,7 +246,8 @@ void bind_live_image(py::module_& module) {
       .def_readonly("record", &LiveImage::record);
   py::class_<LiveEdit>(module, "LiveEdit", "What a live session did with a scene.")
       .def_readonly("edit", &LiveEdit::edit, "Number of the scene, from 1.")
-      .def_readonly("changed", &LiveEdit::changed, "Paths of the keys that differ from the last.")
+      .def_readonly("changed", &LiveEdit::changed,
+                    "Paths of the keys that differ from the last, and of tables that came or went.")
       .def_readonly("mixed", &LiveEdit::mixed, "Whether nothing is rendered anew.")
       .def_readonly("grids_read", &LiveEdit::grids_read, "Grids read for it.")
       .def_readonly("meshes_read", &LiveEdit::meshes_read, "Meshes read for it.")

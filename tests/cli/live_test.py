@@ -3,12 +3,14 @@
 import json
 import os
 import pathlib
+import pty
 import queue
 import shutil
 import signal
 import subprocess
 import sys
 import threading
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -52,6 +54,7 @@ class Live:
         self.process = subprocess.Popen([VDBEAM, "live", "fog.toml", "--progress", "json", "-q", "--threads", "1", *options],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.events = queue.Queue()
+        self.seen = []  # all that `wait` has read
         self.thread = threading.Thread(target=self._read, daemon=True)
         self.thread.start()
 
@@ -63,6 +66,7 @@ class Live:
         """The next event of this kind with these values; those before it are dropped."""
         while True:
             found = self.events.get(timeout=PATIENCE)
+            self.seen.append(found)
             if found["event"] == event and all(found[key] == value for key, value in keys.items()):
                 return found
 
@@ -159,6 +163,66 @@ class LiveTest(InTempFolder):
         self.save(scene())
         self.save(scene(exposure=1))
         self.assertEqual(live.wait("edit")["edit"], 2)
+
+    def test_reports_that_a_mistake_is_repaired(self):
+        live = self.start()
+        live.wait("finished")
+        self.save(scene() + "bogus = 1\n")
+        live.wait("message", level="error")
+        self.save(scene())
+        self.assertIn("can be read again", live.wait("message", level="note")["text"])
+        self.save(scene(exposure=1))
+        self.assertEqual(live.wait("edit")["edit"], 2)
+
+    def test_a_volume_that_is_being_written_is_no_mistake(self):
+        live = self.start()
+        live.wait("finished")
+        whole = pathlib.Path("fog.vdb").read_bytes()
+        with open("fog.vdb", "wb") as file:
+            for begin in range(0, len(whole), len(whole) // 20 + 1):
+                file.write(whole[begin:begin + len(whole) // 20 + 1])
+                file.flush()
+                time.sleep(0.05)
+        live.wait("finished")
+        self.assertEqual([event for event in live.seen if event["event"] == "message"], [])
+
+    def test_a_damaged_volume_is_reported_once(self):
+        live = self.start()
+        live.wait("finished")
+        pathlib.Path("fog.vdb").write_bytes(b"no volume")
+        self.assertIn("fog.vdb", live.wait("message", level="error")["text"])
+        shutil.copy(DATA / "fog.vdb", "fog.vdb")
+        live.wait("finished")
+        self.assertEqual(sum(event["event"] == "message" for event in live.seen), 1)
+
+    def test_names_a_light_that_is_added_or_removed(self):
+        live = self.start()
+        live.wait("finished")
+        self.save(scene() + "[[light]]\ntype = 'point'\nposition = [1, 1, 1]\nintensity = 1\n")
+        self.assertEqual(live.wait("edit")["changed"], ["light.2"])
+        self.save(scene())
+        self.assertEqual(live.wait("edit")["changed"], ["light.2"])
+
+    def test_an_edit_of_layers_renders_nothing_anew(self):
+        live = self.start()
+        live.wait("image", passes=4)
+        self.save(scene() + "[[layer]]\nname = 'beauty'\n[[layer]]\nname = 'depth'\n")
+        self.assertTrue(live.wait("edit")["mixed"])
+        live.wait("image", edit=2, mixed=False, passes=4)
+
+    def test_the_status_line_has_passes_and_error(self):
+        main, terminal = pty.openpty()
+        process = subprocess.Popen([VDBEAM, "live", "fog.toml", "--threads", "1"], stderr=terminal,
+                                   env=dict(os.environ, TERM="xterm"))
+        os.close(terminal)
+        shown = b""
+        while b"Ctrl+C ends" not in shown:
+            shown += os.read(main, 4096)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(PATIENCE), 0)
+        os.close(main)
+        self.assertRegex(shown, rb"finished: 4 passes, error [0-9.e-]+ \([0-9.e-]+ to [0-9.e-]+\); waiting for edits")
+        self.assertNotIn(b"nan", shown)
 
     def test_stops_a_long_render_for_an_edit(self):
         long = scene().replace("passes = 4", "passes = 1000000")

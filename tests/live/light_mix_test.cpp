@@ -1,6 +1,5 @@
 // Images under other strengths of the lights, mixed from the images of single lights.
 #include "live/light_mix.h"
-#include "live/scene_changes.h"
 #include "support/statistics.h"
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
@@ -67,7 +66,7 @@ Image render_with_seed(Scene scene, std::uint64_t seed) {
 }
 
 std::optional<LightMix> mix_of(const Scene& before, const Scene& after) {
-  return LightMix::between(LightMix::with_groups(before), after, changed_keys(before, after));
+  return LightMix::between(LightMix::with_groups(before), after);
 }
 
 TEST(LightMix, IsTheImageOfTheEditedScene) {
@@ -121,6 +120,43 @@ TEST(LightMix, LeavesOtherEditsToARender) {
     edit(after);
     EXPECT_FALSE(mix_of(before, after)) << name;
   }
+}
+
+TEST(LightMix, GoesOnWhereOnlyOutputsDiffer) {
+  const Scene before = lit_fog();
+  const std::vector<std::pair<const char*, std::function<void(Scene&)>>> edits{
+      {"a group", [](Scene& s) { s.lights[0].group = "key"; }},
+      {"a group of a lamp", [](Scene& s) { s.surfaces[0].group = "lamp"; }},
+      {"a layer", [](Scene& s) { s.layers.push_back({"depth"}); }},
+      {"a deep image", [](Scene& s) { s.image.deep = true; }},
+      {"Cryptomatte", [](Scene& s) { s.image.cryptomatte = true; }},
+      {"a compression", [](Scene& s) { s.image.compression = Compression::piz; }}};
+  for (const auto& [name, edit] : edits) {
+    Scene after = before;
+    edit(after);
+    const std::optional<LightMix> mix = mix_of(before, after);
+    ASSERT_TRUE(mix) << name;
+    EXPECT_TRUE(mix->changes_nothing()) << name;
+  }
+}
+
+TEST(LightMix, SwitchesLightsOff) {
+  const Scene before = lit_fog();
+  Scene after = before;
+  after.lights[0].irradiance = Rgb();
+  after.surfaces[0].material.radiance = Rgb();
+  const std::optional<LightMix> mix = mix_of(before, after);
+  ASSERT_TRUE(mix);
+  EXPECT_FALSE(mix->changes_nothing());
+}
+
+TEST(LightMix, RendersNoDeepSamples) {
+  Scene scene = lit_fog();
+  scene.image.deep = scene.image.cryptomatte = true;
+  const Scene grouped = LightMix::with_groups(scene);
+  EXPECT_FALSE(grouped.image.deep);
+  EXPECT_FALSE(grouped.image.cryptomatte);
+  EXPECT_EQ(grouped.image.width, scene.image.width);
 }
 
 TEST(LightMix, CannotBrightenWhatWasDark) {
