@@ -61,12 +61,20 @@ void bind_images(py::module_& module) {
       .def_property_readonly(
           "planes",
           [](const std::shared_ptr<Image>& image) { return planes_of(*image, py::cast(image)); })
-      .def("write_exr", [](const Image& image, const std::string& path) { write_exr(image, path); })
-      .def("write_png", [](const Image& image, const std::string& path, double exposure,
-                           const std::string& view) { write_png(image, path, exposure, view); });
-  module.def("read_image",
-             [](const std::string& path) { return std::make_shared<Image>(read_image(path)); });
-  module.def("compare", &compare);
+      .def(
+          "write_exr", [](const Image& image, const std::string& path) { write_exr(image, path); },
+          py::arg("path"))
+      .def(
+          "write_png",
+          [](const Image& image, const std::string& path, double exposure,
+             const std::string& view) { write_png(image, path, exposure, view); },
+          py::arg("path"), py::arg("exposure"), py::arg("view"));
+  module.def(
+      "read_image",
+      [](const std::string& path) { return std::make_shared<Image>(read_image(path)); },
+      py::arg("path"));
+  module.def("compare", &compare, py::arg("image"), py::arg("reference"),
+             py::arg("second_reference"));
 }
 
 } // namespace vdbeam::python

@@ -261,11 +261,12 @@ void bind_live(py::module_& module) {
   py::class_<Live>(module, "LiveSession")
       .def(py::init([](const py::object& on_image, const py::object& on_edit,
                        const py::object& on_error, const py::object& on_finished) {
-        return std::make_unique<Live>(LiveCallbacks{on_image, on_edit, on_error, on_finished});
-      }))
-      .def("show", &Live::show)
+             return std::make_unique<Live>(LiveCallbacks{on_image, on_edit, on_error, on_finished});
+           }),
+           py::arg("on_image"), py::arg("on_edit"), py::arg("on_error"), py::arg("on_finished"))
+      .def("show", &Live::show, py::arg("scene"), py::arg("files_changed"))
       .def("stop", &Live::stop)
-      .def("wait", &Live::wait)
+      .def("wait", &Live::wait, py::arg("seconds"))
       .def("close", &Live::close)
       .def_property_readonly("latest", &Live::latest);
 }

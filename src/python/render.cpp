@@ -172,13 +172,16 @@ void bind_render(py::module_& module) {
       .def_property_readonly("passes", [](const Frame& frame) { return frame.result.passes; })
       .def_property_readonly("notes", [](const Frame& frame) { return frame.result.notes; })
       .def_readonly("report", &Frame::report);
-  module.def("render", [](const Scene& scene, Session& session,
-                          const std::optional<FloatArray>& reference,
-                          const std::optional<FloatArray>& second_reference,
-                          const py::object& on_pass, const py::object& on_image,
-                          const py::object& on_note) {
-    return render_frame(scene, session, reference, second_reference, {on_pass, on_image, on_note});
-  });
+  module.def(
+      "render",
+      [](const Scene& scene, Session& session, const std::optional<FloatArray>& reference,
+         const std::optional<FloatArray>& second_reference, const py::object& on_pass,
+         const py::object& on_image, const py::object& on_note) {
+        return render_frame(scene, session, reference, second_reference,
+                            {on_pass, on_image, on_note});
+      },
+      py::arg("scene"), py::arg("session"), py::arg("reference"), py::arg("second_reference"),
+      py::arg("on_pass"), py::arg("on_image"), py::arg("on_note"));
 }
 
 } // namespace vdbeam::python

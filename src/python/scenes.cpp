@@ -47,14 +47,15 @@ void bind_scenes(py::module_& module) {
       [](const std::string& path, int frame, const Overrides& overrides) {
         return load_scene(path, FrameTime(frame), overrides);
       },
-      WithoutLock());
+      py::arg("path"), py::arg("frame"), py::arg("overrides"), WithoutLock());
   module.def(
       "parse_scene",
       [](const std::string& text, const std::string& path, int frame, const Overrides& overrides) {
         return parse_scene(text, path, FrameTime(frame), overrides);
       },
-      WithoutLock());
-  module.def("write_density", &write_density);
+      py::arg("text"), py::arg("path"), py::arg("frame"), py::arg("overrides"), WithoutLock());
+  module.def("write_density", &write_density, py::arg("values"), py::arg("path"),
+             py::arg("voxel_size"), py::arg("origin"), py::arg("grid"));
 }
 
 } // namespace vdbeam::python
