@@ -53,6 +53,12 @@ class Scenes(unittest.TestCase):
             scene["camera.fov"] = object()
         self.assertEqual(scene.hash(), before)
 
+    def test_a_missing_key_is_named(self):
+        for key in ("camera.fow", "light.9.exposure", "camera.fov.x", "light.first"):
+            with self.assertRaises(KeyError) as caught:
+                cloud()[key]
+            self.assertEqual(caught.exception.args, (key,))
+
     def test_a_dict_is_a_scene_file(self):
         keys = {"image": {"width": 48, "height": 27}, "camera": {"position": [0, 0, 5], "look_at": (0, 0, 0)},
                 "volume": [{"file": "cloud.vdb", "extinction": 3.5, "phase": {"type": "henyey_greenstein", "g": 0.5}}],
@@ -101,6 +107,30 @@ class Renders(unittest.TestCase):
         self.assertEqual(frame.stopped_by, "passes")
         self.assertEqual([record.passes for record in frame.passes], [1, 2])
         self.assertEqual(frame.report["plan"]["estimator"], cloud().plan()["estimator"])
+
+    def test_what_a_scene_takes_can_be_rendered(self):
+        scene = cloud()
+        small = {"image.width": scene.width, "image.height": scene.height, "render.passes": 2}
+        path = built_module.ROOT / "data/cloud.toml"
+        for source in (path, str(path)):
+            np.testing.assert_array_equal(vdbeam.render(source, small).rgb, vdbeam.render(vdbeam.Scene(path, small)).rgb)
+        with self.assertRaisesRegex(vdbeam.InputError, "there is no file"):
+            vdbeam.Session().render("missing.toml")
+
+    def test_files_are_named_after_their_format(self):
+        frame = vdbeam.render(cloud(), {"render.passes": 1})
+        with tempfile.TemporaryDirectory() as folder:
+            for name, save in (("a.png", frame.save), ("a.jpg", frame.save_preview), ("a.exr", frame.save_preview)):
+                with self.assertRaisesRegex(vdbeam.InputError, f"{name}: the name of this file must end with"):
+                    save(pathlib.Path(folder) / name)
+            self.assertEqual(os.listdir(folder), [])
+            frame.save(pathlib.Path(folder) / "a.EXR")
+            self.assertEqual(os.listdir(folder), ["a.EXR"])
+
+    def test_objects_describe_themselves(self):
+        frame = vdbeam.render(cloud(), {"render.passes": 1})
+        self.assertEqual(repr(frame), "<vdbeam.Frame of 48 x 27 pixels, passes: 1, error: unknown>")
+        self.assertEqual(repr(vdbeam.Density(np.ones((3, 4, 5)))), "<vdbeam.Density of 3 x 4 x 5 voxels>")
 
     def test_layers_share_memory_and_outlive_the_frame(self):
         frame = vdbeam.render(cloud())

@@ -6,6 +6,8 @@ import os
 import tempfile
 from typing import Any, Sequence
 
+import numpy as np
+
 from . import _core
 
 
@@ -21,12 +23,16 @@ class Density:
     """
 
     def __init__(self, values: Any, voxel_size: float = 1.0, origin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+        self.shape = np.shape(values)
         handle, self.path = tempfile.mkstemp(prefix="vdbeam-", suffix=".vdb")
         os.close(handle)
         _core.write_density(values, self.path, float(voxel_size), [float(x) for x in origin], "density")
 
     def __fspath__(self) -> str:
         return self.path
+
+    def __repr__(self) -> str:
+        return f"<vdbeam.Density of {' x '.join(map(str, self.shape))} voxels>"
 
     def __del__(self) -> None:
         path, remove = getattr(self, "path", None), getattr(os, "remove", None)

@@ -11,7 +11,8 @@ from typing import Any, Callable, Mapping, Optional, Type, Union
 import numpy as np
 
 from . import _core
-from ._scene import Scene
+from ._render import path_with_extension
+from ._scene import Scene, Source, scene_of
 
 
 class LiveImage:
@@ -51,7 +52,11 @@ class LiveImage:
 
     def save_preview(self, path: Union[str, "os.PathLike[str]"], exposure: float = 0, view: str = "filmic") -> None:
         """Writes a PNG of the image times 2^exposure. `view`: "filmic" or "srgb"."""
-        self._core.image.write_png(os.fspath(path), float(exposure), view)
+        self._core.image.write_png(path_with_extension(path, ".png"), float(exposure), view)
+
+    def __repr__(self) -> str:
+        height, width = self.alpha.shape
+        return f"<vdbeam.LiveImage of {width} x {height} pixels, edit: {self.edit}, passes: {self.passes}>"
 
 
 class LiveSession:
@@ -75,7 +80,7 @@ class LiveSession:
     A session renders until it is closed: use `with`, or call `close`.
     """
 
-    def __init__(self, scene: Union[Scene, str, "os.PathLike[str]", Mapping[str, Any]], *,
+    def __init__(self, scene: Union[Scene, Source], *,
                  on_image: Optional[Callable[[LiveImage], Optional[bool]]] = None,
                  on_edit: Optional[Callable[["_core.LiveEdit"], Optional[bool]]] = None,
                  on_error: Optional[Callable[["_core.Error"], Optional[bool]]] = None,
@@ -84,7 +89,7 @@ class LiveSession:
         if on_image is not None:
             def of_image(image: "_core.LiveImage") -> Optional[bool]:
                 return on_image(LiveImage(image))
-        self._scene = scene if isinstance(scene, Scene) else Scene(scene)
+        self._scene = scene_of(scene)
         self._core = _core.LiveSession(of_image, on_edit, on_error, on_finished)
         # At the end of the program, before Python is gone.
         self._close = weakref.finalize(self, self._core.close)
@@ -95,8 +100,9 @@ class LiveSession:
         """The scene that is shown. To change it, edit the session, or show another one."""
         return self._scene
 
-    def show(self, scene: Scene, *, files_changed: bool = False) -> None:
+    def show(self, scene: Union[Scene, Source], *, files_changed: bool = False) -> None:
         """Shows another scene. `files_changed`: files that it names have other contents than before."""
+        scene = scene_of(scene)
         self._core.show(scene._core, files_changed)
         self._scene = scene
 

@@ -10,9 +10,17 @@ from typing import Any, Callable, Mapping, Optional, Union
 import numpy as np
 
 from . import _core
-from ._scene import Scene
+from ._scene import Scene, Source, scene_of
 
 Rgb = Union["np.ndarray[Any, Any]", "Frame", str, "os.PathLike[str]"]
+
+
+def path_with_extension(path: Union[str, "os.PathLike[str]"], extension: str) -> str:
+    """The path, whose name must say what is written: other programs go by it."""
+    text = os.fspath(path)
+    if not text.lower().endswith(extension):
+        raise _core.InputError(f"{text}: the name of this file must end with {extension}")
+    return text
 
 
 class Session:
@@ -22,7 +30,7 @@ class Session:
     def __init__(self) -> None:
         self._core = _core.Session()
 
-    def render(self, scene: Scene, **options: Any) -> "Frame":
+    def render(self, scene: Union[Scene, Source], **options: Any) -> "Frame":
         """Like `vdbeam.render`, but does not read again what earlier calls have read."""
         return render(scene, session=self, **options)
 
@@ -54,7 +62,8 @@ class Frame:
 
     @property
     def error(self) -> tuple[float, float, float]:
-        """Estimated error (MRSE) of the image, and its 95 % interval; NaN where there was no time for a pass."""
+        """Estimated error (MRSE) of the image, and its 95 % interval; NaN or infinite as long as they are
+        unknown, as after one pass."""
         if not self.passes:
             return math.nan, math.nan, math.nan
         last = self.passes[-1]
@@ -67,11 +76,16 @@ class Frame:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes all layers as an EXR, which is never half there."""
-        self._core.image.write_exr(os.fspath(path))
+        self._core.image.write_exr(path_with_extension(path, ".exr"))
 
     def save_preview(self, path: Union[str, "os.PathLike[str]"], exposure: float = 0, view: str = "filmic") -> None:
         """Writes a PNG of the image times 2^exposure. `view`: "filmic" or "srgb"."""
-        self._core.image.write_png(os.fspath(path), float(exposure), view)
+        self._core.image.write_png(path_with_extension(path, ".png"), float(exposure), view)
+
+    def __repr__(self) -> str:
+        height, width = next(iter(self.layers.values())).shape
+        error = f"{self.error[0]:.3g}" if math.isfinite(self.error[0]) else "unknown"
+        return f"<vdbeam.Frame of {width} x {height} pixels, passes: {len(self.passes)}, error: {error}>"
 
 
 def _array(image: Rgb) -> np.ndarray:
@@ -80,12 +94,12 @@ def _array(image: Rgb) -> np.ndarray:
     return read_image(image) if isinstance(image, (str, os.PathLike)) else np.asarray(image)
 
 
-def render(scene: Scene, settings: Optional[Mapping[str, Any]] = None, *,
+def render(scene: Union[Scene, Source], settings: Optional[Mapping[str, Any]] = None, *,
            on_pass: Optional[Callable[[_core.PassRecord], Optional[bool]]] = None,
            on_image: Optional[Callable[[np.ndarray], Optional[bool]]] = None,
            on_note: Optional[Callable[[str], Optional[bool]]] = None, reference: Optional[Rgb] = None,
            second_reference: Optional[Rgb] = None, session: Optional[Session] = None) -> Frame:
-    """Renders one frame.
+    """Renders one frame of a `Scene`, or of what `Scene` takes.
 
     `settings` are applied as in `Scene`. `on_pass` is called after each pass with its record, `on_image` with the
     image so far, height by width by 3, `on_note` with each line for the user. They are called on another thread;
@@ -95,8 +109,7 @@ def render(scene: Scene, settings: Optional[Mapping[str, Any]] = None, *,
     `reference`: the true image, for `mrse` in the records; `second_reference`: an independent one, which removes the
     noise of both. Images are arrays, frames or paths.
     """
-    if settings:
-        scene = scene.with_settings(settings)
+    scene = scene_of(scene, settings)
     of_image = None
     if on_image is not None:
         def of_image(image: "_core.Image") -> Optional[bool]:

@@ -64,8 +64,11 @@ class Scene:
     def __getitem__(self, key: str) -> Any:
         """The value of a key by its path, the default included: `scene["camera.fov"]`."""
         value: Any = self.settings
-        for part in key.split("."):
-            value = value[int(part)] if isinstance(value, list) else value[part]
+        try:
+            for part in key.split("."):
+                value = value[int(part)] if isinstance(value, list) else value[part]
+        except (KeyError, IndexError, TypeError, ValueError):
+            raise KeyError(key) from None
         return value
 
     @property
@@ -100,3 +103,10 @@ class Scene:
     def __repr__(self) -> str:
         name = "dict" if isinstance(self._source, Mapping) else repr(os.fspath(self._source))
         return f"<vdbeam.Scene of {name}, {self.width} x {self.height}, frame {self.frame}>"
+
+
+def scene_of(scene: Union[Scene, Source], settings: Optional[Mapping[str, Any]] = None) -> Scene:
+    """A scene, or what `Scene` takes, with these settings."""
+    if not isinstance(scene, Scene):
+        return Scene(scene, settings)
+    return scene.with_settings(settings) if settings else scene
