@@ -104,6 +104,131 @@ class UsdScene(InTempFolder):
         self.assertAlmostEqual(math.hypot(*(transform[k] for k in (1, 5, 9))), 0.5)
         self.assertEqual(meshes["/lights/lid"]["type"], "disk")
 
+    def variant(self, *replacements, more="", name="variant.usda"):
+        """The scene of the fixture with other text, and its notes."""
+        if tomllib is None:
+            self.skipTest("needs Python 3.11")
+        text = (HERE / "shot.usda").read_text(encoding="utf-8")
+        for old, new in replacements:
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1)
+        pathlib.Path(self.file(name)).write_text(text + more, encoding="utf-8")
+        self.notes = self.convert(stage=name)
+        return tomllib.loads(pathlib.Path(self.file("scene.toml")).read_text(encoding="utf-8"))
+
+    def test_a_lamp_with_a_cone_is_a_spot(self):
+        """The same intensity along its axis; softness is a share of the cone's angle."""
+        scene = self.variant(("float inputs:radius = 0.25", """float inputs:radius = 0.25
+        float inputs:shaping:cone:angle = 40
+        float inputs:shaping:cone:softness = 0.25
+        asset inputs:shaping:ies:file = @lamp.ies@"""))
+        spot = scene["light"][-1]
+        self.assertEqual((spot["type"], spot["cone_angle"], spot["cone_falloff"]), ("spot", 40, 10))
+        self.assertEqual((spot["ies"], spot["kelvin"], spot["position"]), ("lamp.ies", 3200, [3, 3, 0]))
+        self.almost(spot["direction"], [0, 0, -1])
+        self.almost(spot["intensity"], [10 / 4] * 3)  # 10 / (4 pi r^2) times pi r^2
+        self.assertIn("/lights/bulb: a cone or profile of a lamp with a radius has no counterpart", self.notes)
+        self.assertNotIn("/lights/bulb: shaping", self.notes)
+
+    def test_a_cylinder_lies_along_x(self):
+        scene = self.variant(more="""
+def CylinderLight "tube"
+{
+    float inputs:radius = 0.1
+    float inputs:length = 3
+    float inputs:intensity = 6
+    bool inputs:normalize = true
+}
+""")
+        tube = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/tube")
+        self.assertEqual(tube["type"], "cylinder")
+        self.almost(tube["transform"], [0, 0, 1.5, 0, 0.1, 0, 0, 0, 0, 0.1, 0, 0])
+        self.almost(tube["material"]["radiance"], [6 / (2 * math.pi * 0.1 * 3)] * 3)
+        self.assertIn("/tube: the ends of the cylinder shine, too", self.notes)
+
+    def test_controls_of_lights_without_a_counterpart_are_noted(self):
+        self.variant(("float inputs:radius = 0.5", """float inputs:radius = 0.5
+        float inputs:diffuse = 0
+        float inputs:specular = 1
+        bool inputs:shadow:enable = false
+        color3f inputs:shadow:color = (0.5, 0, 0)
+        rel light:filters = </lights/gobo>
+        rel collection:lightLink:excludes = </world/ground>"""))
+        for name in ("diffuse", "shadow:enable", "shadow:color", "light:filters", "collection:lightLink:excludes"):
+            self.assertIn(f"note: /lights/lid: {name} has no counterpart", self.notes)
+        self.assertNotIn("/lights/lid: specular", self.notes)
+        self.assertNotIn("/lights/sky:", self.notes)
+
+    def test_velocities_are_per_second_of_time_codes(self):
+        velocity = """rel field:density = </world/smoke/soot>
+        rel field:vel = </world/smoke/motion>
+
+        def OpenVDBAsset "motion"
+        {
+            int fieldIndex = 1
+            token fieldName = "v"
+            asset filePath.timeSamples = {
+                1: @smoke.0012.vdb@,
+                2: @smoke.0024.vdb@,
+                3: @smoke.0024.vdb@,
+            }
+        }
+"""
+        here = "rel field:density = </world/smoke/soot>"
+        volume = self.variant((here, velocity))["volume"][0]
+        self.assertEqual((volume["velocity"], volume["velocity_fps"]), ("v", 25))
+        self.assertIn("/world/smoke/motion is not the first grid of its name", self.notes)
+        volume = self.variant((here, velocity), ("framesPerSecond = 25", "framesPerSecond = 25\n    timeCodesPerSecond = 48"))
+        self.assertEqual(volume["volume"][0]["velocity_fps"], 48)
+        self.assertEqual(volume["image"]["fps"], 25)
+
+    def test_render_settings_fit_the_image_to_the_aperture(self):
+        """The film of the fixture is 36 x 15.2908, of 2.354 : 1; its image is of 1.778 : 1."""
+        here = "uniform int2 resolution = (48, 27)"
+        for policy, width in (("expandAperture", 36), ("cropAperture", 15.2908 * 48 / 27), ("adjustApertureHeight", 36),
+                              ("adjustApertureWidth", 15.2908 * 48 / 27)):
+            camera = self.variant((here, f'{here}\nuniform token aspectRatioConformPolicy = "{policy}"'))["camera"]
+            self.assertAlmostEqual(camera["film_width"], width, msg=policy)
+            self.assertAlmostEqual(camera["shift_x"], 3.6 / width, msg=policy)
+        wide = self.variant((here, "uniform int2 resolution = (480, 100)"))["camera"]
+        self.assertAlmostEqual(wide["film_width"], 15.2908 * 4.8)  # the default expands
+        scene = self.variant((here, f'{here}\nuniform float pixelAspectRatio = 2\nuniform bool disableDepthOfField = true'))
+        self.assertEqual(scene["image"]["pixel_aspect"], 2)
+        self.assertAlmostEqual(scene["camera"]["film_width"], 15.2908 * 2 * 48 / 27)
+        self.assertNotIn("lens_radius", scene["camera"])
+
+    def test_render_settings_name_the_camera(self):
+        more = 'def Camera "second"\n{\n    float horizontalAperture = 50\n}\n'
+        here = "uniform int2 resolution = (48, 27)"
+        camera = self.variant((here, f"{here}\n    rel camera = </second>"), more=more)["camera"]
+        self.assertEqual(camera["film_width"], 50)
+
+    def test_textures_and_parts_of_a_mesh(self):
+        here = "color3f inputs:diffuseColor = (0.4, 0.3, 0.2)"
+        scene = self.variant((here, """color3f inputs:diffuseColor.connect = </looks/stone/image.outputs:rgb>
+            float inputs:roughness.connect = </looks/stone/image.outputs:r>
+            float inputs:metallic = 0.25
+            float inputs:clearcoat = 0.5
+        }
+
+        def Shader "image"
+        {
+            uniform token info:id = "UsdUVTexture"
+            asset inputs:file = @stone.png@"""),
+                             ("rel material:binding = </looks/stone>", """rel material:binding = </looks/stone>
+        uniform token subdivisionScheme = "none"
+
+        def GeomSubset "half"
+        {
+            rel material:binding = </looks/stone>
+        }"""))
+        ground = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/world/ground")
+        self.assertEqual(ground["material"], {"type": "standard", "albedo": [1, 1, 1], "texture": "stone.png", "ior": 1.5,
+                                              "metal": 0.25, "roughness": 0.5, "coat": 0.5, "coat_roughness": 0.01})
+        self.assertIn("/world/ground: the texture of roughness has no counterpart", self.notes)
+        self.assertIn("/world/ground: materials of parts (GeomSubset) have no counterpart", self.notes)
+        self.assertNotIn("/world/ground: a subdivision surface", self.notes)
+
     def dome(self, up, light):
         """The environment of a stage with a dome."""
         text = f"""#usda 1.0
@@ -146,12 +271,14 @@ def {light}
 
     def test_mesh_and_what_is_left_out(self):
         meshes = {mesh["name"]: mesh for mesh in self.scene()["mesh"]}
-        self.assertEqual(meshes["/world/ground"]["material"], {"type": "diffuse", "albedo": [0.4, 0.3, 0.2]})
+        self.assertEqual(meshes["/world/ground"]["material"],
+                         {"type": "standard", "albedo": [0.4, 0.3, 0.2], "metal": 0, "roughness": 0.5, "ior": 1.5})
         self.assertNotIn("/world/hidden", meshes)
         text = pathlib.Path(self.file(meshes["/world/ground"]["file"])).read_text(encoding="ascii")
         self.assertIn("f 4/1 3/2 2/3 1/4", text)
         for line in ("note: /world/grass: a BasisCurves has no counterpart", "field:odour has no counterpart",
-                     "shaping:cone:angle has no counterpart", "the gloss of a UsdPreviewSurface"):
+                     "shaping:cone:angle has no counterpart",
+                     "note: /world/ground: a subdivision surface (catmullClark) has no counterpart"):
             self.assertIn(line, self.notes)
 
     def test_vdbeam_renders_it(self):

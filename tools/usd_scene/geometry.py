@@ -50,21 +50,69 @@ def write_mesh(prim, time, folder):
     return name
 
 
-def material_keys(surface, prim, time, notes):
+def note_unknown(prim, time, notes):
+    """Notes what a mesh asks for and vdbeam does not have."""
+    subject = str(prim.GetPath())
+    scheme = values.value(prim, "subdivisionScheme", time, "catmullClark")
+    if scheme != "none":
+        notes.add(subject, f"a subdivision surface ({scheme}) has no counterpart; its faces are exported as they are")
+    if any(values.target(child, "material:binding") is not None for child in prim.GetChildren()
+           if child.GetTypeName() == "GeomSubset"):
+        notes.add(subject, "materials of parts (GeomSubset) have no counterpart; the whole mesh has its own")
+    if values.value(prim, "light:shaderId", time) is not None or "MeshLightAPI" in prim.GetAppliedSchemas():
+        notes.add(subject, "MeshLightAPI has no counterpart; set vdbeam:material:type and vdbeam:material:radiance")
+
+
+def texture_of(surface, stage, name, time):
+    """The file of the UsdUVTexture that an input of a surface is connected to; empty without one."""
+    path = values.source(surface, name)
+    shader = path and stage.GetPrimAtPath(path.GetPrimPath())
+    if not shader or str(values.value(shader, "info:id", None)) != "UsdUVTexture":
+        return ""
+    return values.asset(shader, "file", time)
+
+
+def clamped(number):
+    """A number in [0, 1]."""
+    return min(max(number, 0.0), 1.0)
+
+
+def standard_keys(surface, stage, subject, time, notes):
+    """A UsdPreviewSurface that neither shines nor is clear, whose colour a file may give."""
+    if values.value(surface, "useSpecularWorkflow", time, 0):
+        notes.add(subject, "useSpecularWorkflow has no counterpart; the surface reflects by its ior")
+    keys = {"type": "standard",
+            "albedo": [clamped(part) for part in values.colour(surface, "diffuseColor", time, (0.18, 0.18, 0.18))],
+            "metal": clamped(values.number(surface, "metallic", time, 0.0)),
+            "roughness": clamped(values.number(surface, "roughness", time, 0.5)),
+            "ior": values.number(surface, "ior", time, 1.5)}
+    coat = clamped(values.number(surface, "clearcoat", time, 0.0))
+    if coat > 0:
+        keys["coat"] = coat
+        keys["coat_roughness"] = clamped(values.number(surface, "clearcoatRoughness", time, 0.01))
+    texture = texture_of(surface, stage, "diffuseColor", time)
+    if texture:
+        return {**keys, "albedo": [1.0, 1.0, 1.0], "texture": texture}
+    if values.source(surface, "diffuseColor") is not None:
+        notes.add(subject, "its diffuseColor is connected to a shader other than a UsdUVTexture with a file, which has no "
+                           "counterpart")
+    return keys
+
+
+def material_keys(surface, stage, prim, time, notes):
     """The material of a mesh: of a UsdPreviewSurface, else of displayColor."""
     subject = str(prim.GetPath())
     if surface is None:
         shown = values.value(prim, "primvars:displayColor", time)
         colour = [float(part) for part in shown[0]] if shown else [0.5] * 3
-        return {"type": "diffuse", "albedo": [min(max(part, 0.0), 1.0) for part in colour]}
+        return {"type": "diffuse", "albedo": [clamped(part) for part in colour]}
+    for name in ("emissiveColor", "metallic", "roughness", "opacity", "normal", "displacement"):
+        if values.source(surface, name) is not None:
+            notes.add(subject, f"the texture of {name} has no counterpart and is left out")
     emitted = values.colour(surface, "emissiveColor", time, (0.0, 0.0, 0.0))
     if max(emitted) > 0:
         return {"type": "emissive", "radiance": emitted, "two_sided": True}
-    colour = [min(max(part, 0.0), 1.0) for part in values.colour(surface, "diffuseColor", time, (0.18, 0.18, 0.18))]
-    roughness = values.number(surface, "roughness", time, 0.5)
-    if values.number(surface, "metallic", time, 0.0) > 0.5:
-        return {"type": "conductor", "reflectance": colour, "roughness": roughness}
     if values.number(surface, "opacity", time, 1.0) < 0.5:
-        return {"type": "dielectric", "ior": values.number(surface, "ior", time, 1.5), "roughness": roughness}
-    notes.add(subject, "the gloss of a UsdPreviewSurface that is not metal has no counterpart; the surface is matt")
-    return {"type": "diffuse", "albedo": colour}
+        return {"type": "dielectric", "ior": values.number(surface, "ior", time, 1.5),
+                "roughness": clamped(values.number(surface, "roughness", time, 0.5))}
+    return standard_keys(surface, stage, subject, time, notes)

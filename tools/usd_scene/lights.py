@@ -7,7 +7,7 @@ import math
 
 from . import values
 
-KINDS = {"DistantLight", "DomeLight", "DomeLight_1", "SphereLight", "RectLight", "DiskLight"}
+KINDS = {"DistantLight", "DomeLight", "DomeLight_1", "SphereLight", "RectLight", "DiskLight", "CylinderLight"}
 
 
 def emission(prim, time):
@@ -76,19 +76,53 @@ def dome(prim, matrix, time, z_up, notes):
     return {**light, "image": image, "rotation": math.degrees(angle)}
 
 
-def sphere(prim, matrix, time):
+def sphere(prim, matrix, time, notes):
     """("light" or "mesh", keys) of a SphereLight; one that is treated as a point has the same intensity."""
     radiance, keys = emission(prim, time)
     radius = values.number(prim, "radius", time, 0.5)
     size = radius * sum(stretch(matrix, column) for column in range(3)) / 3
     if values.value(prim, "normalize", time, False) and size > 0:
         radiance = scaled(radiance, 1 / (4 * math.pi * size ** 2))
-    if size <= 0 or values.value(prim, "treatAsPoint", time, False):
+    cone = shaping(prim, matrix, time)
+    is_point = size <= 0 or values.value(prim, "treatAsPoint", time, False)
+    if is_point or cone:
+        if not is_point:
+            notes.add(str(prim.GetPath()), "a cone or profile of a lamp with a radius has no counterpart; its light comes "
+                                           "from a point")
+        if "ies" in cone:
+            notes.add(str(prim.GetPath()), "its profile gives the shape of the intensity, not the strength")
         intensity = scaled(radiance, math.pi * size ** 2 if size > 0 else 0.25)
         return "light", {"type": "point", "position": [matrix[row][3] for row in range(3)], "intensity": intensity,
-                         **keys}
+                         **cone, **keys}
     return "mesh", {"type": "sphere", "transform": placed(matrix, [radius] * 3),
                     "material": {"type": "emissive", "radiance": radiance, **keys}}
+
+
+def shaping(prim, matrix, time):
+    """Keys of the cone and the profile of a light, about its -Z axis; empty without them."""
+    keys = {}
+    angle = values.number(prim, "shaping:cone:angle", time, 90.0)
+    if 0 < angle < 90:
+        softness = min(max(values.number(prim, "shaping:cone:softness", time, 0.0), 0.0), 1.0)
+        keys = {"type": "spot", "cone_angle": angle, "cone_falloff": softness * angle}
+    profile = values.asset(prim, "shaping:ies:file", time)
+    if profile:
+        keys["ies"] = profile
+    return {**keys, "direction": axis(matrix, 2, -1.0)} if keys else {}
+
+
+def cylinder(prim, matrix, time, notes):
+    """A CylinderLight, which lies along its X axis; vdbeam's lies along Z."""
+    radiance, keys = emission(prim, time)
+    radius, half = values.number(prim, "radius", time, 0.5), values.number(prim, "length", time, 1.0) / 2
+    around = (stretch(matrix, 1) + stretch(matrix, 2)) / 2
+    area = 2 * math.pi * radius * around * 2 * half * stretch(matrix, 0)
+    if values.value(prim, "normalize", time, False) and area > 0:
+        radiance = scaled(radiance, 1 / area)
+    notes.add(str(prim.GetPath()), "the ends of the cylinder shine, too")
+    lying = [[row[1], row[2], row[0], row[3]] for row in matrix]
+    return {"type": "cylinder", "transform": placed(lying, [radius, radius, half]),
+            "material": {"type": "emissive", "radiance": radiance, **keys}}
 
 
 def flat(prim, matrix, time):
@@ -111,20 +145,44 @@ def flat(prim, matrix, time):
             "material": material}
 
 
+# Controls without a counterpart, with the values that change nothing.
+CONTROLS = {"shaping:focus": (0,), "shaping:cone:angle": (90,), "shaping:ies:file": ("",), "diffuse": (1,),
+            "specular": (1,), "shadow:enable": (True,), "shadow:distance": (-1,), "shadow:falloff": (-1,)}
+
+
+def note_controls(prim, time, known, notes):
+    """Notes what a light asks for and vdbeam does not have, but for the controls that are known."""
+    subject = str(prim.GetPath())
+    for name, harmless in CONTROLS.items():
+        found = values.value(prim, name, time)
+        if found is None or name in known or values.plain(found) in harmless:
+            continue
+        notes.add(subject, f"{name} has no counterpart and is left out")
+    black = (0.0, 0.0, 0.0)
+    for name in ("shaping:focusTint", "shadow:color"):
+        if max(values.colour(prim, name, time, black)) > 0:
+            notes.add(subject, f"{name} has no counterpart and is left out")
+    for name in ("light:filters", "filters", "collection:lightLink:excludes", "collection:shadowLink:excludes"):
+        if values.target(prim, name) is not None:
+            notes.add(subject, f"{name} has no counterpart and is left out")
+    for name in ("collection:lightLink:includeRoot", "collection:shadowLink:includeRoot"):
+        if values.value(prim, name, time, True) is False:
+            notes.add(subject, f"{name} has no counterpart; the light reaches everything")
+
+
 def light_tables(prim, matrix, time, z_up, notes):
     """("light" or "mesh", keys) of a light."""
     kind = prim.GetTypeName()
     subject = str(prim.GetPath())
-    for name in ("shaping:cone:angle", "shaping:focus", "shaping:ies:file"):
-        found = values.value(prim, name, time)
-        if found is not None and found not in (0, 0.0, 90, 90.0, ""):
-            if not (name.endswith("ies:file") and not values.asset(prim, name, time)):
-                notes.add(subject, f"{name} has no counterpart and is left out")
+    note_controls(prim, time, ("shaping:cone:angle", "shaping:ies:file") if kind == "SphereLight" else (), notes)
     if kind == "DistantLight":
         return "light", distant(prim, matrix, time)
     if kind.startswith("DomeLight"):
         return "light", dome(prim, matrix, time, z_up, notes)
-    table, keys = sphere(prim, matrix, time) if kind == "SphereLight" else ("mesh", flat(prim, matrix, time))
+    if kind == "SphereLight":
+        table, keys = sphere(prim, matrix, time, notes)
+    else:
+        table, keys = "mesh", cylinder(prim, matrix, time, notes) if kind == "CylinderLight" else flat(prim, matrix, time)
     if table == "mesh":
         notes.add(subject, "it is exported as an emissive mesh, which blocks light")
         keys = {"name": subject, **keys}

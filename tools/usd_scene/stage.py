@@ -2,6 +2,7 @@
 from pxr import Usd, UsdGeom, UsdShade
 
 from . import camera, geometry, lights, values, volumes
+from .settings import Settings
 
 # Prims that hold others or are read by others.
 SILENT = {"", "Xform", "Scope", "Material", "Shader", "NodeGraph", "OpenVDBAsset", "Field3DAsset", "Camera",
@@ -35,8 +36,8 @@ class StageReader:
         self.notes = notes
         self.z_up = str(UsdGeom.GetStageUpAxis(stage)) == "Z"
         self.matrices = {}  # of the camera, by time
+        self.settings = self.find_settings()
         self.camera = self.find_camera()
-        self.width, self.height = options.resolution or self.find_resolution()
 
     def prims(self, root=None):
         """All prims, instances included; prototypes of point instancers are read by their instancers."""
@@ -47,11 +48,12 @@ class StageReader:
                 iterator.PruneChildren()
 
     def find_camera(self):
-        """The camera that was asked for, or the first. Throws ValueError."""
-        if self.options.camera_path:
-            prim = self.stage.GetPrimAtPath(self.options.camera_path)
+        """The camera that was asked for, that of the render settings, or the first. Throws ValueError."""
+        path = self.options.camera_path or self.settings.camera
+        if path:
+            prim = self.stage.GetPrimAtPath(path)
             if not prim or prim.GetTypeName() != "Camera":
-                raise ValueError(f"{self.options.camera_path} is not a camera of the stage")
+                raise ValueError(f"{path} is not a camera of the stage")
             return prim
         found = [prim for prim in self.prims() if prim.GetTypeName() == "Camera"]
         if not found:
@@ -62,24 +64,21 @@ class StageReader:
 
     def has_shutter(self):
         """Whether the camera's shutter opens."""
-        return bool(camera.shutter_keys(self.camera, self.stage.GetStartTimeCode()))
+        return bool(camera.shutter_keys(self.camera, self.stage.GetStartTimeCode(), self.settings))
 
-    def find_resolution(self):
-        """Returns that of the first render settings, else 960 x 540."""
-        for prim in self.prims():
-            size = values.value(prim, "resolution", None) if prim.GetTypeName() == "RenderSettings" else None
-            if size is not None:
-                return int(size[0]), int(size[1])
-        return 960, 540
+    def find_settings(self):
+        """The first render settings."""
+        found = next((prim for prim in self.prims() if prim.GetTypeName() == "RenderSettings"), None)
+        return Settings(found, self.options.resolution)
 
     def read(self, time):
         """The scene at a time, as {table: keys or list of keys}."""
         cache = UsdGeom.XformCache(time)
         self.matrices[time] = values.rows(cache.GetLocalToWorldTransform(self.camera))
-        tables = {"image": {"width": self.width, "height": self.height, "fps": self.stage.GetFramesPerSecond()},
-                  "camera": {"file": "camera.txt", "up": [0.0, 0.0, 1.0] if self.z_up else [0.0, 1.0, 0.0],
-                             **camera.camera_keys(self.camera, time, self.width, self.height),
-                             **camera.shutter_keys(self.camera, time)},
+        lens = camera.camera_keys(self.camera, time, self.settings, self.notes)
+        tables = {"image": {**self.settings.image_keys(), "fps": self.stage.GetFramesPerSecond()},
+                  "camera": {"file": "camera.txt", "up": [0.0, 0.0, 1.0] if self.z_up else [0.0, 1.0, 0.0], **lens,
+                             **camera.shutter_keys(self.camera, time, self.settings)},
                   "volume": [], "mesh": [], "light": []}
         for prim in self.prims():
             if self.is_rendered(prim, time):
@@ -118,7 +117,8 @@ class StageReader:
         file = geometry.write_mesh(prim, time, self.options.folder)
         if file is None:
             return None
-        material = geometry.material_keys(self.surface_of(prim), prim, time, self.notes)
+        geometry.note_unknown(prim, time, self.notes)
+        material = geometry.material_keys(self.surface_of(prim), self.stage, prim, time, self.notes)
         return {"name": str(prim.GetPath()), "file": file, "transform": values.transform(matrix),
                 "material": material, **values.own_keys(prim, time)}
 

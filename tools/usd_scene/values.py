@@ -2,16 +2,31 @@
 
 
 def value(prim, name, time, default=None):
-    """An attribute's value at a time: of `inputs:NAME` or `NAME`, whichever is authored (lights changed theirs), else
-    the fallback of its schema."""
+    """An attribute's value at a time, or the one without a time (None): of `inputs:NAME` or `NAME`, whichever is
+    authored (lights changed theirs), else the fallback of its schema."""
     attributes = [prim.GetAttribute(full) for full in (f"inputs:{name}", name)]
     for authored in (True, False):
         for attribute in attributes:
             if attribute and attribute.IsValid() and attribute.HasAuthoredValue() == authored:
-                found = attribute.Get(time)
+                found = attribute.Get() if time is None else attribute.Get(time)
                 if found is not None:
                     return found
     return default
+
+
+def source(prim, name):
+    """The path of the property that an input is connected to, or None."""
+    attribute = prim.GetAttribute(f"inputs:{name}")
+    found = attribute.GetConnections() if attribute and attribute.HasAuthoredConnections() else []
+    return found[0] if found else None
+
+
+def target(prim, name):
+    """The path of the first target of a relationship, or None."""
+    for relation in prim.GetRelationships():
+        if relation.GetName() == name:
+            return next(iter(relation.GetForwardedTargets()), None)
+    return None
 
 
 def number(prim, name, time, default):

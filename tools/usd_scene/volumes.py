@@ -58,6 +58,7 @@ def volume_keys(prim, stage, matrix, time, shading, notes):
         notes.add(subject, "it has no field:density of an OpenVDBAsset and is left out")
         return None
     keys = {"name": subject, **file_keys(density, time), "density": grid(density, time, name)}
+    check_file(density, density, time, subject, notes)
     emission = {}
     for names, key in ((FLAME, "intensity"), (TEMPERATURE, "temperature")):
         name, field = first(found, names)
@@ -69,6 +70,8 @@ def volume_keys(prim, stage, matrix, time, shading, notes):
         if field is not None:
             keys[key] = grid(field, time, name)
             check_file(field, density, time, subject, notes)
+    if "velocity" in keys:  # per second; frames are time codes
+        keys["velocity_fps"] = float(stage.GetTimeCodesPerSecond())
     known = {*DENSITY, *TEMPERATURE, *FLAME, *VELOCITY, *COLOUR}
     for name in sorted(set(found) - known):
         if found[name] is not density:
@@ -87,6 +90,9 @@ def volume_keys(prim, stage, matrix, time, shading, notes):
 
 def check_file(field, density, time, subject, notes):
     """A volume has one file."""
+    if values.value(field, "fieldIndex", time, 0) > 0:
+        notes.add(subject, f"{field.GetPath()} is not the first grid of its name (fieldIndex), which has no counterpart; "
+                           "the first one is taken")
     if values.asset(field, "filePath", time) != values.asset(density, "filePath", time):
         notes.add(subject, f"{field.GetPath()} is in another file than the density, which has no counterpart; its grid "
                            "is looked for in the density's file")

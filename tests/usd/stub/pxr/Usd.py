@@ -7,18 +7,22 @@ FALLBACKS = {("DistantLight", "inputs:intensity"): 50000.0, ("SphereLight", "inp
              ("SphereLight", "inputs:radius"): 0.5}
 
 
+DEFAULT_TIME = object()
+
+
 class Attribute:
     """An attribute: a value, or samples that hold until the next (numbers are interpolated)."""
 
-    def __init__(self, name, value=None, samples=None, fallback=None):
+    def __init__(self, name, value=None, samples=None, fallback=None, connections=()):
         self.name, self.value, self.samples = name, value, samples
+        self.connections = [Path(path) for path in connections]
         self.fallback = fallback  # of the schema
 
     def __bool__(self):
         return self.IsValid()
 
     def IsValid(self):
-        return self.HasAuthoredValue() or self.fallback is not None
+        return self.HasAuthoredValue() or self.fallback is not None or bool(self.connections)
 
     def HasAuthoredValue(self):
         return self.value is not None or self.samples is not None
@@ -29,10 +33,19 @@ class Attribute:
     def GetNumTimeSamples(self):
         return len(self.samples or {})
 
-    def Get(self, time=None):
+    def HasAuthoredConnections(self):
+        return bool(self.connections)
+
+    def GetConnections(self):
+        return self.connections
+
+    def Get(self, time=DEFAULT_TIME):
+        """As in pxr, a time is a number; None is none."""
+        if time is not DEFAULT_TIME and not isinstance(time, (int, float)):
+            raise TypeError(f"Get: {time!r} is no time")
         if not self.HasAuthoredValue():
             return self.fallback
-        if not self.samples or time is None:
+        if not self.samples or time is DEFAULT_TIME:
             return self.value
         times = sorted(self.samples)
         before = max((t for t in times if t <= time), default=times[0])
@@ -43,6 +56,13 @@ class Attribute:
         part = (time - before) / (after - before)
         mix = lambda a, b: a + (b - a) * part
         return mix(first, second) if isinstance(first, float) else tuple(map(mix, first, second))
+
+
+class Path(str):
+    """A path of a prim or property."""
+
+    def GetPrimPath(self):
+        return self.split(".")[0]
 
 
 class Relationship:
@@ -80,9 +100,16 @@ class Prim:
     def GetTypeName(self):
         return self.spec.kind
 
+    def GetChildren(self):
+        return self.children
+
+    def GetAppliedSchemas(self):
+        """Those of the layer, e.g. in `prepend apiSchemas = ["MaterialBindingAPI"]`."""
+        return self.spec.metadata.get("apiSchemas", [])
+
     def GetAttribute(self, name):
         return Attribute(name, self.spec.attributes.get(name), self.spec.samples.get(name),
-                         FALLBACKS.get((self.spec.kind, name)))
+                         FALLBACKS.get((self.spec.kind, name)), self.spec.connections.get(name, ()))
 
     def GetAttributes(self):
         return [self.GetAttribute(name) for name in {**self.spec.attributes, **self.spec.samples}]
@@ -151,6 +178,9 @@ class Stage:
 
     def GetEndTimeCode(self):
         return float(self.metadata.get("endTimeCode", 0))
+
+    def GetTimeCodesPerSecond(self):
+        return float(self.metadata.get("timeCodesPerSecond", self.GetFramesPerSecond()))
 
     def GetFramesPerSecond(self):
         return float(self.metadata.get("framesPerSecond", 24))

@@ -18,6 +18,7 @@ class Spec:
     def __init__(self, kind, name):
         self.kind, self.name = kind, name
         self.attributes, self.samples, self.relations, self.children = {}, {}, {}, []
+        self.connections, self.metadata = {}, {}
 
 
 class Parser:
@@ -78,7 +79,7 @@ class Parser:
         self.take("def")
         kind = self.take() if self.peek()[0] != '"' else ""
         spec = Spec(kind, self.take()[1:-1])
-        self.metadata()
+        spec.metadata = self.metadata()
         self.take("{")
         while self.peek() != "}":
             if self.peek() == "def":
@@ -99,6 +100,9 @@ class Parser:
             if "rel" in words:
                 targets = self.value()
                 spec.relations[name] = targets if isinstance(targets, list) else [targets]
+            elif name.endswith(".connect"):
+                sources = self.value()
+                spec.connections[name[:-len(".connect")]] = sources if isinstance(sources, list) else [sources]
             elif name.endswith(".timeSamples"):
                 spec.samples[name[:-len(".timeSamples")]] = self.time_samples()
             else:
