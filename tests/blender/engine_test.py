@@ -307,7 +307,8 @@ class Engine(unittest.TestCase):
             bpy.app.handlers.depsgraph_update_post.remove(note)
             depsgraph = bpy.context.evaluated_depsgraph_get()
             # A viewport's graph has the updates of the edit; those of the window's are over here.
-            graph = types.SimpleNamespace(scene=depsgraph.scene, object_instances=depsgraph.object_instances, updates=changed)
+            graph = types.SimpleNamespace(scene=depsgraph.scene, view_layer=depsgraph.view_layer,
+                                          object_instances=depsgraph.object_instances, updates=changed)
             gathered.clear()
             engine_of_view.view_update(context, graph)
             return sorted(set(gathered))

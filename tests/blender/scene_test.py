@@ -243,6 +243,12 @@ class Lamps(unittest.TestCase):
         self.assertIn("without shadows", found.lines[0])
         self.assertIn("radius of a spot lamp", found.lines[1])
 
+    def test_a_portal_is_no_lamp(self):
+        found = notes.Notes()
+        portal = self.lamp(type="AREA", shape="SQUARE", size=2.0, size_y=2.0, portal=True)
+        self.assertIsNone(lamps.lamp_keys(portal, found))
+        self.assertIn("lamp: a portal has no counterpart", found.lines[0])
+
 
 class Glass(unittest.TestCase):
     def test_colour_becomes_absorption(self):

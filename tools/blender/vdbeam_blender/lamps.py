@@ -79,8 +79,11 @@ def area(lamp):
 
 
 def lamp_keys(lamp, notes):
-    """("light" or "mesh", keys) of a lamp."""
+    """("light" or "mesh", keys) of a lamp; None of one that emits nothing."""
     kind, group = lamp["type"], lamp.get("group", "")
+    if lamp.get("portal"):
+        notes.add(lamp["name"], "a portal has no counterpart and is left out; it emits nothing in Cycles either")
+        return None
     if lamp.get("nodes"):
         notes.add(lamp["name"], "the nodes of a lamp have no counterpart; its colour and strength are exported")
     if not lamp.get("casts_shadow", True):

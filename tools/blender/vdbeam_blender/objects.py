@@ -104,7 +104,8 @@ def lamp_facts(obj, matrix, data):
             "angle": float(getattr(data, "angle", 0.0)), "spot_size": float(getattr(data, "spot_size", 0.0)),
             "spot_blend": float(getattr(data, "spot_blend", 0.0)), "shape": getattr(data, "shape", ""),
             "size": float(getattr(data, "size", 0.0)), "size_y": float(getattr(data, "size_y", 0.0)),
-            "spread": float(getattr(data, "spread", math.pi)), "casts_shadow": casts_shadow(data)}
+            "spread": float(getattr(data, "spread", math.pi)), "casts_shadow": casts_shadow(data),
+            "portal": data.type == "AREA" and bool(getattr(getattr(data, "cycles", None), "is_portal", False))}
 
 
 def camera_facts(obj, image, notes):
@@ -208,8 +209,11 @@ def mesh_volume(obj, box, matrix, shader, notes):
 
 
 def lamp_table(obj, matrix, data, notes):
-    """("light" or "mesh", keys) of a lamp object."""
-    table, keys = lamps.lamp_keys(lamp_facts(obj, matrix, data), notes)
+    """("light" or "mesh", keys) of a lamp object; None of one that emits nothing."""
+    found = lamps.lamp_keys(lamp_facts(obj, matrix, data), notes)
+    if found is None:
+        return None
+    table, keys = found
     if table == "mesh":
         keys = {"name": obj.name, **keys}
     return table, keys

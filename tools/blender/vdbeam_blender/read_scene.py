@@ -3,7 +3,7 @@ import os
 
 import numpy
 
-from . import camera, layers, mesh_cache, objects, simulation, surface_shader, world
+from . import camera, layers, mesh_cache, objects, simulation, surface_shader, visibility, world
 
 
 class Options:
@@ -33,7 +33,7 @@ class SceneReader:
         self.notes = notes
         self.meshes = mesh_cache.MeshCache(options.folder)
         self.first_points = {}  # of deforming meshes, at the first time
-        self.frame = 1.0
+        self.frame, self.view_layer = 1.0, None
         self.place = None  # of the world's volume
         self.matrices = {}  # of the camera, by time
 
@@ -48,7 +48,7 @@ class SceneReader:
     def contents(self, depsgraph, frame):
         """The tables without [image] and [camera]."""
         scene = depsgraph.scene
-        self.frame = frame
+        self.frame, self.view_layer = frame, depsgraph.view_layer
         self.meshes.begin(keep=not self.options.sequence)  # a scene at another moment has the shapes of the first
         tables = {"volume": [], "mesh": [], "light": []}
         for instance in depsgraph.object_instances:
@@ -58,6 +58,8 @@ class SceneReader:
         if fog is not None:
             tables["volume"].append(fog)
         lights = world.world_lights(scene.world, self.notes, self.image_path)
+        visibility.show_world(scene.world, lights, self.notes)
+        visibility.note_scene(scene, self.notes)
         group = getattr(scene.world, "lightgroup", "")
         for light in lights:
             if group:
@@ -106,18 +108,23 @@ class SceneReader:
         """Adds the tables of an object."""
         obj = instance.object
         name = obj.name
-        if instance.is_instance and instance.parent is not None:
+        parent = instance.parent if instance.is_instance else None
+        if parent is not None and parent.type == "META" and parent.name == name:
+            return  # Blender lists a metaball twice: as an object and as an instance of its mesh
+        if parent is not None:
             place = "-".join(str(number) for number in instance.persistent_id if number != 0x7fffffff)
-            name = f"{instance.parent.name}.{name}.{place}"
+            name = f"{parent.name}.{name}.{place}"
         matrix = instance.matrix_world.copy()
+        visibility.note_object(obj, name, self.notes)
         if obj.type == "VOLUME":
             self.add_volume(obj, name, matrix, scene, tables)
         elif obj.type in objects.SURFACES:
-            owners = {instance.parent.name} if instance.is_instance and instance.parent is not None else set()
+            owners = {parent.name} if parent is not None else set()
             self.add_mesh(obj, name, matrix, owners, tables)
         elif obj.type == "LIGHT":
-            table, keys = objects.lamp_table(obj, matrix, obj.data, self.notes)
-            tables[table].append(keys)
+            found = objects.lamp_table(obj, matrix, obj.data, self.notes)
+            if found is not None:
+                tables[found[0]].append(found[1])
         elif obj.type in ("POINTCLOUD", "CURVES", "GPENCIL", "GREASEPENCIL"):
             self.notes.add(name, "objects of this kind have no counterpart and are left out")
 
@@ -157,6 +164,8 @@ class SceneReader:
             keys = objects.material_keys(obj, material, self.notes, self.image_path)
             if keys is not None:
                 shaders[index] = keys
+        if visibility.is_holdout(obj, self.view_layer):
+            shaders = {index: {"type": "holdout"} for index in shaders}
         medium, _ = objects.volume_shader_of(obj)
         if not shaders and medium is None:
             return None
@@ -170,7 +179,7 @@ class SceneReader:
                 shaders[index] = surface_shader.tinted_inside(shaders[index], chord, self.notes, name)
             keys = {"name": name if len(shape.files) == 1 else f"{name}.{index}", "file": file,
                     "transform": objects.transform(matrix), "material": shaders[index]}
-            if not obj.visible_camera:
+            if not visibility.is_seen(obj, self.view_layer):
                 keys["visible"] = False
             if shaders[index]["type"] == "emissive" and getattr(obj, "lightgroup", ""):
                 keys["group"] = obj.lightgroup
@@ -180,14 +189,14 @@ class SceneReader:
     def note_deformation(self, obj, name):
         """A mesh that modifiers or shape keys change while the shutter is open is that of the first moment."""
         changes = len(obj.modifiers) or getattr(obj.data, "shape_keys", None)
-        if self.options.sequence or not self.options.blur or not changes:
+        if not self.options.blur or not changes:
             return
         points = objects.points_of(obj.to_mesh())
         obj.to_mesh_clear()
         first = self.first_points.setdefault(name, points)
         if first.shape != points.shape or not numpy.allclose(first, points, atol=1e-6):
-            self.notes.add(name, "its shape changes while the shutter is open, which has no counterpart; it keeps that "
-                                 "of the first moment")
+            kept = "every frame has one shape" if self.options.sequence else "it keeps that of the first moment"
+            self.notes.add(name, f"its shape changes while the shutter is open, which has no counterpart; {kept}")
 
 
 def write_camera(folder, matrices):
