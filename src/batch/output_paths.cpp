@@ -132,6 +132,10 @@ void check_output_folder(const std::string& option, const std::string& folder) {
     fail(option, folder,
          "one page shows all frames; name a folder without a place for the frame number");
   std::error_code error;
+  const fs::path name = fs::path(without_slashes(folder)).filename();
+  if (name.extension() == ".html" && !fs::is_directory(folder, error))
+    fail(option, folder,
+         fmt::format("name a folder, e.g. {}; the page is index.html in it", name.stem().string()));
   if (!fs::exists(folder, error))
     PathCheck(option).check(without_slashes(folder));
   else if (!fs::is_directory(folder, error))

@@ -152,6 +152,8 @@ TEST_F(PageTest, OutputsOfThePageReplaceNoInput) {
                  "there is no folder no");
   expect_refused({"render", "s.toml", "-f", "1", "-o", "o.exr", "--html", "s.toml"},
                  "--html s.toml: is not a folder");
+  expect_refused({"render", "s.toml", "-f", "1", "-o", "o.exr", "--html", "p.html"},
+                 "--html p.html: name a folder, e.g. p; the page is index.html in it");
   expect_refused({"render", "s.toml", "-f", "1", "-o", "o.exr", "--html", "p.####"},
                  "without a place for the frame number");
   expect_refused(
