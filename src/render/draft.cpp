@@ -150,6 +150,11 @@ void Draft::look_through() {
   const EstimatorInput& input = setup_->input;
   seen_.assign(sum_.direct.size(), {});
   const float share = 1 / static_cast<float>(passes_);
+  const std::size_t groups = sum_.groups.size();
+  group_light_.assign(groups, std::vector<Rgb>(groups > 0 ? seen_.size() : 0));
+  PassImage behind; // the lights that are seen through the medium
+  if (groups > 0)
+    behind.resize(sum_.width, sum_.height, false, static_cast<int>(groups), nullptr, 0, 0);
   tbb::parallel_for(window_.y0, window_.y1, [&](int y) {
     DepthProfile profile;
     for (int x = window_.x0; x < window_.x1; ++x) {
@@ -170,6 +175,10 @@ void Draft::look_through() {
         seen.surface = ray.hit->surface;
         seen.radiance = sum_.background[i] * (share / mean_component(tr));
       }
+      if (groups > 0)
+        shade_profile(input, ray, profile, i, behind);
+      for (std::size_t g = 0; g < groups; ++g)
+        group_light_[g][i] = max(sum_.groups[g][i] * share - behind.groups[g][i], Rgb(0));
     }
   });
 }
@@ -226,22 +235,32 @@ Draft::Around Draft::around(const Place& place, int surface) const {
   return around;
 }
 
-/// Divides the light of a pixel among the groups as the draft's pixels around do.
-void Draft::share_among_groups(const Place& place, std::size_t pixel, PassImage& image) const {
-  Rgb sum;
-  for (std::size_t g = 0; g < image.groups.size(); ++g) {
-    Rgb& light = image.groups[g][pixel];
-    light = {};
-    place.visit(window_, sum_.width, 1, [&](std::size_t other, double dx, double dy) {
-      light += sum_.groups[g][other] * (Place::tent(dx) * Place::tent(dy));
-    });
-    sum += light;
+/// Divides the light of a pixel among the groups. Its groups hold the lights behind already, which
+/// are known for every pixel; the rest is divided as in the draft's pixels around, if possible in
+/// those that end at the same surface, or at none: else edges would have a fringe of light that
+/// belongs beyond them.
+void Draft::share_among_groups(const Place& place, int surface, std::size_t pixel,
+                               PassImage& image) const {
+  constexpr float of_far = 1e-3f, of_other_surface = 1e-4f; // where there is nothing better
+  const int reach = setup_->input.world.surfaces ? farthest : 1;
+  std::vector<Rgb> around(image.groups.size());
+  place.visit(window_, sum_.width, reach, [&](std::size_t other, double dx, double dy) {
+    float weight =
+        Place::tent(dx) * Place::tent(dy) + of_far * Place::tent(std::max(dx, dy) / (farthest + 1));
+    if (seen_[other].surface != surface)
+      weight *= of_other_surface;
+    for (std::size_t g = 0; g < around.size(); ++g)
+      around[g] += group_light_[g][other] * weight;
+  });
+  Rgb sum, rest = image.total(pixel);
+  for (std::size_t g = 0; g < around.size(); ++g) {
+    sum += around[g];
+    rest = rest - image.groups[g][pixel];
   }
-  const Rgb total = image.total(pixel);
-  const auto groups = static_cast<float>(image.groups.size());
-  for (std::vector<Rgb>& group : image.groups)
+  const auto groups = static_cast<float>(around.size());
+  for (std::size_t g = 0; g < around.size(); ++g)
     for (int c = 0; c < 3; ++c)
-      group[pixel][c] = total[c] * (sum[c] > 0 ? group[pixel][c] / sum[c] : 1 / groups);
+      image.groups[g][pixel][c] += rest[c] * (sum[c] > 0 ? around[g][c] / sum[c] : 1 / groups);
 }
 
 /// One pixel of the picture, where the draft is at `place`.
@@ -268,7 +287,7 @@ void Draft::enlarge(const EstimatorInput& full, const Place& place, CameraRay ra
   if (!image.emission.empty()) // glows where nothing may be opaque
     image.emission[pixel] = mean.emission;
   if (!image.groups.empty())
-    share_among_groups(place, pixel, image);
+    share_among_groups(place, ray.hit ? ray.hit->surface : -1, pixel, image);
 }
 
 PassImage Draft::enlarged(const EstimatorInput& full, const PixelRegion& part) const {

@@ -49,7 +49,8 @@ private:
   Around around(const Place& place, int surface) const;
   void enlarge(const EstimatorInput& full, const Place& place, CameraRay ray, std::size_t pixel,
                DepthProfile& profile, PassImage& image) const;
-  void share_among_groups(const Place& place, std::size_t pixel, PassImage& image) const;
+  void share_among_groups(const Place& place, int surface, std::size_t pixel,
+                          PassImage& image) const;
 
   ImageSettings picture_; ///< that is enlarged to
   Scene scene_;           ///< of the draft
@@ -59,6 +60,8 @@ private:
   std::unique_ptr<PassRenderer> renderer_;
   PassImage sum_;
   std::vector<Seen> seen_; ///< per pixel
+  /// By group, then pixel: the light of the medium and of surfaces, without the lights behind.
+  std::vector<std::vector<Rgb>> group_light_;
   int passes_ = 0;
   double pilot_seconds_ = 0, pass_seconds_ = 0;
 };

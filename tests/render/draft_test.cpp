@@ -94,6 +94,48 @@ TEST(Draft, SharesItsLightAmongTheGroups) {
   EXPECT_NEAR(mean(key), wanted, 0.1 * wanted);
 }
 
+/// A lamp that is mixed away must not leave a fringe at the edges of the surface that it lit.
+TEST(Draft, LightsBehindASurfaceStayInTheirGroup) {
+  const Scene scene = parse_scene(R"(
+[image]
+width = 64
+height = 48
+[camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+fov = 40
+[[mesh]]
+type = "quad"
+rotate = [0, 0, 20]
+material = { type = "diffuse", albedo = 0.8 }
+[[light]]
+type = "distant"
+direction = [0, 0, -1]
+irradiance = 20
+group = "key"
+[[light]]
+type = "environment"
+radiance = 0.5
+[render]
+estimator = "path"
+)",
+                                  "quad.toml");
+  const PassImage image = drafted(scene, whole(scene), 4);
+  ASSERT_EQ(image.groups.size(), 2U); // "key" and the rest
+  int sky = 0, lit = 0;
+  for (std::size_t i = 0; i < image.opacity.size(); ++i) {
+    if (image.opacity[i] > 0.5f) {
+      lit += image.groups[0][i].x > 2 ? 1 : 0;
+      continue;
+    }
+    ++sky;
+    EXPECT_LT(image.groups[0][i].x, 1e-4f) << i;
+    EXPECT_NEAR(image.groups[1][i].x, 0.5f, 1e-4f) << i;
+  }
+  EXPECT_GT(sky, 1000);
+  EXPECT_GT(lit, 500);
+}
+
 TEST(Draft, KnowsWhatEachObjectCovers) {
   Scene scene = cloud_over_ground("96", "64");
   scene.image.cryptomatte = true;
