@@ -1,4 +1,5 @@
 #include "batch/file_claims.h"
+#include "batch/output_paths.h"
 #include "cli/commands.h"
 #include "cli/live_view.h"
 #include "cli/scene_options.h"
@@ -161,6 +162,7 @@ int run_live(LiveOptions& options) {
   FileClaims claims;
   claims.scene(document, options.scene.path(), {frame});
   claims.output("--preview", options.preview);
+  check_output_path("--preview", options.preview, {frame});
   handle_signals();
   if (options.end_with_stdin)
     end_with_stdin();

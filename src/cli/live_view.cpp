@@ -67,13 +67,20 @@ LiveView::LiveView(LiveViewOptions options)
     : options_(std::move(options)),
       status_line_(!options_.quiet && is_smart_terminal(STDERR_FILENO)) {
   if (!options_.display.empty())
-    display_ = std::make_unique<Display>(options_.display);
+    display_ = std::make_unique<Display>(options_.display, [this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      if (!options_.quiet)
+        print(line);
+    });
   if (!options_.preview.empty())
     writer_ = std::make_unique<PreviewWriter>(
         options_.preview,
         WriteOptions{
             .exposure = options_.exposure, .view = options_.view, .life = ImageLife::passing},
-        [this](const std::string& line) { report_error(line); });
+        [this](const std::string& line) {
+          if (line != std::exchange(write_error_, line)) // a full disk refuses every image
+            report_error(line);
+        });
 }
 
 LiveView::~LiveView() {
@@ -88,7 +95,10 @@ void LiveView::show(LiveImage& shown) {
     display_->show(options_.name, shown.image);
   const nlohmann::ordered_json event = image_event(shown);
   if (writer_)
-    writer_->write(std::move(shown.image), [event] { send_event("image", event); });
+    writer_->write(std::move(shown.image), [this, event] {
+      write_error_.clear();
+      send_event("image", event);
+    });
   else
     send_event("image", event);
   if (writer_ && first_look) // else passes would take its processors

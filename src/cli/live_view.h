@@ -42,12 +42,15 @@ private:
   void print(const std::string& line);
 
   const LiveViewOptions options_;
-  std::unique_ptr<Display> display_;
-  std::mutex mutex_; ///< of the members up to the writer, and of the terminal
+  std::mutex mutex_; ///< of the next members, and of the terminal
   bool status_line_, status_shown_ = false;
   bool finished_ = false;
-  std::string progress_;                  ///< passes and error of the last image
-  std::unique_ptr<PreviewWriter> writer_; ///< the last member: it uses the others
+  std::string progress_; ///< passes and error of the last image
+  /// Why the last preview was not written; empty: it was. Used by the writer's thread alone.
+  std::string write_error_;
+  // The last members: their threads use the others.
+  std::unique_ptr<Display> display_;
+  std::unique_ptr<PreviewWriter> writer_;
 };
 
 } // namespace vdbeam::cli

@@ -188,7 +188,11 @@ int run_render(RenderOptions& options) {
       output_format(files.output).extension == ".exr" && !frame.quiet)
     log("note: --exposure affects only a --preview or a .png; there is none");
   if (!options.display.empty())
-    options.batch.frame.display = std::make_shared<Display>(options.display);
+    options.batch.frame.display =
+        std::make_shared<Display>(options.display, [quiet = frame.quiet](const std::string& line) {
+          if (!quiet)
+            log_line(line);
+        });
   handle_signals();
   if (options.end_with_stdin)
     end_with_stdin();

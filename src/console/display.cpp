@@ -14,6 +14,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <utility>
 
 namespace vdbeam::cli {
 namespace {
@@ -31,7 +32,7 @@ struct HostAndPort {
 HostAndPort split_address(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   HostAndPort parts{address.substr(0, colon),
-                    colon == address.npos ? "" : address.substr(colon + 1)};
+                    colon == std::string::npos ? "" : address.substr(colon + 1)};
   if (parts.host.size() > 1 && parts.host.front() == '[' && parts.host.back() == ']')
     parts.host = parts.host.substr(1, parts.host.size() - 2);
   constexpr std::size_t most_digits = 5;
@@ -46,7 +47,8 @@ HostAndPort split_address(const std::string& address) {
 
 } // namespace
 
-Display::Display(const std::string& address) {
+Display::Display(const std::string& address, std::function<void(const std::string&)> on_loss)
+    : address_(address), on_loss_(std::move(on_loss)) {
   const HostAndPort parts = split_address(address);
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -95,8 +97,12 @@ void Display::run() {
     sending_ = true;
     lock.unlock();
     const bool sent = (socket_ >= 0 || connect_to_any()) && send(shown);
-    if (!sent)
+    if (!sent) {
       disconnect();
+      if (on_loss_ && !failed_ && !closing_)
+        on_loss_(
+            fmt::format("note: no viewer at {} takes the image; vdbeam tries again", address_));
+    }
     lock.lock();
     failed_ = !sent;
     if (!sent && !next_)

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -18,8 +19,11 @@ namespace vdbeam::cli {
 /// connection is made when there is an image, and made again where it was lost.
 class Display {
 public:
-  /// `address`: HOST:PORT. Throws InputError for anything else, and for an unknown host.
-  explicit Display(const std::string& address);
+  /// `address`: HOST:PORT. Throws InputError for anything else, and for an unknown host. `on_loss`,
+  /// unless it is empty, is called by the thread, with a line for the user, where no viewer takes
+  /// an image and the one before was sent.
+  explicit Display(const std::string& address,
+                   std::function<void(const std::string&)> on_loss = {});
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
   /// Gives the last image some time to be sent.
@@ -42,6 +46,8 @@ private:
   bool ready(short event) const;
   void disconnect();
 
+  std::string address_; ///< as it was given
+  std::function<void(const std::string&)> on_loss_;
   std::vector<Address> addresses_;
   int socket_ = -1;
   std::string created_; ///< name and layout of the image that the viewer has from this connection

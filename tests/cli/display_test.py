@@ -217,6 +217,14 @@ class ShownImages(InTempFolder):
         self.render(address, "--no-resume", size="400x300")
         self.assertTrue(pathlib.Path(self.file("fog.exr")).exists())
 
+    def test_a_viewer_that_is_not_there_is_reported_once(self):
+        words = [VDBEAM, "render", FOG, "-o", "fog.exr", "--passes", "4", "--snapshot", "1", "--display", "127.0.0.1:9",
+                 "--resolution", f"{WIDTH}x{HEIGHT}", *SMALL]
+        for quiet, notes in ((False, 1), (True, 0)):
+            result = subprocess.run([word for word in words if quiet or word != "-q"], cwd=self.folder.name,
+                                    capture_output=True, text=True, check=True, timeout=PATIENCE)
+            self.assertEqual(result.stderr.count("note: no viewer at 127.0.0.1:9 takes the image"), notes, result.stderr)
+
     def test_image_does_not_depend_on_it(self):
         self.render("127.0.0.1:9", "--no-resume")
         first = pathlib.Path(self.file("fog.exr")).rename(self.file("with.exr"))

@@ -252,6 +252,27 @@ class LiveTest(InTempFolder):
         live.wait("finished")
         self.assertEqual(pathlib.Path("view.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
 
+    def test_a_preview_without_a_folder_is_refused(self):
+        result = subprocess.run([VDBEAM, "live", "fog.toml", "--preview", "no/view.png"], capture_output=True, text=True,
+                                timeout=PATIENCE)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("--preview no/view.png: there is no folder no", result.stderr)
+
+    def test_a_preview_that_cannot_be_written_is_reported_once(self):
+        os.mkdir("view")
+        live = self.start("--preview", "view/view.png")
+        live.wait("finished")
+        shutil.rmtree("view")
+        for exposure in (1, 2, 3):
+            self.save(scene(exposure=exposure))
+            live.wait("finished", edit=exposure + 1)
+        os.mkdir("view")
+        self.save(scene(exposure=5))
+        live.wait("image", edit=5)
+        messages = [event["text"] for event in live.seen if event["event"] == "message"]
+        self.assertEqual(len(messages), 1, messages)
+        self.assertIn("view/view.png", messages[0])
+
     def test_never_replaces_an_input(self):
         for target in ("fog.vdb", "fog.toml"):
             os.symlink(target, "out.png")
