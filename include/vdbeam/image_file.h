@@ -23,8 +23,8 @@ Image read_image(const std::string& path);
 /// `passing`: the image will be replaced soon. It is packed less, in less time, and not synced.
 enum class ImageLife { lasting, passing };
 
-/// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` says how
-/// highlights are shown: "filmic" rolls them off, "srgb" clips them (docs/reference/output.md).
+/// An 8-bit sRGB PNG of R, G, B times 2^exposure, written like write_exr. `view` names the view
+/// transform: "filmic" has a toe and a shoulder, "srgb" clips above 1 (docs/reference/output.md).
 /// Throws InputError for another view.
 void write_png(const Image& image, const std::string& path, double exposure = 0,
                const std::string& view = "filmic", ImageLife life = ImageLife::lasting);

@@ -10,26 +10,28 @@
 namespace vdbeam {
 namespace {
 
-/// A straight line up to `start`, then a hyperbola that nears 1 and begins with the line's slope;
-/// it still separates five stops above white.
-double roll_off(double x) {
-  constexpr double start = 0.35;
-  if (x <= start)
-    return x;
-  const double over = (x - start) / (1 - start);
-  return start + (1 - start) * over / (1 + over);
+/// Middle gray of the scene, which keeps its value.
+constexpr double middle_gray = 0.18;
+/// Slope of shown light over the scene's in the deepest shadows, both as logarithms.
+constexpr double toe_power = 1.45;
+
+/// A toe, in which shadows darken by a power of themselves, and a shoulder, which nears 1: the
+/// curve of Naka and Rushton. It has derivatives of every order above 0 and the slope 0 at 0.
+double film_curve(double x) {
+  static const double half = std::pow(middle_gray, toe_power) * (1 / middle_gray - 1);
+  return 1 / (1 + half * std::pow(x, -toe_power));
 }
 
-/// The channels' own roll-off turns bright colours towards yellow, cyan and magenta; a roll-off of
-/// the largest alone keeps their hue, but never lets them fade. Half of each does what film does:
-/// orange fire goes through yellow to white.
+/// The curve of each channel by itself turns bright colours towards yellow, cyan and magenta; that
+/// of the largest alone keeps their hue, but never lets them fade. Half of each does what film
+/// does: orange fire goes through yellow to white.
 Vec3d filmic(const Vec3d& radiance) {
   const double largest = std::max({radiance.x, radiance.y, radiance.z});
   if (!(largest > 0))
     return {};
-  const double most = roll_off(largest);
+  const double most = film_curve(largest);
   const Vec3d kept = radiance * (most / largest);
-  const Vec3d separate(roll_off(radiance.x), roll_off(radiance.y), roll_off(radiance.z));
+  const Vec3d separate(film_curve(radiance.x), film_curve(radiance.y), film_curve(radiance.z));
   return (kept + separate) * 0.5;
 }
 
@@ -38,7 +40,7 @@ Vec3d clip(const Vec3d& radiance) {
 }
 
 constexpr ViewTransform views[] = {
-    {"filmic", "highlights roll off and fade to white", filmic},
+    {"filmic", "shadows have a toe; highlights roll off and fade to white", filmic},
     {"srgb", "values above 1 are clipped", clip},
 };
 

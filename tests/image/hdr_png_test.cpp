@@ -1,5 +1,4 @@
 #include "image/output_formats.h"
-#include "image/view_transform.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -200,38 +199,6 @@ TEST(Png, ExposureIsInStops) {
   EXPECT_EQ(read_png(folder.file("a.png"))[0], 188);
 }
 
-TEST(ViewTransform, FilmicKeepsShadowsAndRollsHighlightsOff) {
-  const auto view = view_transform("filmic").apply;
-  EXPECT_EQ(view(Vec3d(0)), Vec3d(0));
-  for (const double x : {0.01, 0.18, 0.35})
-    EXPECT_NEAR(view(Vec3d(x)).y, x, 1e-12) << "as it is";
-  double before = 0;
-  for (double x = 0.01; x < 1000; x *= 1.2) {
-    const double y = view(Vec3d(x)).x;
-    EXPECT_GT(y, before) << "no two brightnesses look the same";
-    EXPECT_LT(y, 1);
-    before = y;
-  }
-  EXPECT_GT(before, 0.99);
-  EXPECT_LT(view(Vec3d(4)).x, 0.93) << "room above white";
-}
-
-TEST(ViewTransform, FilmicFadesBrightColoursInTheirOwnOrder) {
-  const auto view = view_transform("filmic").apply;
-  double saturation = 1;
-  for (double scale = 0.25; scale < 500; scale *= 2) { // the orange of a flame
-    const Vec3d shown = view(Vec3d(1, 0.4, 0.1) * scale);
-    EXPECT_GT(shown.x, shown.y);
-    EXPECT_GT(shown.y, shown.z);
-    EXPECT_LE(1 - shown.z / shown.x, saturation + 1e-9);
-    saturation = 1 - shown.z / shown.x;
-  }
-  EXPECT_LT(saturation, 0.5);
-  const Vec3d blue = view({0, 0, 1e30});
-  EXPECT_EQ(blue.x, 0);
-  EXPECT_LE(blue.z, 1 + 1e-12);
-}
-
 /// Neither a sky has bands, nor does a value that 8 bits hold change.
 TEST(Png, IsDithered) {
   const TempFolder folder;
@@ -257,8 +224,7 @@ TEST(Png, IsDithered) {
   }
 }
 
-TEST(ViewTransform, UnknownNamesAreInputErrors) {
-  EXPECT_THROW(view_transform("flimic"), InputError);
+TEST(Png, UnknownViewsAreInputErrors) {
   TempFolder folder;
   EXPECT_THROW(write_png(make_grey({1}), folder.file("a.png"), 0, "none"), InputError);
   EXPECT_TRUE(folder.names().empty());
