@@ -4,16 +4,18 @@
 Usage: gallery.py [NAME...] [--draft] [--list]
 
 NAME is a scene of data/gallery (storm, silver, ...). Without a name all are rendered, one after the other. Images go to
-out/gallery/NAME.exr, .png and .json (the report); orbit is a sequence and becomes NAME.webp too. --draft renders two
-passes at a quarter of the size. The program is build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from
+out/gallery/NAME.exr, .png and .json (the report); orbit is a sequence and becomes NAME.webp too; yard is a comp of
+NAME.plate.exr and NAME.smoke.exr, which oiiotool makes. --draft renders two passes at a quarter of the size. The program is build/release/vdbeam, or VDBEAM_BINARY; make_volumes is taken from
 build/release, or VDBEAM_BUILD. The simulated volumes, plume.vdb and explosion.vdb, need Blender and some minutes
 (tools/simulate_volumes.py).
 """
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENES = ROOT / "data" / "gallery"
@@ -30,7 +32,7 @@ CLOUDS = {
     "fogbank.vdb": ["fogbank", "--size", "320", "--extent", "40"],
     "field.vdb": ["field", "--size", "2000", "--extent", "40"],
 }
-# Options of the 8-bit images. "srgb" clips, which gives more contrast than the default view.
+# Options of the 8-bit images. "srgb" clips, but keeps the contrast of bright clouds.
 VIEWS = {
     "storm": ["--view", "srgb", "--exposure", "-0.3"],
     "silver": ["--view", "srgb", "--exposure", "-0.1"],
@@ -43,6 +45,8 @@ VIEWS = {
     "water": ["--view", "srgb", "--exposure", "-0.2"],
 }
 SEQUENCES = {"orbit": "1-48"}
+# Scenes that are rendered twice and composited: the exposure of the 8-bit image.
+COMPS = {"yard": 0.4}
 SIMULATED = {"plume.vdb": ["plume", "192"], "explosion.vdb": ["explosion", "256"]}
 
 
@@ -88,6 +92,29 @@ def animate(base, frames):
     images[0].save(f"{base}.webp", save_all=True, append_images=images[1:], duration=83, loop=0, quality=82, method=6)
 
 
+def composite(scene, base, options):
+    """Renders the surfaces alone, then the volumes with the surfaces as shadow catchers, and puts the second over the first
+    as docs/how-to/compositing.md describes. The light that the smoke adds to surfaces is faint and smooth, and noisy after
+    few passes: it is blurred."""
+    meshes = len(tomllib.loads(scene.read_text())["mesh"])
+    parts = {
+        "plate": ["--set", "volume.0.extinction=0", "--set", "render.passes=3"],
+        "smoke": [word for i in range(meshes) for word in ("--set", f"mesh.{i}.material.type=shadow_catcher")]
+        + ["--set", "light.0.visible=false"],
+    }
+    for part, changes in parts.items():
+        run([BINARY, "render", scene, "-o", f"{base}.{part}.exr", "--report", f"{base}.{part}.json", *changes, *options])
+    plate, smoke, three = f"{base}.plate.exr", f"{base}.smoke.exr", ["--chnames", "R,G,B"]
+    run([oiiotool(), plate, "--ch", "R,G,B", smoke, "--ch", "shadow.R,shadow.G,shadow.B", *three, "--mul",
+         smoke, "--ch", "R,G,B", "--add", smoke, "--ch", "catcher_light.R,catcher_light.G,catcher_light.B", *three, "--blur", "21x21",
+         "--add", "-o", f"{base}.exr", "--mulc", str(2 ** COMPS[scene.stem]), "--colorconvert", "linear", "sRGB", "-d", "uint8",
+         "-o", f"{base}.png"])
+
+
+def oiiotool():
+    return shutil.which("oiiotool") or sys.exit("gallery.py: there is no oiiotool; install it with: apt install openimageio-tools")
+
+
 def render(scene, draft):
     for name in needed_files(scene):
         make(name)
@@ -95,6 +122,9 @@ def render(scene, draft):
     base, options = OUT / scene.stem, list(VIEWS.get(scene.stem, []))
     if draft:
         options += ["--passes", "2", "--resolution", "480x270"]
+    if scene.stem in COMPS:
+        composite(scene, base, options)
+        return
     if scene.stem not in SEQUENCES:
         run([BINARY, "render", scene, "-o", f"{base}.exr", "--preview", f"{base}.png", "--report", f"{base}.json", *options])
         return

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the meshes of the gallery's scenes, and the texture of a patchwork of fields.
+"""Makes the meshes of the gallery's scenes, and their textures: a patchwork of fields, setts, bricks.
 
 Usage: make_props.py FOLDER
 
@@ -15,6 +15,17 @@ import zlib
 from prop_buildings import make_chimney, make_crates, make_factory, make_hall, make_people, make_rubble, make_street
 from prop_land import make_cottage, make_fish, make_hills, make_rock, make_ruin, make_sea, make_seabed, make_woods
 from prop_mesh import waves
+from prop_yard import (make_boxes, make_bricks, make_drum, make_joinery, make_ladder, make_mortar, make_paving, make_stonework,
+                       stone_texture)
+
+
+def write_png(path, width, rows):
+    """Writes rows of 8-bit RGB as an sRGB PNG."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows), 9)) + chunk(b"IEND", b""))
 
 
 def write_plain(path):
@@ -37,7 +48,7 @@ def make_fields(path, size=1024):
     wood, bend = waves(8, 12, 0.6), waves(9, 9, 1.1)
     rows = []
     for y in range(size):
-        row = bytearray([0])
+        row = bytearray()
         for x in range(size):
             u, v = x / size * cells, y / size * cells
             near = min((seeds[i % cells, j % cells] for i in (int(u) - 1, int(u), int(u) + 1) for j in (int(v) - 1, int(v), int(v) + 1)),
@@ -50,18 +61,19 @@ def make_fields(path, size=1024):
                 colour = (0.50, 0.56, 0.60)
             row += bytes(min(255, int(255 * c)) for c in colour)
         rows.append(bytes(row))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 2, 0, 0, 0))
-                     + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
+    write_png(path, size, rows)
 
 
 MESHES = {
     "hills": make_hills, "woods": make_woods, "chimney": make_chimney, "factory": make_factory, "hall": make_hall,
     "crates": make_crates, "people": make_people, "rock": make_rock, "cottage": make_cottage, "sea": make_sea,
     "seabed": make_seabed, "ruin": make_ruin, "fish": make_fish, "street": make_street, "rubble": make_rubble,
+    "paving": make_paving, "bricks": make_bricks, "mortar": make_mortar, "stonework": make_stonework, "joinery": make_joinery, "ladder": make_ladder,
+    "drum": make_drum, "boxes": make_boxes,
+}
+TEXTURES = {
+    "setts": {"dark": (0.27, 0.26, 0.25), "pale": (0.66, 0.64, 0.61), "speckle": 0.22, "seed": 81},
+    "clay": {"dark": (0.20, 0.13, 0.11), "pale": (0.72, 0.43, 0.32), "speckle": 0.12, "seed": 82},
 }
 
 
@@ -74,7 +86,10 @@ def main():
         make().write(folder / f"{name}.obj")
     write_plain(folder / "plain.obj")
     make_fields(folder / "fields.png")
-    print(f"{folder}: plain.obj, fields.png and {len(MESHES)} other meshes written")
+    for name, options in TEXTURES.items():
+        pixels = stone_texture(**options)
+        write_png(folder / f"{name}.png", pixels.shape[1], [row.tobytes() for row in pixels])
+    print(f"{folder}: plain.obj, fields.png, {len(MESHES)} other meshes and {len(TEXTURES)} textures written")
 
 
 if __name__ == "__main__":

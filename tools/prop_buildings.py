@@ -91,31 +91,31 @@ def make_hall():
     return mesh
 
 
+def add_crate(mesh, x, y, z, size, turn):
+    c, s = math.cos(turn), math.sin(turn)
+    part = Mesh()
+    part.box((-0.47 * size, 0.03 * size, -0.47 * size), (0.47 * size, 0.97 * size, 0.47 * size))
+    for side in (-1, 1):
+        for other in (-1, 1):
+            part.box((side * 0.5 * size - 0.05 * size, 0, other * 0.5 * size - 0.05 * size),
+                     (side * 0.5 * size + 0.03 * size, size, other * 0.5 * size + 0.03 * size))
+        for level in (0, 0.45, 0.9):
+            part.box((-0.5 * size, level * size, side * 0.5 * size - 0.03 * size),
+                     (0.5 * size, (level + 0.1) * size, side * 0.5 * size + 0.03 * size))
+            part.box((side * 0.5 * size - 0.03 * size, level * size, -0.5 * size),
+                     (side * 0.5 * size + 0.03 * size, (level + 0.1) * size, 0.5 * size))
+    mesh.add([(x + c * p[0] + s * p[2], y + p[1], z - s * p[0] + c * p[2]) for p in part.points],
+             [[i - 1 for i in face] for face in part.faces])
+
+
 def make_crates():
     """Crates that stand on the floor of the hall."""
     dice, mesh = random.Random(7), Mesh()
-
-    def crate(x, y, z, size, turn):
-        c, s = math.cos(turn), math.sin(turn)
-        part = Mesh()
-        part.box((-0.47 * size, 0.03 * size, -0.47 * size), (0.47 * size, 0.97 * size, 0.47 * size))
-        for side in (-1, 1):
-            for other in (-1, 1):
-                part.box((side * 0.5 * size - 0.05 * size, 0, other * 0.5 * size - 0.05 * size),
-                         (side * 0.5 * size + 0.03 * size, size, other * 0.5 * size + 0.03 * size))
-            for level in (0, 0.45, 0.9):
-                part.box((-0.5 * size, level * size, side * 0.5 * size - 0.03 * size),
-                         (0.5 * size, (level + 0.1) * size, side * 0.5 * size + 0.03 * size))
-                part.box((side * 0.5 * size - 0.03 * size, level * size, -0.5 * size),
-                         (side * 0.5 * size + 0.03 * size, (level + 0.1) * size, 0.5 * size))
-        mesh.add([(x + c * p[0] + s * p[2], y + p[1], z - s * p[0] + c * p[2]) for p in part.points],
-                 [[i - 1 for i in face] for face in part.faces])
-
     for x, z in ((2.2, -1.2), (2.9, -2.3), (2.3, -8.6), (6.7, -9.4), (7.9, -10.2), (6.2, -3.1)):
         size = dice.uniform(0.8, 1.1)
-        crate(x, 0, z, size, dice.uniform(-0.5, 0.5))
+        add_crate(mesh, x, 0, z, size, dice.uniform(-0.5, 0.5))
         if dice.random() < 0.6:
-            crate(x + dice.uniform(-0.1, 0.1), size, z, 0.75 * size, dice.uniform(-0.6, 0.6))
+            add_crate(mesh, x + dice.uniform(-0.1, 0.1), size, z, 0.75 * size, dice.uniform(-0.6, 0.6))
     return mesh
 
 

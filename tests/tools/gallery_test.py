@@ -82,6 +82,28 @@ class Gallery(unittest.TestCase):
             corners = [int(word.split("/")[0]) for line in lines if line.startswith("f ") for word in line.split()[1:]]
             self.assertEqual(min(corners), 1, path.name)
             self.assertEqual(max(corners), points, path.name)
+            places = sum(line.startswith("vt ") for line in lines)
+            if any(line.startswith("f ") and "/" in line for line in lines):
+                used = [int(word.split("/")[1]) for line in lines if line.startswith("f ") for word in line.split()[1:]]
+                self.assertEqual(max(used), places, path.name)
+
+    def test_the_comp_of_the_yard_is_everything_together(self):
+        """The comp is far closer to everything together than the plate is: smoke and shadow have their places and strengths."""
+        scene, base = Path(self.folder.name, "yard.toml"), Path(self.folder.name, "yard")
+        text = (ROOT / "data/gallery/yard.toml").read_text().replace("density_noise", "density")
+        scene.write_text(text)
+        options = ["--passes", "4", "--resolution", "64x36", "--quiet"]
+        gallery.composite(scene, base, options)
+        done = run(BINARY, "render", scene, "-o", f"{base}.all.exr", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+        def rms(image):
+            text = run("oiiotool", image, "--ch", "R,G,B", f"{base}.all.exr", "--ch", "R,G,B", "--diff").stdout
+            return float(re.search(r"RMS error = (\S+)", text).group(1))
+
+        self.assertGreater(rms(f"{base}.plate.exr"), 0.05, "there is no smoke")
+        self.assertLess(rms(f"{base}.exr"), 0.4 * rms(f"{base}.plate.exr"))
+        self.assertTrue(Path(f"{base}.png").exists())
 
     def test_props_are_the_same_each_time(self):
         again = Path(self.folder.name, "hills.obj")
