@@ -109,7 +109,7 @@ VDBEAM_TUNED(double, wide_over_narrow, 4);
 /// A narrow kernel holds at most this share of a map, so that a wide one fits.
 VDBEAM_TUNED(double, most_in_kernel, 1.0 / 16);
 /// Below this many photons per pass the trial is too noisy, and defaults are used.
-VDBEAM_TUNED(double, fewest_for_trial, 500);
+VDBEAM_TUNED(double, fewest_for_trial, 100);
 /// Tiles of 16 x 16 pixels at which trials look, and the pixels of them that other pilots use:
 /// every 48th, or more where fewer than the fewest would remain, since a dark pixel among few could
 /// outweigh the others.
@@ -244,7 +244,7 @@ VDBEAM_TUNED(double, safe_lead, 1.25);
 VDBEAM_TUNED(double, most_collisions_per_path, 4096);
 /// Photons stored per light path below which `path` is taken: where a kernel pilot showed what they
 /// are worth, and where none did.
-VDBEAM_TUNED(double, rarest_photons, 1.0 / 100);
+VDBEAM_TUNED(double, rarest_photons, 1.0 / 1000);
 VDBEAM_TUNED(double, rarest_photons_without_pilot, 1.0 / 20);
 
 } // namespace vdbeam::tuning

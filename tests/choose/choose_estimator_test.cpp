@@ -85,6 +85,25 @@ TEST(ChooseEstimator, PathWherePhotonsAreRare) {
   EXPECT_NE(choice.choice.reason.find("light path"), std::string::npos) << choice.choice.reason;
 }
 
+/// The sun shines through a slit into a dark room with thin smoke: most light paths end on the
+/// walls, but the few photons of the smoke are all that it needs.
+TEST(ChooseEstimator, PhotonsInARoomWithLittleSmoke) {
+  MemoryScene scene = lumps(0.06);
+  scene.scene.image.width = scene.scene.image.height = 48;
+  scene.add_light(LightType::distant).direction = {0.2, -0.3, -1};
+  for (const double x : {-2.05, 2.05}) // two halves of a wall before the smoke
+    surfaces::add_surface(scene, SurfaceShape::quad,
+                          surfaces::moved(surfaces::scaled(2), {x, 0, 1}), surfaces::diffuse(0.5));
+  surfaces::add_surface(scene, SurfaceShape::quad, surfaces::moved(surfaces::scaled(6), {0, 0, -1}),
+                        surfaces::diffuse(0.5));
+  const Choice choice(scene);
+  EXPECT_NE(choice.choice.type.name, "path") << choice.choice.reason;
+  ASSERT_NE(choice.choice.photons, nullptr);
+  const PhotonPlan& plan = choice.choice.photons->choices().photons;
+  EXPECT_LT(plan.stored_per_path, 0.05) << "photons are rare";
+  EXPECT_LT(plan.stored_per_path * static_cast<double>(plan.paths), 500) << "and few";
+}
+
 TEST(ChooseEstimator, BeamWhereThereAreNoPhotons) {
   MemoryScene dark = deep_in_the_sun();
   dark.scene.volumes[0].albedo = Rgb(0);
