@@ -69,7 +69,7 @@ def make(name):
         kind, resolution = SIMULATED[name]
         run([sys.executable, ROOT / "tools" / "simulate_volumes.py", kind, target, resolution])
     else:
-        run([sys.executable, ROOT / "tools" / "make_props.py", VOLUMES])
+        run([ROOT / "tools" / "make_props.py", VOLUMES])
 
 
 def run(command):

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes the meshes of the gallery's scenes, and their textures: a patchwork of fields, setts, bricks.
 
 Usage: make_props.py FOLDER

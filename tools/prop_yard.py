@@ -5,8 +5,6 @@ A stone takes a small piece of its texture, from a place that its tone decides, 
 import math
 import random
 
-import numpy as np
-
 from prop_buildings import add_crate
 from prop_mesh import Mesh, waves
 
@@ -200,6 +198,8 @@ def make_boxes():
 
 def stone_texture(dark, pale, speckle, seed, size=1024):
     """8-bit RGB of stones, from dark at the bottom to pale at the top, with spots and grain; its left and right join."""
+    import numpy as np  # all other props do without it
+
     dice = np.random.default_rng(seed)
 
     def noise(scale):
