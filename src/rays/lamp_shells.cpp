@@ -21,15 +21,14 @@ float extinction_at(const Medium& medium, const Vec3f& point) {
 }
 
 /// Scattering coefficient times phase function, of all volumes at a point.
-Rgb scattering_at(const Medium& medium, const Vec3f& point, float cosine,
-                  const std::vector<PhaseFunction>& phases) {
+Rgb scattering_at(const Medium& medium, const Vec3f& point, float cosine) {
   Rgb sum;
   medium.for_each_at(point, [&](std::size_t v) {
     const Volume& volume = medium.volumes[v];
     if (const float density = volume.density(point); density > 0)
       sum += volume.albedo_at(point) * volume.channel_scale *
              (density * volume.extinction *
-              phases[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
+              medium.phases[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
   });
   return sum;
 }
@@ -75,21 +74,18 @@ bool LampShells::holds(std::size_t light, const Vec3f& point) const {
   return false;
 }
 
-GroupedLight LampShells::along(const Segment& flight, const std::vector<PhaseFunction>& phases,
-                               Rng& rng, std::uint64_t& shadow_rays) const {
+GroupedLight LampShells::along(const Segment& flight, Rng& rng) const {
   GroupedLight sum;
   for (const Shell& shell : shells_) {
     const Segment crossing =
         world_.lights[shell.light].lit_part(part_in_ball(flight, shell.center, shell.radius));
     if (!crossing.empty())
-      sum.add(sample(shell, crossing, phases, rng, shadow_rays), world_.lights.group(shell.light));
+      sum.add(sample(shell, crossing, rng), world_.lights.group(shell.light));
   }
   return sum;
 }
 
-Rgb LampShells::sample(const Shell& shell, const Segment& crossing,
-                       const std::vector<PhaseFunction>& phases, Rng& rng,
-                       std::uint64_t& shadow_rays) const {
+Rgb LampShells::sample(const Shell& shell, const Segment& crossing, Rng& rng) const {
   const Medium& medium = world_.medium;
   const EquiAngular distances(crossing.ray, shell.center, crossing.t_begin, crossing.t_end);
   const float t = distances.sample(rng.uniform()), density = distances.pdf(t);
@@ -99,10 +95,9 @@ Rgb LampShells::sample(const Shell& shell, const Segment& crossing,
   if (!shadow_ray || !(density > 0))
     return {};
   const Vec3f& wi = shadow_ray->direction;
-  const Rgb scattered = scattering_at(medium, point, dot(crossing.ray.direction, wi), phases);
+  const Rgb scattered = scattering_at(medium, point, dot(crossing.ray.direction, wi));
   if (scattered == Rgb() || !unoccluded(world_, Vec3d(point), wi, shadow_ray->distance))
     return {};
-  ++shadow_rays;
   Rgb through = estimate_transmittance(medium, {crossing.ray, 0, t}, rng.uniform());
   if (max_component(through) > 0)
     through *=

@@ -4,15 +4,14 @@
 #include "math/rng.h"
 #include "transport/world.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace vdbeam {
 
 /// Next-event estimation near lamps in the medium, for random walks. The light of a lamp without
 /// extent grows as 1 / r^2, whose square has no finite mean over a medium, so shadow rays from the
-/// collisions of walks have no bound. In a shell of about two mean free paths around each lamp
-/// they are left out; instead, each flight that crosses the shell samples one point of the crossing
+/// collisions of walks have no bound. In a ball of half a mean free path around each lamp they
+/// are left out; instead, each flight that crosses the shell samples one point of the crossing
 /// by equal angles about the lamp (EquiAngular), whose density cancels 1 / r^2.
 class LampShells {
 public:
@@ -23,10 +22,8 @@ public:
   /// Flights find the light of this lamp at the point, and no shadow ray may.
   bool holds(std::size_t light, const Vec3f& point) const;
   /// Light of the lamps that is scattered once, inside of the shells, against the flight: an
-  /// unbiased estimate of its radiance at the flight's origin. `phases`: by which volumes scatter.
-  /// Adds the number of traced rays to `shadow_rays`.
-  GroupedLight along(const Segment& flight, const std::vector<PhaseFunction>& phases, Rng& rng,
-                     std::uint64_t& shadow_rays) const;
+  /// unbiased estimate of its radiance at the flight's origin.
+  GroupedLight along(const Segment& flight, Rng& rng) const;
 
 private:
   struct Shell {
@@ -34,8 +31,7 @@ private:
     Vec3d center;
     double radius;
   };
-  Rgb sample(const Shell& shell, const Segment& crossing, const std::vector<PhaseFunction>& phases,
-             Rng& rng, std::uint64_t& shadow_rays) const;
+  Rgb sample(const Shell& shell, const Segment& crossing, Rng& rng) const;
 
   const World& world_;
   std::vector<Shell> shells_;

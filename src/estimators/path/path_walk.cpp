@@ -136,13 +136,11 @@ bool WalkTracer::scatter(PathWalk& walk, const Vec3f& direction) const {
   return advance_flight(walk, *this);
 }
 
-/// Light of lamps that the flight passes, as its next collision would bring it.
+/// Adds the light of lamps that the flight passes, which collisions there leave out.
 void WalkTracer::look_into_shells(PathWalk& walk) const {
   if (!shells_.any() || !walk.all_light || (max_bounces_ && walk.bounces >= *max_bounces_))
     return;
-  std::uint64_t uncounted = 0;
-  walk.indirect +=
-      shells_.along(walk.segment, world_.medium.phases, walk.rng, uncounted) * walk.throughput;
+  walk.indirect += shells_.along(walk.segment, walk.rng) * walk.throughput;
 }
 
 /// Russian roulette on what the walk's flight is about to bring.
