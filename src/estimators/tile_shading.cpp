@@ -110,35 +110,33 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
   return radiance;
 }
 
-/// Opacity and depth of a tile's medium, whatever surfaces stand in it, and the light behind it.
+/// What the rays of a tile see, row by row.
 class TileEdges {
 public:
-  TileEdges(const EstimatorInput& input, const World& world, const TileScratch& scratch)
-      : TileEdges(input, world, scratch.rays, scratch.ends) {}
-  TileEdges(const EstimatorInput& input, const World& world, const TileRays& rays,
-            const std::array<float, TileRays::count>& ends)
-      : x0_(rays.x0()), y0_(rays.y0()), width_(std::min(tile_width, input.camera.width() - x0_)),
-        height_(std::min(tile_width, input.camera.height() - y0_)) {
-    const auto width = static_cast<std::size_t>(input.camera.width());
-    for (int i = 0; i < TileRays::count; ++i) {
-      const TileRays::PixelRay& ray = rays[i];
+  TileEdges(const TileScratch& scratch, int image_width, int image_height)
+      : x0_(scratch.rays.x0()), y0_(scratch.rays.y0()),
+        width_(std::min(tile_width, image_width - x0_)),
+        height_(std::min(tile_width, image_height - y0_)) {
+    const auto width = static_cast<std::size_t>(image_width);
+    for (std::size_t i = 0; i < TileRays::count; ++i) {
+      const TileRays::PixelRay& ray = scratch.rays[static_cast<int>(i)];
       if (!ray.inside)
         continue;
-      const auto x = static_cast<int>(ray.pixel % width), y = static_cast<int>(ray.pixel / width);
-      const OpacityAndDepth seen = medium_seen(input, world, ray);
-      const std::size_t index = seen_by().index(x, y);
-      opacity_[index] = seen.opacity;
-      depth_[index] = seen.depth;
-      light_[index] = ends[static_cast<std::size_t>(i)];
+      const std::size_t index =
+          seen_by().index(static_cast<int>(ray.pixel % width), static_cast<int>(ray.pixel / width));
+      opacity_[index] = scratch.medium[i].opacity;
+      depth_[index] = scratch.medium[i].depth;
+      ends_[index] = scratch.ends[i];
     }
   }
 
   SeenMedium seen_by() const { return {x0_, y0_, width_, height_, opacity_.data(), depth_.data()}; }
-  const float* light() const { return light_.data(); }
+  const EndOfRay* ends() const { return ends_.data(); }
 
 private:
   int x0_, y0_, width_, height_;
-  std::array<float, TileRays::count> opacity_{}, depth_{}, light_{};
+  std::array<float, TileRays::count> opacity_{}, depth_{};
+  std::array<EndOfRay, TileRays::count> ends_{};
 };
 
 /// Light that a ray meets at its end, by which edges are found: without what the surface there
@@ -170,21 +168,17 @@ int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, con
 /// Which pixels of the tile lie on edges.
 std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, const World& world,
                                                 const TileScratch& scratch, bool refine_medium,
-                                                const PassImage& image) {
-  const auto width = static_cast<std::size_t>(image.width);
-  std::optional<TileEdges> edges;
-  if (world.surfaces)
-    edges.emplace(input, world, scratch);
-  const SeenMedium seen =
-      edges ? edges->seen_by()
-            : SeenMedium{0, 0, image.width, image.height, image.opacity.data(), image.depth.data()};
+                                                bool refine_light) {
+  const int width = input.camera.width();
+  const TileEdges edges(scratch, width, input.camera.height());
+  const SeenMedium seen = edges.seen_by();
   std::array<bool, TileRays::count> uneven{};
-  for (int i = 0; i < TileRays::count; ++i) {
-    const TileRays::PixelRay& ray = scratch.rays[i];
-    const auto x = static_cast<int>(ray.pixel % width), y = static_cast<int>(ray.pixel / width);
-    uneven[static_cast<std::size_t>(i)] =
+  for (std::size_t i = 0; i < TileRays::count; ++i) {
+    const TileRays::PixelRay& ray = scratch.rays[static_cast<int>(i)];
+    const int x = static_cast<int>(ray.pixel) % width, y = static_cast<int>(ray.pixel) / width;
+    uneven[i] =
         ray.inside && ((refine_medium && is_uneven(seen, input.camera, world.space.scale, x, y)) ||
-                       (edges && is_unevenly_lit(seen, edges->light(), x, y)));
+                       (refine_light && is_unevenly_lit(seen, edges.ends(), x, y)));
   }
   return uneven;
 }
@@ -218,6 +212,7 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
     if (!scratch.uneven[static_cast<std::size_t>(i)])
       continue;
     const std::size_t pixel = scratch.rays[i].pixel;
+    OpacityAndDepth& medium = scratch.medium[static_cast<std::size_t>(i)];
     int rays = 1;
     scratch.rays.refine(input.in(world), key, i);
     for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
@@ -227,36 +222,34 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
       if (fit)
         fit->add(pixel, surface,
                  transmittance(world.medium, ray.profile) * air_to_end(ray.camera).left, rays++);
-      shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
-                TileRays::rays_if_refined);
+      const OpacityAndDepth seen =
+          shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
+                    TileRays::rays_if_refined);
+      medium.opacity += seen.opacity;
+      medium.depth += seen.depth;
     }
-    image.scale_pixel(pixel, 1.0f / TileRays::rays_if_refined);
+    constexpr float weight = 1.0f / TileRays::rays_if_refined;
+    image.scale_pixel(pixel, weight);
+    medium = {medium.opacity * weight, medium.depth * weight};
     scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
   }
 }
 
 } // namespace
 
-OpacityAndDepth medium_seen(const EstimatorInput& input, const World& world,
-                            const TileRays::PixelRay& ray) {
-  const PeakTakenOut* peak = world.medium.peak.get();
-  if (!peak || ray.profile.empty())
-    return opacity_and_depth(input.world, ray.camera, ray.profile);
-  return opacity_and_depth(input.world, ray.camera, ray.profile.scaled(peak->extinction_factor));
-}
-
-void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
-               const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
-               const SeenSurface& surface, int rays) {
+OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons,
+                          const TileRays::PixelRay& ray, const RngKey& key,
+                          const PixelTarget& target, const SeenSurface& surface, int rays) {
   const World& world = photons.world();
   RenderStatistics& counts = target.counts;
   PassImage& image = target.image;
   counts.depth_profiles += ray.profile.empty() ? 0 : 1;
-  if (const PeakTakenOut* peak = world.medium.peak.get(); peak && !ray.profile.empty())
-    shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor), target.pixel,
-                  image, surface);
-  else
-    shade_profile(input, ray.camera, ray.profile, target.pixel, image, surface);
+  const PeakTakenOut* peak = world.medium.peak.get();
+  const OpacityAndDepth medium =
+      peak && !ray.profile.empty()
+          ? shade_profile(input, ray.camera, ray.profile.scaled(peak->extinction_factor),
+                          target.pixel, image, surface)
+          : shade_profile(input, ray.camera, ray.profile, target.pixel, image, surface);
   shade_emission(input, world, ray.camera, ray.profile, target.pixel, image, counts.emission_rays);
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
@@ -268,6 +261,7 @@ void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
             light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
                 direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
                              counts.shadow_rays, sink));
+  return medium;
 }
 
 SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& photons) {
@@ -296,6 +290,7 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     Stopwatch watch;
     scratch.rays.prepare(input.in(world), key, x0, y0);
     scratch.statistics.profile += watch.restart();
+    const bool shows_surface = scratch.rays.show_surface();
     if (surfaces)
       see_surfaces(input, *surfaces, key, pass, scratch);
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
@@ -304,13 +299,15 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
         if (fit) {
           const Rgb tr = transmittance(world.medium, ray.profile);
           fit->set(ray.pixel, surface, ray.camera.air ? tr * air_to_end(ray.camera).left : tr);
-          scratch.ends[static_cast<std::size_t>(i)] =
-              mean_component(light_of_end(world, ray, surface, tr));
+          if (shows_surface)
+            scratch.ends[static_cast<std::size_t>(i)] = {
+                mean_component(light_of_end(world, ray, surface, tr)), ray.camera.hit.has_value()};
         }
-        shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
+        scratch.medium[static_cast<std::size_t>(i)] =
+            shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
       }
-    if (tiles.refine_medium || surfaces) {
-      scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, image);
+    if (tiles.refine_medium || shows_surface) {
+      scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, shows_surface);
       refine_edges(input, photons, surfaces ? &*surfaces : nullptr, fit ? &*fit : nullptr, key,
                    scratch, image);
     }

@@ -3,7 +3,9 @@
 #include "estimators/matt_effort.h"
 #include "estimators/surface_shading.h"
 #include "rays/estimator_input.h"
+#include "rays/profile_shading.h"
 #include "rays/tile_rays.h"
+#include "rays/uneven_pixels.h"
 
 namespace vdbeam {
 
@@ -15,9 +17,11 @@ struct TileScratch {
   BeamTile tile;
   TileSurfaces seen; ///< at the ends of the rays; nothing without surfaces
   RenderStatistics statistics;
-  /// Light that each ray meets at its end, mean over channels; 0 without surfaces.
-  std::array<float, TileRays::count> ends{};
-  std::array<bool, TileRays::count> uneven{}; ///< pixels that several rays see
+  /// Opacity and depth of the medium alone, whatever surfaces stand in it: mean over the rays of
+  /// each pixel.
+  std::array<OpacityAndDepth, TileRays::count> medium{};
+  std::array<EndOfRay, TileRays::count> ends{}; ///< of the rays; nothing without surfaces
+  std::array<bool, TileRays::count> uneven{};   ///< pixels that several rays see
 };
 
 /// The pixel to which a ray adds its light, and the counters of its work.
@@ -27,17 +31,13 @@ struct PixelTarget {
   RenderStatistics& counts;
 };
 
-/// Opacity and depth of the medium alone, as the picture has them; `world`: to which the ray's
-/// profile belongs.
-OpacityAndDepth medium_seen(const EstimatorInput& input, const World& world,
-                            const TileRays::PixelRay& ray);
-
 /// Adds what a ray of the picture sees but for what it gathers from the photon map: direct light,
 /// and what is seen through the medium. `surface`: what is seen of the surface at which the ray
-/// ends, if it does. `rays`: how many rays of the pixel share its shadow rays.
-void shade_ray(const EstimatorInput& input, const PhotonPass& photons,
-               const TileRays::PixelRay& ray, const RngKey& key, const PixelTarget& target,
-               const SeenSurface& surface = {}, int rays = 1);
+/// ends, if it does. `rays`: how many rays of the pixel share its shadow rays. Returns opacity and
+/// depth of the medium alone.
+OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons,
+                          const TileRays::PixelRay& ray, const RngKey& key,
+                          const PixelTarget& target, const SeenSurface& surface = {}, int rays = 1);
 
 /// Work of an estimator on the rays of a tile.
 struct TileGather {

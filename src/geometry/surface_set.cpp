@@ -47,6 +47,8 @@ struct SurfaceSet::Data {
   std::map<const Shape*, std::shared_ptr<const ShapeTree>> trees;
   ScenePtr scene;
   Boxd bounds;
+  Vec3d center;           ///< of the bounds
+  double ball_radius = 0; ///< radius of the ball around them
   double most_shrink = 1; ///< of the surfaces' places, and at least 1
   std::size_t bytes = 0;
   int trees_built = 0;
@@ -75,6 +77,8 @@ void SurfaceSet::Data::place(std::vector<PlacedShape>&& placed) {
     }
     surfaces.push_back(std::move(entry));
   }
+  center = bounds.center();
+  ball_radius = 0.5 * length(bounds.size());
 }
 
 /// What lights aim photons at: of an evenly lit plane, all but this part of the light that it sends
@@ -185,14 +189,13 @@ void SurfaceSet::Data::run(Query& query) const {
   if (!meet_planes(query))
     return;
   // A far origin is moved up to the surfaces.
-  const Vec3d center = bounds.center();
-  const double radius = 0.5 * length(bounds.size());
   const double along = dot(center - query.origin, query.direction);
-  query.shift = std::max(query.t_begin, along - 1.01 * radius);
+  query.shift = std::max(query.t_begin, along - 1.01 * ball_radius);
   const Vec3d start = query.origin + query.direction * query.shift;
   // From farther away it passes by them. Embree ends the program if a ray is none, or its numbers
   // are too large for single precision.
-  if (!(length(start - center) <= 1.5 * radius) || !(dot(query.direction, query.direction) > 0))
+  if (!(length(start - center) <= 1.5 * ball_radius) ||
+      !(dot(query.direction, query.direction) > 0))
     return;
   RTCRayHit ray{};
   ray.ray.org_x = static_cast<float>(start.x);

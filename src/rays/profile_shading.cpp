@@ -112,12 +112,13 @@ OpacityAndDepth opacity_and_depth(const World& world, const CameraRay& camera,
   return {opacity, static_cast<float>(depth / world.space.scale)};
 }
 
-void shade_profile(const EstimatorInput& input, const CameraRay& camera,
-                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   const SeenSurface& surface) {
+OpacityAndDepth shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                              const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                              const SeenSurface& surface) {
   const World& world = input.world;
   const Rgb tr = transmittance(world.medium, profile);
-  OpacityAndDepth seen = opacity_and_depth(world, camera, profile);
+  const OpacityAndDepth medium = opacity_and_depth(world, camera, profile);
+  OpacityAndDepth seen = medium;
   GroupedLight background = lights_through(world, camera.whole(), profile, tr, true);
   if (camera.hit) {
     background += surface_through_air(world, camera, surface) * tr;
@@ -136,6 +137,7 @@ void shade_profile(const EstimatorInput& input, const CameraRay& camera,
   if (const DeepRay deep(world, camera, pixel, image); deep)
     deep.add_opacity(world.medium, profile);
   add_light_of_air(input, camera, profile, pixel, image);
+  return medium;
 }
 
 void shade_emission(const EstimatorInput& input, const World& world, const CameraRay& camera,

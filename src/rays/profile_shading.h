@@ -61,10 +61,10 @@ OpacityAndDepth opacity_and_depth(const World& world, const CameraRay& camera,
 
 /// The parts of a pixel that follow from a depth profile alone: opacity, depth, and the lights seen
 /// through the medium. They are added to what other rays gave the pixel. `surface`: what is seen of
-/// the surface at which the ray ends, if it does.
-void shade_profile(const EstimatorInput& input, const CameraRay& camera,
-                   const DepthProfile& profile, std::size_t pixel, PassImage& image,
-                   const SeenSurface& surface = {});
+/// the surface at which the ray ends, if it does. Returns opacity and depth of the medium alone.
+OpacityAndDepth shade_profile(const EstimatorInput& input, const CameraRay& camera,
+                              const DepthProfile& profile, std::size_t pixel, PassImage& image,
+                              const SeenSurface& surface = {});
 
 /// Adds the emission of the world's medium, to which the profile belongs. Counts a ray in
 /// `emission_rays` where emission was integrated.

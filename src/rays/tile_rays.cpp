@@ -1,5 +1,7 @@
 #include "rays/tile_rays.h"
 
+#include <algorithm>
+
 namespace vdbeam {
 
 namespace {
@@ -60,6 +62,11 @@ void TileRays::refine(const EstimatorInput& input, const RngKey& key, int ray) {
     out.profile.build(input.world.medium, out.camera.segment,
                       static_cast<float>(input.settings.cutoff), out.camera.air);
   }
+}
+
+bool TileRays::show_surface() const {
+  return std::any_of(rays_.begin(), rays_.end(),
+                     [](const PixelRay& ray) { return ray.inside && ray.camera.hit; });
 }
 
 std::span<const TileRays::PixelRay> TileRays::more(int ray) const {

@@ -42,6 +42,8 @@ public:
   void refine(const EstimatorInput& input, const RngKey& key, int ray);
   /// Contribution of the refinement to the pixel of a ray; empty if it was not refined.
   std::span<const PixelRay> more(int ray) const;
+  /// Whether any of its own rays ends at a surface.
+  bool show_surface() const;
   int x0() const { return x0_; }
   int y0() const { return y0_; }
 

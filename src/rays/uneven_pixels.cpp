@@ -53,19 +53,23 @@ bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale,
   return depths.width() > tuning::uneven_widths * static_cast<float>(pixel);
 }
 
-bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y) {
+bool is_unevenly_lit(const SeenMedium& seen, const EndOfRay* ends, int x, int y) {
   // A plane through the values around: an edge is much of a slope and little besides, noise is not.
   float count = 0, value = 0, across = 0, down = 0, most = 0;
+  bool surface = false;
   for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {
     ++count;
-    value += light[pixel];
+    value += ends[pixel].light;
     across += static_cast<float>(dx);
     down += static_cast<float>(dy);
-    most = std::max(most, light[pixel]);
+    most = std::max(most, ends[pixel].light);
+    surface |= ends[pixel].surface;
   });
+  if (!surface)
+    return false;
   const Vec3f mean = Vec3f(across, down, value) / count;
   const auto from_mean = [&](std::size_t pixel, int dx, int dy) {
-    return Vec3f(static_cast<float>(dx), static_cast<float>(dy), light[pixel]) - mean;
+    return Vec3f(static_cast<float>(dx), static_cast<float>(dy), ends[pixel].light) - mean;
   };
   Vec3f squares, products;
   for_each_around(seen, x, y, [&](std::size_t pixel, int dx, int dy) {

@@ -24,8 +24,15 @@ struct SeenMedium {
 /// pixels.
 bool is_uneven(const SeenMedium& seen, const Camera& camera, double world_scale, int x, int y);
 
-/// The same for an edge of the light that comes from the ends of rays, such as a surface's outline
-/// or the edge of a shadow; `light`: that of the tile's pixels.
-bool is_unevenly_lit(const SeenMedium& seen, const float* light, int x, int y);
+/// What a ray meets at its end.
+struct EndOfRay {
+  float light = 0;      ///< mean over channels
+  bool surface = false; ///< the ray ends at one
+};
+
+/// The same for an edge of the light from the ends of rays, such as a surface's outline or the edge
+/// of a shadow; `ends`: those of the tile's pixels. False where none of the pixels around shows a
+/// surface.
+bool is_unevenly_lit(const SeenMedium& seen, const EndOfRay* ends, int x, int y);
 
 } // namespace vdbeam

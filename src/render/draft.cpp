@@ -277,8 +277,8 @@ void Draft::enlarge(const EstimatorInput& full, const Place& place, CameraRay ra
     if (near.clear && !ray.hit)
       ray.segment.t_end = ray.segment.t_begin;
     profile.build(full.world.medium, ray.segment, static_cast<float>(full.settings.cutoff));
-    shade_profile(full, ray, profile, pixel, image, {GroupedLight(mean.radiance, -1)});
-    opacity = opacity_and_depth(full.world, ray, profile).opacity;
+    opacity =
+        shade_profile(full, ray, profile, pixel, image, {GroupedLight(mean.radiance, -1)}).opacity;
   }
   const float of_medium =
       opacity > 0 ? opacity / std::max(mean.opacity, opacity / greatest_gain) : 0;

@@ -69,18 +69,19 @@ TEST(UnevenPixels, AreJudgedByTheOthersOfTheirTile) {
   EXPECT_TRUE(picture.uneven(17, 8));
 }
 
-/// Light of a tile's pixels, as a function of x and y.
+/// Light of a tile's pixels on a surface, as a function of x and y.
 struct Lit {
-  std::vector<float> light, nothing;
+  std::vector<EndOfRay> ends;
+  std::vector<float> nothing;
 
   template <class Value>
-  explicit Lit(const Value& value) : light(256), nothing(256) {
+  explicit Lit(const Value& value) : ends(256), nothing(256) {
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x)
-        light[static_cast<std::size_t>(y * 16 + x)] = static_cast<float>(value(x, y));
+        ends[static_cast<std::size_t>(y * 16 + x)] = {static_cast<float>(value(x, y)), true};
   }
   bool uneven(int x, int y) const {
-    return is_unevenly_lit({0, 0, 16, 16, nothing.data(), nothing.data()}, light.data(), x, y);
+    return is_unevenly_lit({0, 0, 16, 16, nothing.data(), nothing.data()}, ends.data(), x, y);
   }
 };
 
@@ -98,8 +99,19 @@ TEST(UnevenPixels, LieBesideEdgesOfLight) {
   EXPECT_FALSE(gradient.uneven(8, 5));
   EXPECT_FALSE(Lit([](int, int) { return 0; }).uneven(8, 5));
   Lit own = faint;
-  own.light[5 * 16 + 8] = 100;
+  own.ends[5 * 16 + 8].light = 100;
   EXPECT_FALSE(own.uneven(8, 5));
+}
+
+/// A surface that no pixel shows must cost nothing. What a pixel itself shows must not decide.
+TEST(UnevenPixels, LieBesideSurfaces) {
+  Lit sky([](int x, int) { return x < 8 ? 1 : 0.1; });
+  for (EndOfRay& end : sky.ends)
+    end.surface = false;
+  EXPECT_FALSE(sky.uneven(8, 5));
+  sky.ends[5 * 16 + 8].surface = true;
+  EXPECT_FALSE(sky.uneven(8, 5));
+  EXPECT_TRUE(sky.uneven(7, 5));
 }
 
 /// As that of an area lamp by one shadow ray for each pixel: more rays everywhere would not pay.

@@ -64,13 +64,12 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
     // A ray that is one of several needs two walks at least, or its noise would be that of one.
     const int walks = more.empty() ? walks_ : std::max(2, walks_ / rays);
     GatheredLight sum;
+    if (world.surfaces) {
+      walked_.opacity[ray.pixel] = scratch.medium[static_cast<std::size_t>(i)].opacity;
+      walked_.depth[ray.pixel] = scratch.medium[static_cast<std::size_t>(i)].depth;
+    }
     const auto send = [&](const TileRays::PixelRay& from) {
       const float ray_weight = 1 / static_cast<float>(rays);
-      if (world.surfaces) {
-        const OpacityAndDepth seen = medium_seen(wide_, world, from);
-        walked_.opacity[ray.pixel] += seen.opacity * ray_weight;
-        walked_.depth[ray.pixel] += seen.depth * ray_weight;
-      }
       if (from.profile.empty())
         return;
       Rng rng(key, RngStage::final_gather, from.stream);
