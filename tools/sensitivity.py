@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 """Measures what the fitted numbers of the method (src/tuning/constants.h) do: each is halved and doubled in turn, and
-error (MRSE) times processor time of the default estimator and of `path` is compared with that of the number as it is.
+error (MRSE) times work of the default estimator and of `path` is compared with that of the number as it is. Work is
+counted (rays, collisions, photons), not timed, so a busy machine changes nothing. Of the numbers of the error estimate
+it is measured how often the stated interval holds the true error, and how wide it is.
 
-It needs the Python module of a build with the CMake option VDBEAM_TUNING, which reads the numbers from the environment,
-and an otherwise idle machine. Prints a line per number; --page writes the table of docs/developer/tuning.md anew.
+It needs the Python module of a build with the CMake option VDBEAM_TUNING, which reads the numbers from the environment.
+Prints a line per number; --page writes the tables of docs/developer/tuning.md anew.
 
 Example:
   cmake -S . -B build/tuning -G Ninja -DCMAKE_BUILD_TYPE=Release -DVDBEAM_TUNING=ON && ninja -C build/tuning vdbeam_python
@@ -15,21 +17,27 @@ import math
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
-import time
 
 CONSTANTS = pathlib.Path(__file__).resolve().parents[1] / "src" / "tuning" / "constants.h"
 SCENES = "cumulus,wisps,cloud_over_ground,lamp_in_smoke,droplets_over_ground,fire_over_floor"
 FACTORS = (0.5, 2.0)
-# The table follows this line of the page.
-MARK = "<!-- The table below is written by tools/sensitivity.py. -->"
+# The tables follow this line of the page.
+MARK = "<!-- The tables below are written by tools/sensitivity.py. -->"
+# The section of the header whose numbers change no image.
+ERROR_ESTIMATE = "// The error estimate:"
 
 
 def read_constants(text):
     """[(name, type, value)] of a header's VDBEAM_TUNED lines."""
     found = re.findall(r"VDBEAM_TUNED\(\s*([\w:]+),\s*(\w+),\s*([^)]+)\)", text)
     return [(name, kind, float(eval(value.replace("f", ""), {"__builtins__": {}}))) for kind, name, value in found]
+
+
+def names_of_error_estimate(text):
+    return {name for name, _, _ in read_constants(text.partition(ERROR_ESTIMATE)[2])}
 
 
 def changed(kind, value, factor):
@@ -49,19 +57,29 @@ def measure_here(names, options):
         result[name] = []
         for estimator, passes in (("auto", options.passes), ("path", options.path_passes)):
             suite.prepare(known[name])
-            errors, seconds = 0, math.inf
-            for seed in range(1, options.seeds + 1):
-                start = time.process_time()
-                errors += suite.error(known[name], estimator, passes, seed)
-                seconds = min(seconds, time.process_time() - start)
-            result[name].append(errors / options.seeds * seconds)
+            renders = [suite.error_and_work(known[name], estimator, passes, seed)
+                       for seed in range(1, options.seeds + 1)]
+            result[name].append(math.prod(sum(values) / options.seeds for values in zip(*renders)))
     return result
 
 
-def measure_with(change, options):
+def estimates_here(names, options):
+    """[holds, estimate over error, width of the interval] of the default estimator, by scene and seed."""
+    import vdbeam
+
+    from scene_suite import measure, scenes
+    suite = measure.Suite(vdbeam, options.width, options.reference_passes, options.references)
+    known = scenes.all_scenes(vdbeam)
+    for name in names:
+        suite.prepare(known[name])
+    return [suite.estimate(known[name], options.passes, seed)
+            for name in names for seed in range(1, options.estimate_seeds + 1)]
+
+
+def measure_with(change, options, what):
     """The same in a process of its own."""
     environment = {**os.environ, "VDBEAM_TUNE": change}
-    result = subprocess.run([sys.executable, "-B", __file__, *sys.argv[1:], "--here"], env=environment, text=True,
+    result = subprocess.run([sys.executable, "-B", __file__, *sys.argv[1:], "--here", what], env=environment, text=True,
                             capture_output=True, check=False)
     if result.returncode:
         sys.exit(f"sensitivity.py: {change}: {result.stderr.strip().splitlines()[-1]}")
@@ -84,6 +102,18 @@ def row(name, value, by_factor, base):
     return f"| `{name}` | {value:g} | " + " | ".join(cells) + " |"
 
 
+def estimate_cells(estimates):
+    """Share of intervals that hold, median of estimate over error, median width."""
+    held, over_true, widths = zip(*estimates)
+    return [f"{sum(held) / len(held):.2f}", f"{statistics.median(over_true):.2f}", f"{statistics.median(widths):.1f}"]
+
+
+def estimate_table(rows):
+    head = ("| number | value | half: holds | stated / true | width | twice: holds | stated / true | width |\n"
+            "|---|---|---|---|---|---|---|---|\n")
+    return head + "\n".join(rows) + "\n"
+
+
 def table(rows):
     head = ("| number | value | half: mean | worst scene | `path` | twice: mean | worst scene | `path` |\n"
             "|---|---|---|---|---|---|---|---|\n")
@@ -97,11 +127,12 @@ def arguments():
     parser.add_argument("--width", type=int, default=128, help="of the images [pixels] (128)")
     parser.add_argument("--passes", type=int, default=4, help="of the default estimator (4)")
     parser.add_argument("--path-passes", type=int, default=2, help="of path (2)")
-    parser.add_argument("--seeds", type=int, default=2, help="renders of each, whose errors are averaged (2)")
+    parser.add_argument("--seeds", type=int, default=3, help="renders of each, whose errors are averaged (3)")
+    parser.add_argument("--estimate-seeds", type=int, default=8, help="the same for the error estimate (8)")
     parser.add_argument("--reference-passes", type=int, default=64, help="of each reference (64)")
     parser.add_argument("--references", help="folder in which references are kept; default: nowhere")
     parser.add_argument("--page", help="page whose table is written anew")
-    parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--here", choices=("work", "estimates"), help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
@@ -109,21 +140,32 @@ def main():
     options = arguments()
     scenes = options.scenes.split(",")
     if options.here:
-        print(json.dumps(measure_here(scenes, options)))
+        measure = {"work": measure_here, "estimates": estimates_here}[options.here]
+        print(json.dumps(measure(scenes, options)))
         return
-    constants = read_constants(CONSTANTS.read_text())
+    text = CONSTANTS.read_text()
+    constants, of_estimate = read_constants(text), names_of_error_estimate(text)
     chosen = options.numbers.split(",") if options.numbers else [name for name, _, _ in constants]
-    base = measure_with("", options)
-    rows = []
-    for name, kind, value in constants:
-        if name not in chosen:
-            continue
-        by_factor = [measure_with(f"{name}={changed(kind, value, factor)}", options) for factor in FACTORS]
-        rows.append(row(name, value, by_factor, base))
-        print(rows[-1], flush=True)
+    chosen = [constant for constant in constants if constant[0] in chosen]
+    base = measure_with("", options, "work") if any(name not in of_estimate for name, _, _ in chosen) else {}
+    rows, estimate_rows = [], []
+    if any(name in of_estimate for name, _, _ in chosen):
+        cells = estimate_cells(measure_with("", options, "estimates"))
+        estimate_rows.append("| as they are | | " + " | ".join(cells + cells) + " |")
+        print(estimate_rows[-1], flush=True)
+    for name, kind, value in chosen:
+        what = "estimates" if name in of_estimate else "work"
+        measured = [measure_with(f"{name}={changed(kind, value, factor)}", options, what) for factor in FACTORS]
+        if name in of_estimate:
+            cells = [cell for estimates in measured for cell in estimate_cells(estimates)]
+            estimate_rows.append(f"| `{name}` | {value:g} | " + " | ".join(cells) + " |")
+        else:
+            rows.append(row(name, value, measured, base))
+        print((estimate_rows if name in of_estimate else rows)[-1], flush=True)
     if options.page:
         page = pathlib.Path(options.page)
-        page.write_text(page.read_text().split(MARK)[0] + MARK + "\n\n" + table(rows))
+        page.write_text(page.read_text().split(MARK)[0] + MARK + "\n\n" + table(rows) + "\n" +
+                        estimate_table(estimate_rows))
 
 
 if __name__ == "__main__":

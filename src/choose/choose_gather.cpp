@@ -41,7 +41,7 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
     std::vector<Rgb> means;
     Rgb mean, walks;
     for (const PhotonMap& map : trial.maps) {
-      const FinalGather gather(input.world, choices.photons, map, surfaces);
+      const FinalGather gather(input.world, choices.photons, {map}, surfaces);
       const auto light = [&] {
         const GatheredLight found =
             gather.gather(ray.camera.ray(), ray.profile, GatherPlan::most_walks, 1, rng, uncounted);
@@ -97,8 +97,9 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
   if (forces_final_gather(kind, input.settings))
     return gather;
-  const double preference =
-      tuning::preference_for_gather * (1 - share_of_lamps_inside(input.world));
+  // Nor does it know the kernels' bias for caustics, which walks look at near their beginning.
+  const double preference = tuning::preference_for_gather *
+                            (1 - share_of_lamps_inside(input.world)) * (1 - plan.caustic_share);
   for (int first = 0; first <= tuning::most_passes_before_gather;
        first = std::max(tuning::fewest_passes_before_gather, 2 * first)) {
     const int passes = tuning::passes_compared_for_gather * std::max(1, first);

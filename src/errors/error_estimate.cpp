@@ -1,6 +1,7 @@
 #include "errors/error_estimate.h"
 
 #include "errors/history_means.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,21 +14,6 @@ namespace vdbeam {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
-/// that has all of a pixel's light would weigh as if the pixel were black.
-constexpr double least_mean = 0.4;
-/// Uncertainty because weights are estimated themselves.
-constexpr double least_spread = 0.03;
-/// Relative error of the squared bias estimated by narrower kernels, and the bias that they may
-/// miss altogether, as a fraction of the noise.
-constexpr double blur_uncertainty = 1, unseen_bias = 0.25;
-/// The positive part of a noisy square is too large on average. It is shrunk by this many times its
-/// squared error over itself: 1 as James and Stein do. Bias found by path-traced rays alone,
-/// or by the truncation, counts only if it is significant.
-constexpr double blur_shrinkage = 1, probe_shrinkage = 2;
-/// Standard deviation, relative to the known error, that the bias not yet seen has beforehand.
-/// Without it the interval of a few rays ends at tens of times the error.
-constexpr double expected_rest = 1;
 constexpr std::size_t batches_of_interval = fewest_batches;
 
 /// 97.5 % quantile of the normal distribution.
@@ -69,7 +55,8 @@ struct Deviations {
     const std::vector<float> around = smoothed(means, history.columns(), history.rows());
     for (std::vector<float>& batch : batches)
       batch.resize(means.size());
-    const double neighbours = neighbour_weight * passes / static_cast<double>(batches.size());
+    const double neighbours =
+        tuning::weight_of_neighbours * passes / static_cast<double>(batches.size());
     for (std::size_t i = 0; i < means.size(); i += 3) {
       double variance = 0;
       for (std::size_t c = i; c < i + 3; ++c)
@@ -97,7 +84,7 @@ private:
       const double variance = std::max(0.0, sum - squares[b] * passes / others) / (count - 2);
       const double expected =
           (others_mean * others + neighbours * static_cast<double>(around)) / (others + neighbours);
-      const double m = std::max({0.0, expected, least_mean * mean});
+      const double m = std::max({0.0, expected, tuning::least_mean_of_others * mean});
       const double weight =
           1 / ((m + mrse_offset) * (m + mrse_offset) +
                3 * variance * others / ((others + neighbours) * (others + neighbours)));
@@ -149,7 +136,7 @@ NoiseStatistics noise_statistics(const PassHistory& history) {
     squares += products[i * count + i];
   NoiseStatistics statistics;
   statistics.batches = static_cast<int>(count);
-  statistics.spread = least_spread;
+  statistics.spread = tuning::uncertainty_of_weights;
   if (!(squares > 0) || !(deviations.plain > 0))
     return statistics;
   statistics.correction = squares / deviations.plain;
@@ -159,8 +146,9 @@ NoiseStatistics noise_statistics(const PassHistory& history) {
   for (std::size_t i = 0; i < count; ++i)
     uneven += std::pow(products[i * count + i] * static_cast<double>(count) / squares - 1, 2);
   uneven /= static_cast<double>(count) * static_cast<double>(count - 1);
-  statistics.spread = std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) +
-                                uneven + least_spread * least_spread);
+  statistics.spread =
+      std::sqrt(2 * inverse_degrees(history, deviations, products, passes, trace) + uneven +
+                tuning::uncertainty_of_weights * tuning::uncertainty_of_weights);
   return statistics;
 }
 
@@ -197,11 +185,13 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
   if (!std::isfinite(bias.blur) || !std::isfinite(bias.blur_error)) {
     if (!probed)
       return {};
-    return {positive_part(bias.mrse, bias.mrse_error, probe_shrinkage), bias.mrse_error};
+    return {positive_part(bias.mrse, bias.mrse_error, tuning::shrinkage_of_probes),
+            bias.mrse_error};
   }
   SquaredBias result;
-  result.value = positive_part(bias.blur, bias.blur_error, blur_shrinkage);
-  result.error = std::hypot(bias.blur_error, blur_uncertainty * result.value, unseen_bias * noise);
+  result.value = positive_part(bias.blur, bias.blur_error, tuning::shrinkage_of_blur);
+  result.error = std::hypot(bias.blur_error, tuning::uncertainty_of_blur * result.value,
+                            tuning::unseen_bias * noise);
   result = average(result, {bias.mrse, bias.mrse_error});
   result.value = std::max(0.0, result.value);
   // What nobody has seen yet widens the interval; it must not let rays that are too few to see it
@@ -210,12 +200,13 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
       average({bias.hidden, bias.hidden_error}, {bias.truncation, bias.truncation_error});
   if (std::isfinite(rest.value)) {
     // Three batches that agree by chance would make a bias of what is noise.
-    result.value += positive_part(rest.value, rest.error * t / normal_quantile, probe_shrinkage);
-    const double expected = expected_rest * (noise + result.value);
+    result.value +=
+        positive_part(rest.value, rest.error * t / normal_quantile, tuning::shrinkage_of_probes);
+    const double expected = tuning::expected_bias * (noise + result.value);
     if (rest.error > 0 && expected > 0)
       result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));
   } else if (!probed) { // nobody looks for it
-    result.error = std::hypot(result.error, expected_rest * (noise + result.value));
+    result.error = std::hypot(result.error, tuning::expected_bias * (noise + result.value));
   }
   return result;
 }

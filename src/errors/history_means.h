@@ -8,8 +8,6 @@ namespace vdbeam {
 
 /// Added to the brightness in the denominator of MRSE.
 inline constexpr double mrse_offset = 0.01;
-/// Weight of a pixel's neighbours beside its own batches, in batches.
-inline constexpr double neighbour_weight = 0.5;
 
 /// Passes of all complete batches.
 double total_passes(const PassHistory& history);

@@ -1,6 +1,7 @@
 #include "errors/pair_weights.h"
 
 #include "errors/history_means.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 
@@ -8,19 +9,14 @@ namespace vdbeam {
 
 namespace {
 
-/// A blur of this many standard errors is subtracted by half, and so is a blur whose standard error
-/// is this share of the mean: weights that followed the noise would be too large.
-constexpr double half_believed = 2, half_believed_share = 0.1;
-/// The least share of a pixel's mean that is left without its blur.
-constexpr double least_unblurred = 0.25;
-
 /// How much of a blur of the given variance counts, from 0 to 1.
 double believed(double blur, double mean, double variance) {
   const auto half_at = [](double square, double half) {
     return square > 0 ? square / (square + half) : 0;
   };
-  return half_at(blur * blur, half_believed * half_believed * variance) *
-         half_at(mean * mean, variance / (half_believed_share * half_believed_share));
+  return half_at(blur * blur, tuning::half_believed_blur * tuning::half_believed_blur * variance) *
+         half_at(mean * mean,
+                 variance / (tuning::half_believed_share * tuning::half_believed_share));
 }
 
 double mean_or_zero(double sum, double count) {
@@ -57,7 +53,8 @@ void PairWeights::add_deviations(std::size_t batch, std::size_t k) {
 
 double PairWeights::operator()(std::size_t i, std::size_t j, std::size_t k) const {
   const double others = passes_ - history_.passes(i) - history_.passes(j);
-  const double neighbours = neighbour_weight * passes_ / static_cast<double>(history_.batches());
+  const double neighbours =
+      tuning::weight_of_neighbours * passes_ / static_cast<double>(history_.batches());
   const double expected = std::max(0.0, (static_cast<double>(means_[k]) * passes_ - sum(i, k) -
                                          sum(j, k) + neighbours * static_cast<double>(around_[k])) /
                                             (others + neighbours));
@@ -67,7 +64,7 @@ double PairWeights::operator()(std::size_t i, std::size_t j, std::size_t k) cons
     blur = (blur_sums_[k] - blurs_[i].sums[k] - blurs_[j].sums[k]) / blurs;
     belief = believed(blur, expected, blur_variances_[k] / blurs);
   }
-  const double m = std::max({expected - belief * blur, least_unblurred * expected,
+  const double m = std::max({expected - belief * blur, tuning::least_unblurred * expected,
                              (1 - belief) * static_cast<double>(around_[k])});
   const double spread = variances_[k] * others / ((others + neighbours) * (others + neighbours));
   return 1 / ((m + mrse_offset) * (m + mrse_offset) + 3 * spread);

@@ -10,12 +10,14 @@
 
 namespace vdbeam {
 
-/// The photons of a pass, in the medium and on surfaces.
+/// The photons of a pass.
 struct PhotonMaps {
-  PhotonMap medium, surfaces;
+  PhotonMap medium;
+  PhotonMap caustics; ///< those of the medium that mirrors and glass brought (caustic_lights)
+  PhotonMap surfaces;
 
-  std::size_t bytes() const { return medium.bytes() + surfaces.bytes(); }
-  PhotonMaps copy() const { return {medium.copy(), surfaces.copy()}; }
+  std::size_t bytes() const { return medium.bytes() + caustics.bytes() + surfaces.bytes(); }
+  PhotonMaps copy() const { return {medium.copy(), caustics.copy(), surfaces.copy()}; }
 };
 
 /// Photon maps of passes, for later frames of a sequence in which nothing but the camera moves:

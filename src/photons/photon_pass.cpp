@@ -4,6 +4,7 @@
 #include "machine/stopwatch.h"
 #include "photons/blur_probe.h"
 #include "photons/photon_cache.h"
+#include "tuning/constants.h"
 
 #include <cmath>
 
@@ -30,6 +31,7 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
                                  RenderStatistics& statistics) {
   world_ = &worlds_.of(spec.peak_order);
   compared_map_ = {};
+  caustics_along_rays_ = {};
   const World& world = *world_;
   const RadiusSettings radii =
       radius_settings(input_.in(world), spec.neighbours, spec.kernel_scale);
@@ -43,6 +45,12 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
   make_maps(spec, radii, statistics);
   const Stopwatch watch;
   clear_of_surfaces(world, maps_.medium);
+  if (maps_.caustics.size() > 0) {
+    clear_of_surfaces(world, maps_.caustics);
+    caustics_along_rays_ = maps_.caustics.copy();
+    caustics_along_rays_.divide_power(disc_share_);
+    maps_.caustics.divide_power(ball_share_);
+  }
   const bool ball = domain == KernelDomain::ball;
   const KernelShare& share = ball ? ball_share_ : disc_share_;
   if (input_.blur_pixels) {
@@ -72,6 +80,8 @@ void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
     settings.surface_photon_lights = lights_of_surfaces(input);
   if (!input_.plan.needs(Stage::photons))
     settings.store_probability = 0;
+  if (spec.gather_walks > 0)
+    settings.caustic_lights = caustic_lights(*world_);
   PhotonCache* cache = input_.photons;
   if (const auto kept = cache ? cache->find(settings, radii) : nullptr) {
     maps_ = kept->copy();
@@ -88,6 +98,10 @@ void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
   statistics.light_paths += settings.paths;
   statistics.light_collisions += static_cast<std::uint64_t>(
       std::llround(traced.mean_collisions * static_cast<double>(settings.paths)));
+  RadiusSettings of_caustics = radii;
+  of_caustics.neighbours = tuning::caustic_neighbours;
+  maps_.caustics = PhotonMap::build(std::move(traced.caustics), input_.photon_channels(),
+                                    of_caustics, input_.settings.kernel_shape);
   maps_.medium = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
                                   input_.settings.kernel_shape);
   statistics.order += maps_.medium.times().order;

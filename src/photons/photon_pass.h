@@ -25,6 +25,7 @@ public:
   void release() {
     maps_ = {};
     compared_map_ = {};
+    caustics_along_rays_ = {};
   }
 
   /// Rays of the lattices of shadows for each pixel. One lattice for many passes costs little; that
@@ -38,6 +39,11 @@ public:
   /// The same photons in kernels of another width (BlurProbe); empty where nobody asked for the
   /// blur.
   const PhotonMap& compared_map() const { return compared_map_; }
+  /// Those photons of the map that mirrors and glass brought unscattered, for passes whose walks
+  /// leave their light out (caustic_lights): for walks, and for rays, whose kernels are normalised
+  /// otherwise.
+  const PhotonMap& caustics() const { return maps_.caustics; }
+  const PhotonMap& caustics_along_rays() const { return caustics_along_rays_; }
   /// Photons on surfaces: what mirrors, glass and the medium send on to them.
   const PhotonMap& surface_map() const { return maps_.surfaces; }
   /// In which the photons of the map live: the scene's world, or one without its forward peak.
@@ -53,7 +59,7 @@ private:
   ShadowLattices shadows_;
   KernelShare disc_share_, ball_share_; ///< of kernels, by what they are normalised over
   PhotonMaps maps_;
-  PhotonMap compared_map_;
+  PhotonMap compared_map_, caustics_along_rays_;
 };
 
 } // namespace vdbeam

@@ -41,6 +41,14 @@ int samples_for(double collisions) {
       std::clamp<double>(samples, tuning::fewest_direct_samples, tuning::most_direct_samples));
 }
 
+/// Sum over the photons, mean over the channels.
+double total_power(const PhotonList& photons) {
+  double sum = 0;
+  for (std::size_t i = 0; i < photons.size(); ++i)
+    sum += static_cast<double>(mean_component(photons.power[i]));
+  return sum;
+}
+
 } // namespace
 
 int PhotonPlan::direct_samples_of(float depth) const {
@@ -84,7 +92,10 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = tuning::pilot_paths;
+  pass.caustic_lights = caustic_lights(input.world);
   TracedPhotons pilot = trace_photons(input.world, pass);
+  if (const double power = total_power(pilot.photons); power > 0)
+    plan.caustic_share = total_power(pilot.caustics) / power;
   plan.pilot_paths += pass.paths;
   const double collisions = std::max(1e-3, pilot.mean_collisions);
   if (settings.direct_samples == 0) {
@@ -137,6 +148,14 @@ bool reach_bounce_limit(const EstimatorInput& input) {
   pass.max_bounces.reset(); // the same paths, to their end
   const double all = trace_photons(input.world, pass).mean_collisions;
   return all - within > seen_share * all;
+}
+
+std::vector<bool> caustic_lights(const World& world) {
+  std::vector<bool> caustic;
+  for (std::size_t l = 0;
+       world.surfaces && world.surfaces->focus_light() && l < world.lights.size(); ++l)
+    caustic.push_back(world.lights[l].is_delta() || world.lights[l].narrow_direction());
+  return caustic;
 }
 
 PhotonPassSettings pass_settings(const EstimatorInput& input, const PhotonPlan& plan,

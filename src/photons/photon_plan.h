@@ -30,6 +30,7 @@ struct PhotonPlan {
   std::shared_ptr<const PathGuide> guide;
   double stored_per_path = 0;     ///< expected photons of a light path
   double neighbours = 0;          ///< photons in the sphere of an adaptive kernel's radius
+  double caustic_share = 0;       ///< of photons of caustic_lights() in the power of all
   double collisions_per_path = 0; ///< of light paths as they are sent in the end
   /// Where probabilities are given by cell: they are min(1, view_factor times view_importance with
   /// the fall-off `view_reach` [render units]).
@@ -77,6 +78,11 @@ inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass =
 /// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
 /// bring, since a path from a surface may not meet it.
 std::vector<bool> lights_of_surfaces(const EstimatorInput& input);
+
+/// Per light: mirrors or smooth glass may bring its light into the medium, but rays from there meet
+/// it by rare chance or never, since it comes from one point or about one direction. Empty where
+/// there is none.
+std::vector<bool> caustic_lights(const World& world);
 
 /// Whether light paths reach the scene's limit of bounces: by a few of them, a thousandth of whose
 /// collisions at least lie beyond it.

@@ -27,6 +27,7 @@ struct LightPath : Flight {
   // Among surfaces:
   std::optional<SurfaceHit> end; ///< of the present flight
   bool met_surface = false;
+  bool by_mirrors = true;    ///< surfaces that it met were specular
   bool for_surfaces = false; ///< stored at surfaces: of surface_photon_lights
   /// Flux, in the strongest channel, with which such paths go to the medium straight from their
   /// light; 0: surfaces do not aim it.
@@ -117,7 +118,7 @@ public:
   /// A path that leaves the scene ends. At a surface it continues by the material.
   bool leave(LightPath& path) { return path.end && reflect(path); }
 
-  PhotonList photons, surface_photons;
+  PhotonList photons, caustics, surface_photons;
   std::uint64_t collisions = 0;
 
 private:
@@ -174,6 +175,7 @@ private:
         (aimed && aimed->first_of(next.wi) < aimed->size()))
       return false;
     path.met_surface = true;
+    path.by_mirrors = path.by_mirrors && vertex.material().is_specular();
     begin_flight(path, vertex.hit().leave(next.wi), next.wi);
     return true;
   }
@@ -220,6 +222,7 @@ private:
     if (!(max_component(copy.throughput) > 0) || !copy.surfaces.survive(copy.throughput, copy.rng))
       return;
     copy.met_surface = true;
+    copy.by_mirrors = copy.by_mirrors && vertex.material().is_specular();
     begin_flight(copy, vertex.hit().leave(wi), wi);
     if (advance_flight(copy, *this))
       split_.push_back(std::move(copy));
@@ -299,15 +302,27 @@ private:
         std::min(1.0f, store_probability(*hit.volume, point, path.segment.ray.direction));
     if (probability < 1 && path.rng.uniform() >= probability)
       return;
-    photons.position.push_back(point);
-    if (settings_.directions)
-      photons.direction.push_back(path.segment.ray.direction);
-    photons.power.push_back(power * settings_.albedo / probability);
-    store_group(photons, path);
+    const Rgb stored = power * settings_.albedo / probability;
+    append(photons, path, point, stored);
     if (settings_.path_numbers)
       photons.path.push_back(path.number);
     if (single_scattering_)
       photons.first_flight.push_back(path.bounces == 0);
+    if (is_caustic(path))
+      append(caustics, path, point, stored);
+  }
+
+  void append(PhotonList& list, const LightPath& path, const Vec3f& point, const Rgb& power) const {
+    list.position.push_back(point);
+    if (settings_.directions)
+      list.direction.push_back(path.segment.ray.direction);
+    list.power.push_back(power);
+    store_group(list, path);
+  }
+
+  bool is_caustic(const LightPath& path) const {
+    return path.met_surface && path.by_mirrors && path.bounces == 0 &&
+           !settings_.caustic_lights.empty() && settings_.caustic_lights[path.light];
   }
 
   std::vector<LightPath> split_; ///< paths that wait for their turn
@@ -351,15 +366,16 @@ std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t pat
 bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b) {
   // Names every member, so that a new one cannot be forgotten here.
   const auto& [paths, store, store_probability, store_probability_by_cell, camera, truncation_order,
-               skip_first_flight, max_bounces, surface_photon_lights, directions, albedo, guide,
-               path_numbers, key, stop] = a;
+               skip_first_flight, max_bounces, surface_photon_lights, caustic_lights, directions,
+               albedo, guide, path_numbers, key, stop] = a;
   static_cast<void>(stop);
   const bool same_cells = store_probability_by_cell == b.store_probability_by_cell ||
                           (store_probability_by_cell && b.store_probability_by_cell &&
                            *store_probability_by_cell == *b.store_probability_by_cell);
   const bool same_guide = guide == b.guide || (guide && b.guide && *guide == *b.guide);
   return camera == b.camera && same_cells && same_guide && path_numbers == b.path_numbers &&
-         paths == b.paths && surface_photon_lights == b.surface_photon_lights && store == b.store &&
+         paths == b.paths && surface_photon_lights == b.surface_photon_lights &&
+         caustic_lights == b.caustic_lights && store == b.store &&
          store_probability == b.store_probability && truncation_order == b.truncation_order &&
          skip_first_flight == b.skip_first_flight && max_bounces == b.max_bounces &&
          directions == b.directions && albedo == b.albedo && key == b.key;
@@ -387,6 +403,7 @@ TracedPhotons trace_photons(const World& world, const PhotonPassSettings& settin
     return pass; // what there is is of no use, and there may be much of it
   const int groups = world.lights.group_count();
   pass.photons = joined(tracers, &PathTracer::photons, groups);
+  pass.caustics = joined(tracers, &PathTracer::caustics, groups);
   pass.surface_photons = joined(tracers, &PathTracer::surface_photons, groups);
   return pass;
 }

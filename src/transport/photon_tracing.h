@@ -30,6 +30,9 @@ struct PhotonPassSettings {
   /// they arrive at other surfaces, after any further events. Empty: no photons are stored on
   /// surfaces.
   std::vector<bool> surface_photon_lights;
+  /// Per light: photons that mirrors and smooth glass alone have sent on before they reach the
+  /// medium are stored once more in a list of their own. Empty: none are.
+  std::vector<bool> caustic_lights;
   bool directions = true; ///< false: no phase function needs them
   Rgb albedo{1, 1, 1};    ///< fluence storage: stored powers are multiplied by it
   /// Where given: what decides where light paths begin, end and split.
@@ -51,6 +54,7 @@ bool same_photons(const PhotonPassSettings& a, const PhotonPassSettings& b);
 
 struct TracedPhotons {
   PhotonList photons;         ///< power divided by the number of paths already
+  PhotonList caustics;        ///< those of `caustic_lights`, which are among `photons`
   PhotonList surface_photons; ///< of `surface_photon_lights`; power is flux [W]; with directions
   double mean_collisions = 0; ///< storable collisions per path, before thinning
 };

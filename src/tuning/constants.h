@@ -5,8 +5,9 @@
 #include <cstdint>
 
 /// The fitted numbers of the method. None changes what a render converges to: each trades error
-/// against time. A comment gives its unit and what it trades; docs/developer/tuning.md, whose table
-/// tools/sensitivity.py writes, shows how error times time changes where it is halved and doubled.
+/// against time, and those of the error estimate the width of its interval against how often it
+/// holds. A comment gives its unit and what it trades; docs/developer/tuning.md, whose table
+/// tools/sensitivity.py writes, shows what changes where it is halved and doubled.
 /// A new number needs a row there; a number whose row shows nothing is deleted.
 namespace vdbeam::tuning {
 
@@ -75,6 +76,8 @@ VDBEAM_TUNED(double, widest_surface_kernel, 0.05);
 /// Those of a kernel that walks gather in, over those of one along camera rays: the walks even out
 /// some of the noise.
 VDBEAM_TUNED(double, neighbours_of_gather, 0.5);
+/// Those of a kernel of photons that mirrors and glass brought, where final gathering needs them.
+VDBEAM_TUNED(float, caustic_neighbours, 8);
 /// What a pilot may choose: this, twice and half of it and so on, up to the most, beyond which
 /// kernels are many mean free paths wide and have a bias that the pilot does not show, and down to
 /// the fewest, at which adaptive radii are still accurate.
@@ -246,5 +249,33 @@ VDBEAM_TUNED(double, most_collisions_per_path, 4096);
 /// are worth, and where none did.
 VDBEAM_TUNED(double, rarest_photons, 1.0 / 1000);
 VDBEAM_TUNED(double, rarest_photons_without_pilot, 1.0 / 20);
+
+// The error estimate: how wide its interval is against how often the interval holds the error.
+
+/// The least share of a pixel's mean that its other batches may claim it has: without it, one batch
+/// that has all of a pixel's light would weigh as if the pixel were black. Weight of a pixel's
+/// neighbours beside these batches [batches].
+VDBEAM_TUNED(double, least_mean_of_others, 0.4);
+VDBEAM_TUNED(double, weight_of_neighbours, 0.5);
+/// Relative uncertainty of the noise because weights are estimated themselves.
+VDBEAM_TUNED(double, uncertainty_of_weights, 0.03);
+/// Relative error of the squared bias estimated by narrower kernels, and the bias that they may
+/// miss altogether, as a fraction of the noise.
+VDBEAM_TUNED(double, uncertainty_of_blur, 1);
+VDBEAM_TUNED(double, unseen_bias, 0.25);
+/// The positive part of a noisy square is too large on average. It is shrunk by this many times its
+/// squared error over itself: 1 as James and Stein do. Bias found by path-traced rays alone, or by
+/// the truncation, counts only if it is significant.
+VDBEAM_TUNED(double, shrinkage_of_blur, 1);
+VDBEAM_TUNED(double, shrinkage_of_probes, 2);
+/// Standard deviation, relative to the known error, that the bias not yet seen has beforehand.
+/// Without it the interval of a few rays ends at tens of times the error.
+VDBEAM_TUNED(double, expected_bias, 1);
+/// A pixel's weight is found without its blur. A blur of this many standard errors is subtracted by
+/// half, and so is a blur whose standard error is this share of the mean: weights that followed the
+/// noise would be too large. The least share of the mean that is left without its blur.
+VDBEAM_TUNED(double, half_believed_blur, 2);
+VDBEAM_TUNED(double, half_believed_share, 0.1);
+VDBEAM_TUNED(double, least_unblurred, 0.25);
 
 } // namespace vdbeam::tuning

@@ -196,7 +196,7 @@ TEST(PhotonCache, KeepsNoMoreThanItMay) {
     photons.position.push_back(Vec3f(static_cast<float>(i)));
     photons.power.push_back(Rgb(1));
   }
-  const PhotonMaps map{PhotonMap::build(photons, 1, {}, KernelShape::biweight), {}};
+  const PhotonMaps map{PhotonMap::build(photons, 1, {}, KernelShape::biweight), {}, {}};
   PhotonCache cache(2 * map.bytes());
   PhotonPassSettings settings;
   settings.paths = 10;

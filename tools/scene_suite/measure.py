@@ -8,7 +8,12 @@ import numpy as np
 
 # Processor time [ns] of what a render counts, so that work needs no clock. Only ratios matter.
 TIME_OF = {"light_collisions": 150, "photons_stored": 2000, "contributions": 12, "shadow_rays": 3000,
-           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000}
+           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000, "pilot_paths": 20000}
+
+
+def holds(low, high, mrse, mrse_error):
+    """Whether an interval contains an error that is known within a standard error."""
+    return low - 2 * mrse_error <= mrse <= high + 2 * mrse_error
 
 
 @dataclasses.dataclass
@@ -31,7 +36,7 @@ class Outcome:
     @property
     def holds(self):
         """The stated interval contains the true error, as far as the references show it."""
-        return self.low - 2 * self.mrse_error <= self.mrse <= self.high + 2 * self.mrse_error
+        return holds(self.low, self.high, self.mrse, self.mrse_error)
 
     @property
     def lead(self):
@@ -90,10 +95,19 @@ class Suite:
         if identity(keys) not in self._kept:
             self._kept[identity(keys)] = self._references(keys)
 
-    def error(self, keys, estimator, passes, seed):
-        """MRSE of one render of a scene that was prepared."""
+    def error_and_work(self, keys, estimator, passes, seed):
+        """MRSE and counted work [s] of one render of a scene that was prepared."""
         settings = {"render.passes": passes, "render.estimator": estimator, "render.seed": seed}
-        return self._vdbeam.compare(self._render(keys, settings), *self._kept[identity(keys)])["mrse"]
+        frame = self._render(keys, settings)
+        return self._vdbeam.compare(frame, *self._kept[identity(keys)])["mrse"], work_of(frame)
+
+    def estimate(self, keys, passes, seed):
+        """The error estimate of one render of a scene that was prepared: whether its interval holds the true error,
+        the estimate over that error, and the interval's upper end over its lower one."""
+        frame = self._render(keys, {"render.passes": passes, "render.seed": seed})
+        true, last = self._vdbeam.compare(frame, *self._kept[identity(keys)]), frame.passes[-1]
+        return (holds(last.error_low, last.error_high, true["mrse"], true["mrse_error"]),
+                last.error_estimate / true["mrse"], last.error_high / last.error_low)
 
     def measure(self, name, keys, passes, path_passes, seed=1):
         references = self._references(keys)

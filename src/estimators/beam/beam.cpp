@@ -1,5 +1,6 @@
 #include "estimators/beam/beam.h"
 
+#include "estimators/beam/beam_ray.h"
 #include "estimators/beam/deep_tile.h"
 #include "estimators/estimator_table.h"
 #include "estimators/tile_shading.h"
@@ -27,7 +28,8 @@ Rgb light_of(const std::vector<float>& values, int i, int channels, std::size_t 
 void BeamEstimator::gather(TileScratch& scratch, PassImage& image) const {
   const PhotonMap& map = photons_.map();
   BeamTile& tile = scratch.tile;
-  fill_beam_tile(photons_.world(), input_.camera, scratch.rays, weight_settings(), tile);
+  fill_beam_tile(photons_.world(), input_.camera, scratch.rays,
+                 weight_settings(photons_, input_.settings.store), tile);
   tile.by_group = map.groups() > 0;
   tile.radiance.assign(static_cast<std::size_t>(map.channels()) * BeamTile::ray_count, 0);
   tile.first_flight.assign(map.has_first_flights() ? tile.radiance.size() : 0, 0);
@@ -57,14 +59,9 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
     if (input_.layers && input_.layers->tells_volumes())
       gather_volumes(scratch, image);
   };
+  const WeightSettings weights = weight_settings(photons_, input_.settings.store);
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
-    const PhotonMap& map = photons_.map();
-    std::vector<float> table;
-    std::vector<Rgb> groups;
-    Rgb sum;
-    map.query_ray(ray_weights(photons_.world(), ray, profile, weight_settings(), table), sum,
-                  map.groups() > 0 ? &groups : nullptr);
-    return GroupedLight(sum, groups);
+    return beam_radiance(photons_, photons_.map(), weights, ray, profile);
   };
   shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along, &blur}, image,
               statistics);
@@ -73,21 +70,12 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
   photons_.release();
 }
 
-WeightSettings BeamEstimator::weight_settings() const {
-  WeightSettings weights;
-  weights.store = input_.settings.store;
-  weights.albedo_in_power = photons_.plan().albedo_in_power;
-  weights.colored = photons_.map().channels() > 1;
-  weights.reach = 4 * photons_.map().mean_radius();
-  return weights;
-}
-
 /// The same photons once more for each volume, for its layer.
 void BeamEstimator::gather_volumes(TileScratch& scratch, PassImage& image) const {
   const World& world = photons_.world();
   const std::size_t volumes = world.medium.volumes.size();
   std::vector<std::uint8_t> only(volumes);
-  WeightSettings weights = weight_settings();
+  WeightSettings weights = weight_settings(photons_, input_.settings.store);
   weights.only = &only;
   for (std::size_t v = 0; v < volumes; ++v) {
     const std::size_t setting = world.medium.volumes[v].setting;

@@ -20,7 +20,6 @@ public:
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
 private:
-  WeightSettings weight_settings() const;
   void gather(TileScratch& scratch, PassImage& image) const;
   void gather_volumes(TileScratch& scratch, PassImage& image) const;
 

@@ -46,6 +46,8 @@ struct FinalGather::Walk : Flight {
   int scatterings = 1;
   float gathered = 0; ///< distance of the flight up to which light that it meets was added
   std::optional<SurfaceHit> end; ///< of the present flight
+  bool mirrored = false;         ///< it begins at a mirror or glass
+  SurfaceRoulette surfaces;
   GatheredLight found;
 
   /// Light that comes along the present flight.
@@ -54,10 +56,10 @@ struct FinalGather::Walk : Flight {
   }
 };
 
-FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-                         const SurfaceLighting& surfaces, const PhotonMap* compared)
-    : world_(world), plan_(plan), map_(map), surfaces_(surfaces), compared_(compared),
-      far_enough_(map.mean_radius()),
+FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Maps& maps,
+                         const SurfaceLighting& surfaces)
+    : world_(world), plan_(plan), maps_(maps), surfaces_(surfaces),
+      far_enough_(maps.photons.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
@@ -82,7 +84,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
         draw_first_direction(medium, volume.phase_index, ray.direction, rng, weight);
     Walk walk(rng, chosen->weight * std::abs(weight), counts);
     walk.beginning = point.position;
-    set_out(walk, point.position, direction);
+    set_out(walk, Vec3d(point.position), direction);
     follow(walk);
     rng = walk.rng;
     ++counts.gather_walks;
@@ -103,9 +105,11 @@ void FinalGather::follow(Walk& walk) const {
 }
 
 /// Begins a flight, which ends at the first surface.
-void FinalGather::set_out(Walk& walk, const Vec3f& origin, const Vec3f& direction) const {
+void FinalGather::set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
+                          bool mirrored) const {
   walk.gathered = 0;
-  walk.start(world_.medium, flight_segment(world_, Vec3d(origin), direction, walk.end));
+  walk.mirrored = mirrored;
+  walk.start(world_.medium, flight_segment(world_, origin, direction, walk.end));
 }
 
 void FinalGather::meet(Walk& walk, const Collision& hit) const {
@@ -113,12 +117,10 @@ void FinalGather::meet(Walk& walk, const Collision& hit) const {
     meet_light(walk, hit.t);
 }
 
-/// The flight leaves the medium, and with it the walk ends.
+/// The flight leaves the medium, and with it the walk ends unless a mirror or glass sends it on.
 bool FinalGather::leave(Walk& walk) const {
   meet_light(walk, walk.end ? static_cast<float>(walk.end->t) : walk.segment.t_end);
-  if (walk.end)
-    meet_surface(walk);
-  return false;
+  return walk.end && meet_surface(walk);
 }
 
 bool FinalGather::collide(Walk& walk, const Collision& hit) const {
@@ -131,37 +133,58 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   const bool last = walk.scatterings > tuning::most_scatterings_of_walk ||
                     length(point - walk.beginning) >= far_enough_;
   if (last)
-    gather_photons(walk, volume);
+    gather_photons(walk, volume, maps_.photons);
+  else if (maps_.caustics)
+    gather_photons(walk, volume, *maps_.caustics);
   walk.throughput *= volume.albedo_at(point);
   send_shadow_rays(walk, medium.gathered_phases()[phase]);
   if (last || !survive_roulette(tuning::roulette_below, walk.throughput, walk.rng))
     return false;
-  set_out(walk, point, walk.sample_direction(medium.phases[phase]));
+  set_out(walk, Vec3d(point), walk.sample_direction(medium.phases[phase]));
   return advance_flight(walk, *this);
 }
 
+/// Whether flights find the light of a lamp: if no shadow ray has, or could. What mirrors and glass
+/// bring of a light in one direction is left to photons (caustic_lights).
+bool FinalGather::counts(const Walk& walk, std::size_t light) const {
+  return walk.mirrored ? !world_.lights[light].narrow_direction() : !plan_.sampled_lights[light];
+}
+
 /// Light that the flight meets from where it was gathered last: the medium's own, and that of
-/// lights for which there are no shadow rays.
+/// lights.
 void FinalGather::meet_light(Walk& walk, float end) const {
   const Segment piece{walk.segment.ray, walk.gathered, end};
   GroupedLight light;
   if (!world_.medium.emitters.empty())
     light.add(sample_emission(world_.medium, piece, walk.rng), world_.lights.group_of_emission());
   for (std::size_t l = 0; l < world_.lights.size(); ++l)
-    if (!plan_.sampled_lights[l] && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
+    if (counts(walk, l) && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
       light.add(world_.lights[l].emitted_radiance(piece).radiance, world_.lights.group(l));
   walk.add(light * walk.throughput);
   walk.gathered = end;
 }
 
-/// The light of the surface at which the flight ends. Shadow rays have found the lights among them.
-void FinalGather::meet_surface(Walk& walk) const {
+/// The light of the surface at which the flight ends. At a mirror or glass the walk goes on.
+bool FinalGather::meet_surface(Walk& walk) const {
   const Vec3f& direction = walk.segment.ray.direction;
   const SurfaceVertex vertex(*world_.surfaces, *walk.end, direction);
-  GroupedLight light = surfaces_.reflected(vertex, direction, walk.rng);
-  if (vertex.light() >= 0 && !plan_.sampled_lights[static_cast<std::size_t>(vertex.light())])
+  const Material& material = vertex.material();
+  const bool goes_on = material.is_specular() && !material.is_black();
+  GroupedLight light;
+  if (!goes_on)
+    light = surfaces_.reflected(vertex, direction, walk.rng);
+  if (vertex.light() >= 0 && counts(walk, static_cast<std::size_t>(vertex.light())))
     light.add(vertex.emitted(), group_of(world_, vertex));
   walk.add(light * walk.throughput);
+  if (!goes_on)
+    return false;
+  const MaterialSample next = vertex.sample(Carried::radiance, walk.rng);
+  walk.throughput *= vertex.absorbed() * next.weight;
+  if (!survive_roulette(tuning::roulette_below, walk.throughput, walk.rng) ||
+      !walk.surfaces.survive(walk.throughput, walk.rng))
+    return false;
+  set_out(walk, vertex.hit().leave(next.wi), next.wi, true);
+  return true;
 }
 
 /// Scattered light of lights with shadow rays at the walk's collision.
@@ -189,23 +212,23 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
 
 /// Scattered light of photons at the walk's collision. The photons
 /// may have its albedo already.
-void FinalGather::gather_photons(Walk& walk, const Volume& volume) const {
+void FinalGather::gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
   const auto phase = static_cast<std::size_t>(volume.phase_index);
   std::vector<Rgb> gathered(phases.size()), groups;
   const Ray& at = walk.segment.ray;
-  const auto query = [&](const PhotonMap& map, std::vector<Rgb>* of_groups) {
+  const auto query = [&](const PhotonMap& photons, std::vector<Rgb>* of_groups) {
     walk.counts.contributions +=
-        map.query_point(at.origin, at.direction, phases, gathered.data(), nullptr, of_groups)
+        photons.query_point(at.origin, at.direction, phases, gathered.data(), nullptr, of_groups)
             .contributions;
   };
   const Rgb albedo = plan_.albedo_in_power ? Rgb(1) : volume.albedo_at(at.origin);
-  query(map_, map_.groups() > 0 ? &groups : nullptr);
+  query(map, map.groups() > 0 ? &groups : nullptr);
   GroupedLight light(gathered[phase], groups, phase, phases.size());
   light *= albedo;
   light *= walk.throughput;
-  if (compared_) {
-    query(*compared_, nullptr);
+  if (maps_.compared && &map == &maps_.photons) {
+    query(*maps_.compared, nullptr);
     walk.found.blur = light.sum() - gathered[phase] * albedo * walk.throughput;
   }
   walk.found.indirect += light;

@@ -17,16 +17,24 @@ struct GatheredLight {
 /// photons are not gathered along the camera ray, but where walks arrive that begin on it. A walk
 /// scatters at a point of the ray and goes on until it is a kernel's radius away, with shadow rays
 /// at each collision on its way; there the photons' density is what scatters into its last flight.
-/// A walk that meets a surface ends there, with the light that the surface sends back. So kernels
-/// blur only what walks are about to blur anyway, and most of their bias is gone, for noise of the
-/// walks' own (docs/theory/beam.md, "Final gathering").
+/// A walk that meets a surface ends there, with the light that the surface sends back, unless it is
+/// a mirror or glass. So kernels blur only what walks are about to blur anyway, and most of their
+/// bias is gone, for noise of the walks' own (docs/theory/beam.md, "Final gathering").
 class FinalGather {
 public:
-  /// `map`: of the world's photons, as the plan has them; `surfaces`: light of what walks meet;
-  /// `compared`: the photons in kernels of another width, null where the blur is not asked for. All
-  /// must outlive this.
-  FinalGather(const World& world, const PhotonPlan& plan, const PhotonMap& map,
-              const SurfaceLighting& surfaces, const PhotonMap* compared = nullptr);
+  /// The photons that walks gather; all must outlive this.
+  struct Maps {
+    const PhotonMap& photons; ///< as the plan has them
+    /// The same in kernels of another width; null where the blur is not asked for.
+    const PhotonMap* compared = nullptr;
+    /// Those that mirrors and glass brought (caustic_lights); null: there are none. Walks leave out
+    /// this light where they scatter first, since it is gathered along the camera ray.
+    const PhotonMap* caustics = nullptr;
+  };
+
+  /// `surfaces`: light of what walks meet. What is given must outlive this.
+  FinalGather(const World& world, const PhotonPlan& plan, const Maps& maps,
+              const SurfaceLighting& surfaces);
 
   /// `walks` walks from the ray, whose profile is not empty, at stratified distances.
   /// `ray_weight`: of the ray among those of its pixel.
@@ -44,17 +52,18 @@ public:
 
 private:
   void follow(Walk& walk) const;
-  void set_out(Walk& walk, const Vec3f& origin, const Vec3f& direction) const;
+  void set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
+               bool mirrored = false) const;
+  bool counts(const Walk& walk, std::size_t light) const;
   void meet_light(Walk& walk, float end) const;
-  void meet_surface(Walk& walk) const;
+  bool meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
-  void gather_photons(Walk& walk, const Volume& volume) const;
+  void gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const;
 
   const World& world_;
   const PhotonPlan& plan_;
-  const PhotonMap& map_;
+  const Maps maps_;
   const SurfaceLighting& surfaces_;
-  const PhotonMap* compared_;
   float far_enough_; ///< distance from its beginning at which a walk ends
   bool meets_light_; ///< flights may meet light before they end
 };

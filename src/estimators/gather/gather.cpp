@@ -1,5 +1,6 @@
 #include "estimators/gather/gather.h"
 
+#include "estimators/beam/beam_ray.h"
 #include "estimators/estimator_table.h"
 #include "estimators/gather/gather_pass.h"
 #include "photons/blur_probe.h"
@@ -13,13 +14,14 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
   const auto gather = [&](TileScratch& scratch, const RngKey& key) {
     walks.gather(scratch, key, blur, image);
   };
-  shade_tiles(walks.input(), photons_, spec.pass,
-              {true, gather,
-               [&](const CameraRay& ray, const DepthProfile& profile, Rng& rng) {
-                 return walks.gather_along(ray, profile, rng);
-               },
-               &blur},
-              image, statistics);
+  // No fit over pixels evens out what rays see behind a mirror or glass: there photons, gathered
+  // along the ray, have far less noise than a few walks.
+  const WeightSettings weights = weight_settings(photons_, input_.settings.store);
+  const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
+    return beam_radiance(photons_, photons_.map(), weights, ray, profile);
+  };
+  shade_tiles(walks.input(), photons_, spec.pass, {true, gather, gather_along, &blur}, image,
+              statistics);
   walks.fit(blur, image);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);

@@ -1,5 +1,6 @@
 #include "estimators/gather/gather_pass.h"
 
+#include "estimators/beam/beam_ray.h"
 #include "estimators/gather/final_gather.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
@@ -52,8 +53,9 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
                         PassImage& image) {
   const World& world = photons_.world();
   const PhotonMap* compared = wide_.blur_pixels ? &photons_.compared_map() : nullptr;
-  const FinalGather gather(world, photons_.plan(), photons_.map(), surfaces_);
-  const FinalGather twice(world, photons_.plan(), photons_.map(), surfaces_, compared);
+  const PhotonMap* caustics = photons_.caustics().size() > 0 ? &photons_.caustics() : nullptr;
+  const FinalGather gather(world, photons_.plan(), {photons_.map(), nullptr, caustics}, surfaces_);
+  const FinalGather twice(world, photons_.plan(), {photons_.map(), compared, caustics}, surfaces_);
   for (int i = 0; i < TileRays::count && !wide_.stopped(); ++i) {
     const TileRays::PixelRay& ray = scratch.rays[i];
     if (!ray.inside)
@@ -82,6 +84,8 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
       sum.indirect += light.indirect;
       sum.blur += light.blur;
       ++scratch.statistics.lookups;
+      if (caustics)
+        add_caustics(from, ray_weight, image);
     };
     send(ray);
     for (const TileRays::PixelRay& one : more)
@@ -93,13 +97,26 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
   }
 }
 
-GroupedLight GatherPass::gather_along(const CameraRay& ray, const DepthProfile& profile,
-                                      Rng& rng) const {
-  constexpr int walks = 2;
-  RenderStatistics uncounted;
-  const FinalGather gather(photons_.world(), photons_.plan(), photons_.map(), surfaces_);
-  const GatheredLight light = gather.gather(ray.ray(), profile, walks, 1, rng, uncounted);
-  return light.direct + light.indirect;
+/// Light that mirrors and glass brought and the medium scattered into the ray: by equation 11,
+/// since walks leave it out. It is not fitted to the pixels around, which would blur the caustic.
+void GatherPass::add_caustics(const TileRays::PixelRay& ray, float weight, PassImage& image) const {
+  WeightSettings weights = weight_settings(photons_, wide_.settings.store);
+  GroupedLight light =
+      beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile);
+  image.add(&PassImage::direct, ray.pixel, light *= weight);
+  add_by_opacity(light.sum(), ray.pixel, image);
+  const VolumeLights volumes(wide_.layers, ray.pixel, image);
+  const Medium& medium = photons_.world().medium;
+  std::vector<std::uint8_t> only(volumes ? medium.volumes.size() : 0);
+  weights.only = &only;
+  for (std::size_t v = 0; v < only.size(); ++v) {
+    only.assign(only.size(), 0);
+    only[v] = 1;
+    volumes.add(medium.volumes[v].setting, beam_radiance(photons_, photons_.caustics_along_rays(),
+                                                         weights, ray.camera, ray.profile)
+                                                   .sum() *
+                                               weight);
+  }
 }
 
 /// Whether the tile and those around it that are wanted are finished.

@@ -25,9 +25,6 @@ public:
   /// Sends the walks of a tile's rays; of any thread, each tile once.
   void gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur, PassImage& image);
 
-  /// Light gathered by a few walks from a ray that continues behind a mirror or glass.
-  GroupedLight gather_along(const CameraRay& ray, const DepthProfile& profile, Rng& rng) const;
-
   /// After all tiles: adds the fitted light to `image`, which has the pixels' opacity and depth.
   /// Tiles around which some were not finished are no longer finished themselves.
   void fit(BlurProbe& blur, PassImage& image) const;
@@ -38,6 +35,7 @@ public:
   }
 
 private:
+  void add_caustics(const TileRays::PixelRay& ray, float weight, PassImage& image) const;
   void fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) const;
   /// The weighted sum of what the walks of pixels found.
   static Rgb fitted(const std::vector<Rgb>& walked, std::span<const PixelRegression::Share> shares);
