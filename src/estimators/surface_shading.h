@@ -21,8 +21,9 @@ using GatherAlong =
 /// too. At the first two interfaces of glass it goes both ways, reflected and refracted, from then
 /// on one of them at random: the faint reflection of a bright lamp is no matter of chance. At any
 /// other surface path tracing goes on (WalkTracer), which finds all light except paths whose first
-/// event after the light is specular, glossy or in the medium: caustics and light scattered by fog
-/// near lamps, after any number of further bounces. Photons on the surface carry these.
+/// event after the light is specular, glossy or, near lamps, in the medium: caustics and light
+/// scattered by fog near lamps, after any number of further bounces. Photons on the surface carry
+/// these.
 class SurfaceShading {
 public:
   /// Requires a world with surfaces.

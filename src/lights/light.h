@@ -61,6 +61,8 @@ public:
   virtual bool is_delta() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.
   virtual const Vec3d* position() const { return nullptr; }
+  /// Its light has no bound near it, so that what the medium scatters there is left to photons.
+  bool is_near() const { return position() || surface() >= 0; }
   /// The part of a segment that the light can reach; the whole segment if unknown.
   virtual Segment lit_part(const Segment& segment) const { return segment; }
   /// Unit, towards a light at infinity that fills a small part of the sky; null for any other.

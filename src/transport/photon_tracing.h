@@ -26,9 +26,9 @@ struct PhotonPassSettings {
   /// Per light: true where its first flight is left to shadow rays and not stored.
   std::vector<bool> skip_first_flight;
   std::optional<int> max_bounces;
-  /// Per light: photons whose first event is a mirror, smooth glass or the medium are stored where
-  /// they arrive at other surfaces, after any further events. Empty: no photons are stored on
-  /// surfaces.
+  /// Per light: photons whose first event is a mirror or smooth glass or, of near lights, the
+  /// medium are stored where they arrive at other surfaces, after any further events. Empty: no
+  /// photons are stored on surfaces.
   std::vector<bool> surface_photon_lights;
   /// Per light: photons that mirrors and smooth glass alone have sent on before they reach the
   /// medium are stored once more in a list of their own. Empty: none are.

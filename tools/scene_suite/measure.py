@@ -8,7 +8,9 @@ import numpy as np
 
 # Processor time [ns] of what a render counts, so that work needs no clock. Only ratios matter.
 TIME_OF = {"light_collisions": 150, "photons_stored": 2000, "contributions": 12, "shadow_rays": 3000,
-           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000, "pilot_paths": 20000}
+           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000}
+# The same of a light path of a pilot: they are few beside those of a frame of usual size.
+TIME_OF_PILOT_PATH = 20000
 
 
 def holds(low, high, mrse, mrse_error):
@@ -96,10 +98,11 @@ class Suite:
             self._kept[identity(keys)] = self._references(keys)
 
     def error_and_work(self, keys, estimator, passes, seed):
-        """MRSE and counted work [s] of one render of a scene that was prepared."""
+        """MRSE and counted work [s], with that of pilots, of one render of a scene that was prepared."""
         settings = {"render.passes": passes, "render.estimator": estimator, "render.seed": seed}
         frame = self._render(keys, settings)
-        return self._vdbeam.compare(frame, *self._kept[identity(keys)])["mrse"], work_of(frame)
+        pilot = 1e-9 * TIME_OF_PILOT_PATH * frame.report["counts"]["pilot_paths"]
+        return self._vdbeam.compare(frame, *self._kept[identity(keys)])["mrse"], work_of(frame) + pilot
 
     def estimate(self, keys, passes, seed):
         """The error estimate of one render of a scene that was prepared: whether its interval holds the true error,

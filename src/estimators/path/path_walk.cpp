@@ -67,7 +67,8 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
   walk.segment.ray.origin = point;
   walk.skips_sampled = walk.from_surface = walk.in_plate = false;
-  walk.light = walk.all_light ? 0 : world_.lights.size();
+  walk.from_medium = true;
+  walk.light = 0;
   sample_lights(walk);
   return true;
 }
@@ -77,7 +78,8 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
 void WalkTracer::sample_lights(PathWalk& walk) const {
   const Ray& ray = walk.segment.ray;
   for (; walk.light < world_.lights.size(); ++walk.light) {
-    if (!shadow_rays_[walk.light] || shells_.holds(walk.light, ray.origin))
+    if (!shadow_rays_[walk.light] || shells_.holds(walk.light, ray.origin) ||
+        (!walk.all_light && world_.lights[walk.light].is_near()))
       continue;
     const auto shadow_ray =
         sample_shadow_ray(world_.lights[walk.light], ray.origin, walk.rng,
@@ -180,7 +182,7 @@ GroupedLight WalkTracer::lights_met(const PathWalk& walk, const Segment& segment
   GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size() && !walk.in_plate; ++i) {
     const Light& light = world_.lights[i];
-    if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out_sampled()))
+    if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out(light)))
       continue;
     float weight = 1;
     if (shadow_rays_[i] && walk.density > 0)

@@ -40,13 +40,16 @@ struct PathWalk : Flight {
   bool skips_sampled = false; ///< none on this flight, since it was found before
   bool all_light = true;      ///< else only that which surfaces get straight from lights
   bool from_surface = false;  ///< the present flight begins at such a surface
+  bool from_medium = false;   ///< or in the medium
   /// It has met nothing but shadow catchers: the light of the plate's lights is in the plate.
   bool in_plate = false;
 
   SurfaceRoulette surfaces;
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
 
-  bool leaves_out_sampled() const { return skips_sampled || (!all_light && !from_surface); }
+  bool leaves_out(const Light& source) const {
+    return skips_sampled || (!all_light && !from_surface && (source.is_near() || !from_medium));
+  }
   void add(const GroupedLight& radiance) { (bounces > 1 ? indirect : direct) += radiance; }
   void add(const Rgb& radiance, int group) {
     (bounces > 1 ? indirect : direct).add(radiance, group);
@@ -86,8 +89,8 @@ public:
                  const PhaseFunction& phase) const;
 
   /// Radiance that leaves a surface against `direction`, along which a ray meets it.
-  /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or
-  /// the medium, and they on to other surfaces, to which photons bring it.
+  /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or,
+  /// if it is near, the medium, and they on to other surfaces, to which photons bring it.
   /// `emits`: with what the surface itself emits. `steps`, unless it is null, counts the walks'
   /// steps.
   GroupedLight from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,

@@ -87,7 +87,7 @@ bool WalkTracer::meet_surface(PathWalk& walk) const {
   if (vertex.light() >= 0 && max_component(vertex.emitted()) > 0) {
     const auto light = static_cast<std::size_t>(vertex.light());
     const bool sampled = shadow_rays_[light];
-    float weight = sampled && walk.leaves_out_sampled() ? 0 : 1;
+    float weight = sampled && walk.leaves_out(world_.lights[light]) ? 0 : 1;
     if (sampled && walk.density > 0)
       weight *=
           walk.density / (walk.density + world_.lights[light].surface_pdf(*walk.end, direction));
@@ -116,7 +116,7 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
       !walk.surfaces.survive(walk.throughput, walk.rng))
     return false;
   walk.density = next.pdf;
-  walk.skips_sampled = false;
+  walk.skips_sampled = walk.from_medium = false;
   walk.from_surface = counts_straight;
   set_out(walk, vertex.hit().leave(next.wi), next.wi);
   look_into_shells(walk);
