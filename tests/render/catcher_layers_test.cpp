@@ -108,7 +108,7 @@ TEST_P(CatcherLayers, TheGroundInARenderOfAllIsTheComp) {
               "material = { albedo = [0.8, 0.2, 0.1] }\n"
               "[[mesh]]\ntype = 'sphere'\nscale = 0.3\ntranslate = [2.2, -0.4, -1]\n"
               "material = { type = 'emissive', radiance = [2, 1, 0.5] }\n",
-              std::string(GetParam()) == "path" ? 512 : 128, 128, 0.003);
+              std::string(GetParam()) == "path" ? 512 : 256, 128, 0.003);
 }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, CatcherLayers, testing::Values("beam", "path"),
