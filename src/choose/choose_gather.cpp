@@ -97,7 +97,8 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
   if (forces_final_gather(kind, input.settings))
     return gather;
-  // Nor does it know the kernels' bias for caustics, which walks look at near their beginning.
+  // The forecast also lacks the kernels' bias for caustics, at which walks look near their
+  // beginning.
   const double preference = tuning::preference_for_gather *
                             (1 - share_of_lamps_inside(input.world)) * (1 - plan.caustic_share);
   for (int first = 0; first <= tuning::most_passes_before_gather;

@@ -151,10 +151,11 @@ bool reach_bounce_limit(const EstimatorInput& input) {
 }
 
 std::vector<bool> caustic_lights(const World& world) {
-  std::vector<bool> caustic;
-  for (std::size_t l = 0;
-       world.surfaces && world.surfaces->focus_light() && l < world.lights.size(); ++l)
-    caustic.push_back(world.lights[l].is_delta() || world.lights[l].narrow_direction());
+  if (!world.surfaces || !world.surfaces->focus_light())
+    return {};
+  std::vector<bool> caustic(world.lights.size());
+  for (std::size_t l = 0; l < caustic.size(); ++l)
+    caustic[l] = world.lights[l].is_delta() || world.lights[l].narrow_direction();
   return caustic;
 }
 

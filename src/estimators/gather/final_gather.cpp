@@ -144,9 +144,9 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   return advance_flight(walk, *this);
 }
 
-/// Whether flights find the light of a lamp: if no shadow ray has, or could. What mirrors and glass
-/// bring of a light in one direction is left to photons (caustic_lights).
-bool FinalGather::counts(const Walk& walk, std::size_t light) const {
+/// Whether the flight, where it meets a light, is what finds its light: straight, if shadow rays do
+/// not; after a mirror or glass, unless the light is narrow and left to photons (caustic_lights).
+bool FinalGather::finds(const Walk& walk, std::size_t light) const {
   return walk.mirrored ? !world_.lights[light].narrow_direction() : !plan_.sampled_lights[light];
 }
 
@@ -158,7 +158,7 @@ void FinalGather::meet_light(Walk& walk, float end) const {
   if (!world_.medium.emitters.empty())
     light.add(sample_emission(world_.medium, piece, walk.rng), world_.lights.group_of_emission());
   for (std::size_t l = 0; l < world_.lights.size(); ++l)
-    if (counts(walk, l) && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
+    if (finds(walk, l) && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
       light.add(world_.lights[l].emitted_radiance(piece).radiance, world_.lights.group(l));
   walk.add(light * walk.throughput);
   walk.gathered = end;
@@ -173,7 +173,7 @@ bool FinalGather::meet_surface(Walk& walk) const {
   GroupedLight light;
   if (!goes_on)
     light = surfaces_.reflected(vertex, direction, walk.rng);
-  if (vertex.light() >= 0 && counts(walk, static_cast<std::size_t>(vertex.light())))
+  if (vertex.light() >= 0 && finds(walk, static_cast<std::size_t>(vertex.light())))
     light.add(vertex.emitted(), group_of(world_, vertex));
   walk.add(light * walk.throughput);
   if (!goes_on)

@@ -54,7 +54,7 @@ private:
   void follow(Walk& walk) const;
   void set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
                bool mirrored = false) const;
-  bool counts(const Walk& walk, std::size_t light) const;
+  bool finds(const Walk& walk, std::size_t light) const;
   void meet_light(Walk& walk, float end) const;
   bool meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
