@@ -42,9 +42,12 @@ TEST(Draft, IsAsBrightAsThePicture) {
   const StopToken stop;
   for (const int reduction : {2, 3, 5}) {
     Draft draft(scene, prepared, whole(scene), reduction, stop);
-    ASSERT_TRUE(draft.add_pass());
-    ASSERT_TRUE(draft.add_pass());
-    EXPECT_EQ(draft.passes(), 2);
+    // A fifth of the size has 260 pixels: over 8 seeds its mean scatters by 0.8 % after 8 passes,
+    // and by 1.5 % after 2.
+    constexpr int kPasses = 8;
+    for (int pass = 0; pass < kPasses; ++pass)
+      ASSERT_TRUE(draft.add_pass());
+    EXPECT_EQ(draft.passes(), kPasses);
     draft.look_through();
     const PassImage image = draft.enlarged(setup.input, whole(scene));
     ASSERT_EQ(image.width, scene.image.width);
