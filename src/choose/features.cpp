@@ -59,16 +59,24 @@ bool has_light_that_pilots_miss(const Facts& facts) {
   return false;
 }
 
-bool has_no_narrow_light(const Facts& facts) {
+/// Whether shadow rays look for a light that `is_wanted`.
+template <class Predicate>
+bool samples_light(const Facts& facts, const Predicate& is_wanted) {
   const LightSet& lights = facts.input.world.lights;
   for (std::size_t l = 0; l < lights.size(); ++l)
-    if (facts.sampled_lights[l] && lights[l].narrow_direction())
-      return false;
-  return true;
+    if (facts.sampled_lights[l] && is_wanted(lights[l]))
+      return true;
+  return false;
 }
 
-bool has_no_sharp_peak(const Facts& facts) {
-  return !LightBranches::has_sharp_peak(facts.input.world.medium);
+bool has_no_narrow_light(const Facts& facts) {
+  return !samples_light(facts, LightBranches::is_narrow);
+}
+
+bool has_nothing_to_branch_for(const Facts& facts) {
+  const World& world = facts.input.world;
+  return !LightBranches::has_sharp_peak(world.medium) &&
+         !LampShells(world, facts.sampled_lights).any();
 }
 
 constexpr std::string_view by_scattered_flux = "photons store scattered flux (render.store)";
@@ -167,7 +175,10 @@ const Feature shadow_lattice_feature{
     .help = "shadow rays of directional lights are placed by a coarse shadow map",
     .stage = Stage::shadow_rays,
     .conditions = shadow_lattice_conditions,
-    .used = [](const Facts& facts, const Choices&) { return !has_no_narrow_light(facts); },
+    .used =
+        [](const Facts& facts, const Choices&) {
+          return samples_light(facts, [](const Light& light) { return light.narrow_direction(); });
+        },
     .unused = "no light has a single direction"};
 
 namespace {
@@ -219,8 +230,9 @@ namespace {
 constexpr FeatureCondition branches_conditions[] = {
     {[](const Facts& facts) { return facts.kind.shoots_photons(); },
      "photons carry the light; only bias probes are path traced"},
-    {has_no_sharp_peak, "no phase function has a sharp enough peak"},
-    {has_no_narrow_light, "no directional light has shadow rays"}};
+    {has_nothing_to_branch_for,
+     "no phase function has a sharp enough peak, and no lamp stands in the medium"},
+    {has_no_narrow_light, "no sun, lamp or spot has shadow rays"}};
 }
 const Feature branches_feature{.name = "branches",
                                .key = "",

@@ -7,6 +7,7 @@
 #include "medium/volume_tree.h"
 #include "phase/aureole.h"
 #include "phase/phase_function.h"
+#include "phase/scattering_angles.h"
 #include "volume/color_field.h"
 #include "volume/emitter.h"
 #include "volume/render_space.h"
@@ -72,10 +73,11 @@ struct Medium {
   std::vector<Volume> volumes;       ///< only those with something in them
   std::vector<Emitter> emitters;     ///< of the volumes that glow, whether or not they do more
   std::vector<PhaseFunction> phases; ///< one per group of volumes with the same phase function
-  std::shared_ptr<const PeakTakenOut> peak; ///< null: this is the scene's own medium
-  std::shared_ptr<const VolumeTree> tree;   ///< over the volumes; null: they are few
-  Boxf bounds;                              ///< of all that is not empty, render space
-  bool chromatic = false;                   ///< extinction differs between channels
+  std::shared_ptr<const ScatteringAngles> angles; ///< of the scene's phase functions; null: even
+  std::shared_ptr<const PeakTakenOut> peak;       ///< null: this is the scene's own medium
+  std::shared_ptr<const VolumeTree> tree;         ///< over the volumes; null: they are few
+  Boxf bounds;                                    ///< of all that is not empty, render space
+  bool chromatic = false;                         ///< extinction differs between channels
 
   /// Phase functions by which camera rays weigh photons.
   const std::vector<PhaseFunction>& gathered_phases() const {

@@ -159,7 +159,8 @@ private:
     const Segment lit = light.lit_part(all);
     if (lit.empty())
       return {};
-    const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end);
+    const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end,
+                           world_.medium.angles.get());
     const bool small = lit.t_end - lit.t_begin < tuning::small_lit_part * (all.t_end - all.t_begin);
     return small || near.useful() ? std::optional(near) : std::nullopt;
   }

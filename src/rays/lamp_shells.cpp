@@ -67,6 +67,13 @@ LampShells::LampShells(const World& world, const std::vector<bool>& sampled) : w
   }
 }
 
+double LampShells::radius_of(std::size_t light) const {
+  for (const Shell& shell : shells_)
+    if (shell.light == light)
+      return shell.radius;
+  return 0;
+}
+
 bool LampShells::holds(std::size_t light, const Vec3f& point) const {
   for (const Shell& shell : shells_)
     if (shell.light == light)
@@ -87,7 +94,8 @@ GroupedLight LampShells::along(const Segment& flight, Rng& rng) const {
 
 Rgb LampShells::sample(const Shell& shell, const Segment& crossing, Rng& rng) const {
   const Medium& medium = world_.medium;
-  const EquiAngular distances(crossing.ray, shell.center, crossing.t_begin, crossing.t_end);
+  const EquiAngular distances(crossing.ray, shell.center, crossing.t_begin, crossing.t_end,
+                              medium.angles.get());
   const float t = distances.sample(rng.uniform()), density = distances.pdf(t);
   const Vec3f point = crossing.ray.at(t);
   const auto shadow_ray = // these lights are found in no other way

@@ -19,6 +19,8 @@ public:
   LampShells(const World& world, const std::vector<bool>& sampled);
 
   bool any() const { return !shells_.empty(); }
+  /// The radius of the ball around a lamp [render units]; 0 where it has none.
+  double radius_of(std::size_t light) const;
   /// Flights find the light of this lamp at the point, and no shadow ray may.
   bool holds(std::size_t light, const Vec3f& point) const;
   /// Light of the lamps that is scattered once, inside of the shells, against the flight: an

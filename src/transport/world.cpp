@@ -294,6 +294,8 @@ void add_medium(const Scene& scene, std::vector<DensityGrid>& grids,
     world.medium.volumes.push_back(std::move(volume));
   }
   world.medium.grow_tree();
+  if (!world.medium.isotropic())
+    world.medium.angles = std::make_shared<const ScatteringAngles>(world.medium.phases);
 }
 
 } // namespace

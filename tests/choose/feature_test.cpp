@@ -50,9 +50,6 @@ void store_scattered_flux(MemoryScene& scene) {
 void limit_bounces(MemoryScene& scene) {
   scene.scene.render.max_bounces = 100000;
 }
-void add_lamp(MemoryScene& scene) {
-  scene.add_light(LightType::point).position = {0, 0.7, 0};
-}
 void name_path(MemoryScene& scene) {
   scene.scene.render.estimator = EstimatorType::path;
 }
@@ -98,12 +95,13 @@ const std::vector<Exclusion>& exclusions() {
        name_beam},
       {"branches", "photons carry the light; only bias probes are path traced",
        [](MemoryScene&) {}},
-      {"branches", "no phase function has a sharp enough peak", name_path},
-      {"branches", "no directional light has shadow rays", [](MemoryScene& s) {
+      {"branches", "no phase function has a sharp enough peak, and no lamp stands in the medium",
+       name_path},
+      {"branches", "no sun, lamp or spot has shadow rays", [](MemoryScene& s) {
          name_path(s);
          s.scene.volumes[0].phase = henyey_greenstein(0.97);
          s.scene.lights.clear();
-         add_lamp(s);
+         s.add_light(LightType::environment);
        }}};
   return list;
 }

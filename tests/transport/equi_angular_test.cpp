@@ -21,9 +21,10 @@ const Case cases[] = {
     {{{0, 0, 0}, {0, 0, 1}}, {50, 20, 80}, 0, 1},         // far away
 };
 
-TEST(EquiAngular, SamplesFollowTheDensity) {
+/// With equal angles, or with `angles`.
+void expect_samples_follow_the_density(const ScatteringAngles* angles) {
   for (const Case& c : cases) {
-    const EquiAngular distances(c.ray, c.light, c.begin, c.end);
+    const EquiAngular distances(c.ray, c.light, c.begin, c.end, angles);
     constexpr int bins = 40, count = 100000;
     std::vector<double> counts(bins), expected(bins);
     double total = 0;
@@ -46,8 +47,20 @@ TEST(EquiAngular, SamplesFollowTheDensity) {
       const double place = static_cast<double>((t - c.begin) / (c.end - c.begin)) * bins;
       ++counts[static_cast<std::size_t>(std::min(place, bins - 0.5))];
     }
-    EXPECT_GT(test::chi_squared_test(counts, expected), test::family_level(4));
+    EXPECT_GT(test::chi_squared_test(counts, expected), test::family_level(8));
   }
+}
+
+TEST(EquiAngular, SamplesFollowTheDensity) {
+  expect_samples_follow_the_density(nullptr);
+}
+
+TEST(EquiAngular, SamplesFollowTheDensityOfScatteringAngles) {
+  PhaseSettings settings;
+  settings.type = PhaseType::henyey_greenstein;
+  settings.g = 0.9f;
+  const ScatteringAngles angles({PhaseFunction(settings)});
+  expect_samples_follow_the_density(&angles);
 }
 
 TEST(EquiAngular, IsUsedForLightsNearby) {

@@ -1,8 +1,11 @@
 #include "estimators/path/light_branches.h"
 
+#include "math/sampling.h"
 #include "tuning/constants.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace vdbeam {
 
@@ -12,66 +15,128 @@ namespace {
 /// they would only be copies of the walk.
 constexpr float least_about_light = 1 / (4 * pi);
 
-/// q of one light.
+/// q of a light outside of the medium.
 float about_light(const PhaseFunction& phase, const Vec3f& towards, const Vec3f& direction) {
   const float value = phase.evaluate(dot(towards, direction));
   return value > least_about_light ? value : 0;
 }
 
-bool is_peaked(const PhaseFunction& phase) {
+bool has_peak(const PhaseFunction& phase) {
   return 4 * pi * phase.evaluate(1) > tuning::sharp_peak;
 }
 
 } // namespace
 
 bool LightBranches::has_sharp_peak(const Medium& medium) {
-  return std::any_of(medium.phases.begin(), medium.phases.end(), is_peaked);
+  return std::any_of(medium.phases.begin(), medium.phases.end(), has_peak);
 }
 
-LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow_rays) {
+bool LightBranches::is_narrow(const Light& light) {
+  return light.narrow_direction() || (light.position() && light.is_delta());
+}
+
+Vec3f LightBranches::NarrowLight::towards(const Vec3f& point) const {
+  if (const Vec3f* direction = light->narrow_direction())
+    return *direction;
+  return Vec3f(normalize(*light->position() - Vec3d(point)));
+}
+
+bool LightBranches::NarrowLight::passed_from(const Vec3f& point) const {
+  return reach > 0 && length(*light->position() - Vec3d(point)) < reach;
+}
+
+LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow_rays,
+                             const LampShells& shells)
+    : medium_(world.medium) {
   for (const PhaseFunction& phase : world.medium.phases)
-    if (is_peaked(phase))
+    if (has_peak(phase))
       peaked_.push_back(&phase);
-  if (peaked_.empty())
-    return;
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    if (const Vec3f* towards = world.lights[i].narrow_direction(); towards && shadow_rays[i])
-      towards_.push_back(*towards);
+  for (std::size_t i = 0; i < world.lights.size(); ++i) {
+    const double reach = tuning::reach_of_branches * shells.radius_of(i);
+    if (is_narrow(world.lights[i]) && shadow_rays[i] && (!peaked_.empty() || reach > 0))
+      lights_.push_back({&world.lights[i], reach});
+  }
+}
+
+bool LightBranches::is_peaked(const PhaseFunction& phase) const {
+  return std::find(peaked_.begin(), peaked_.end(), &phase) != peaked_.end();
 }
 
 /// c at a scattering by this phase function.
-float LightBranches::chance(const PhaseFunction& phase) const {
-  const bool worth = any() && std::find(peaked_.begin(), peaked_.end(), &phase) != peaked_.end();
+float LightBranches::chance(const PhaseFunction& phase, const Vec3f& point) const {
+  const bool worth = any() && (is_peaked(phase) ||
+                               std::any_of(lights_.begin(), lights_.end(), [&](const auto& light) {
+                                 return light.passed_from(point);
+                               }));
   return worth ? tuning::branches_per_scattering : 0;
 }
 
-std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, Rng& rng) const {
-  const float c = chance(phase);
-  if (c == 0 || rng.uniform() >= c)
-    return std::nullopt;
-  const auto count = static_cast<float>(towards_.size());
-  const auto light = static_cast<std::size_t>(rng.uniform() * count);
-  const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-  const Vec3f& towards = towards_[std::min(light, towards_.size() - 1)];
-  const Vec3f direction = phase.sample(towards, u_lobe, u, v);
-  return about_light(phase, towards, direction) > 0 ? std::optional(direction) : std::nullopt;
+/// The angle to the lamp has the density g of scattering angles, whose even part is proportional to
+/// 1 / D per solid angle.
+float LightBranches::density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const {
+  // By the cross product: near the lamp the cosine has no digits left for the sine.
+  const double sine = std::max(1e-7, double{length(cross(to_lamp, direction))});
+  const double angle = std::atan2(sine, double{dot(to_lamp, direction)});
+  const double of_angle = medium_.angles ? medium_.angles->density(angle) : 1 / std::numbers::pi;
+  return static_cast<float>(of_angle / (2 * std::numbers::pi * sine));
 }
 
-float LightBranches::density(const PhaseFunction& phase, const Vec3f& direction) const {
-  const float c = chance(phase);
+Vec3f LightBranches::sample_about_lamp(const Vec3f& to_lamp, float u, float v) const {
+  const double share{u};
+  const double angle = medium_.angles ? medium_.angles->inverse(share) : share * std::numbers::pi;
+  Vec3f tangent, bitangent;
+  orthonormal_frame(to_lamp, tangent, bitangent);
+  const auto sine = static_cast<float>(std::sin(angle)), phi = 2 * pi * v;
+  return normalize(tangent * (sine * std::cos(phi)) + bitangent * (sine * std::sin(phi)) +
+                   to_lamp * static_cast<float>(std::cos(angle)));
+}
+
+/// q of one light.
+float LightBranches::density_about(const NarrowLight& light, const PhaseFunction& phase,
+                                   const Vec3f& point, const Vec3f& direction) const {
+  const Vec3f to_light = light.towards(point);
+  if (light.passed_from(point))
+    return density_about_lamp(to_light, direction);
+  return is_peaked(phase) ? about_light(phase, to_light, direction) : 0;
+}
+
+std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec3f& point,
+                                           Rng& rng) const {
+  const float c = chance(phase, point);
+  if (c == 0 || rng.uniform() >= c)
+    return std::nullopt;
+  const auto count = static_cast<float>(lights_.size());
+  const auto index = static_cast<std::size_t>(rng.uniform() * count);
+  const NarrowLight& light = lights_[std::min(index, lights_.size() - 1)];
+  const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  const Vec3f to_light = light.towards(point);
+  if (light.passed_from(point))
+    return sample_about_lamp(to_light, u, v);
+  if (!is_peaked(phase))
+    return std::nullopt;
+  const Vec3f direction = phase.sample(to_light, u_lobe, u, v);
+  return about_light(phase, to_light, direction) > 0 ? std::optional(direction) : std::nullopt;
+}
+
+float LightBranches::density(const PhaseFunction& phase, const Vec3f& point,
+                             const Vec3f& direction) const {
+  const float c = chance(phase, point);
   if (c == 0)
     return 0;
   float sum = 0;
-  for (const Vec3f& towards : towards_)
-    sum += about_light(phase, towards, direction);
-  return c * sum / static_cast<float>(towards_.size());
+  for (const NarrowLight& light : lights_)
+    sum += density_about(light, phase, point, direction);
+  return c * sum / static_cast<float>(lights_.size());
 }
 
-float LightBranches::importance(const Vec3f& direction) const {
+float LightBranches::importance(const Vec3f& point, const Vec3f& direction) const {
   float most = 0;
-  for (const Vec3f& towards : towards_)
+  for (const NarrowLight& light : lights_) {
+    if (light.passed_from(point))
+      most = std::max(most, density_about_lamp(light.towards(point), direction));
     for (const PhaseFunction* phase : peaked_)
-      most = std::max(most, phase->evaluate(dot(towards, direction)));
+      most = std::max(most, phase->evaluate(dot(light.towards(point), direction)));
+  }
   return 1 + tuning::importance_of_peak * most;
 }
 

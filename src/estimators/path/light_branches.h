@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rays/lamp_shells.h"
 #include "transport/world.h"
 
 #include <optional>
@@ -7,42 +8,63 @@
 
 namespace vdbeam {
 
-/// Where walks of the path tracer branch towards narrow lights.
+/// Where walks of the path tracer branch towards narrow lights: suns, lamps and spots.
 ///
 /// Where a phase function has a sharp peak and a light is narrow, a walk that happens to fly at the
-/// light scatters all of its peak: next-event estimation then has rare, very bright values. So at
-/// each scattering a walk now and then sends a branch of its own in a direction drawn by the phase
-/// function about the light's direction instead of its own. With p the density of the walk's own
+/// light scatters all of its peak: next-event estimation then has rare, very bright values. A
+/// flight that passes a lamp in the medium at the distance D has a value of about 1 / D, whatever
+/// the phase function (LampShells). So at each scattering a walk now and then sends a branch of its
+/// own in a direction about the light's instead of its own. With p the density of the walk's own
 /// direction and c q that of branches, both carry p/(p + c q), which leaves the mean as it is:
 /// flights at the light become many and faint (docs/theory/transport.md, "The reference").
+/// q is the phase function about the light's direction or, for lamps in the medium, a density that
+/// grows as 1 / D towards them.
 ///
 /// This is the idea of DXTRAN in neutron transport (X-5 Monte Carlo Team, *MCNP: A General Monte
 /// Carlo N-Particle Transport Code*, 2003), for directions in place of a region.
 class LightBranches {
 public:
-  /// `shadow_rays`: per light, whether next-event estimation samples it. The world's medium must
-  /// outlive this.
-  LightBranches(const World& world, const std::vector<bool>& shadow_rays);
+  /// `shadow_rays`: per light, whether next-event estimation samples it. `world` must outlive this.
+  LightBranches(const World& world, const std::vector<bool>& shadow_rays, const LampShells& shells);
 
-  bool any() const { return !towards_.empty(); }
+  bool any() const { return !lights_.empty(); }
+  /// Some follow a sharp peak; otherwise all go towards lamps in the medium.
+  bool any_in_peaks() const { return any() && !peaked_.empty(); }
 
+  /// Whether a light fills a small part of the sky, seen from any point.
+  static bool is_narrow(const Light& light);
   /// Whether some phase function scatters so much straight on that branches are worth their time.
   static bool has_sharp_peak(const Medium& medium);
 
-  /// The direction of a branch at a scattering by this phase function of the world's; none where
-  /// the walk does not branch.
-  std::optional<Vec3f> sample(const PhaseFunction& phase, Rng& rng) const;
+  /// The direction of a branch at a scattering at `point` by this phase function of the world's;
+  /// none where the walk does not branch.
+  std::optional<Vec3f> sample(const PhaseFunction& phase, const Vec3f& point, Rng& rng) const;
   /// c q, the density of branches [1/sr], 0 for directions that are not about a light.
-  float density(const PhaseFunction& phase, const Vec3f& direction) const;
+  float density(const PhaseFunction& phase, const Vec3f& point, const Vec3f& direction) const;
 
-  /// Expected contribution of a flight in this direction, in units of one far from narrow lights:
-  /// roulette looks at it, or it would end the faint walks that branches are made for.
-  float importance(const Vec3f& direction) const;
+  /// Expected contribution of a flight from `point` in this direction, in units of one far from
+  /// narrow lights: roulette looks at it, or it would end the faint walks that branches are made
+  /// for.
+  float importance(const Vec3f& point, const Vec3f& direction) const;
 
 private:
-  float chance(const PhaseFunction& phase) const;
+  struct NarrowLight {
+    const Light* light;
+    double reach; ///< distance up to which branches pass the lamp by 1 / D; 0: it has no shell
 
-  std::vector<Vec3f> towards_;               ///< the narrow lights
+    /// Unit; undefined where a lamp stands.
+    Vec3f towards(const Vec3f& point) const;
+    bool passed_from(const Vec3f& point) const;
+  };
+  bool is_peaked(const PhaseFunction& phase) const;
+  float chance(const PhaseFunction& phase, const Vec3f& point) const;
+  float density_about(const NarrowLight& light, const PhaseFunction& phase, const Vec3f& point,
+                      const Vec3f& direction) const;
+  float density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const;
+  Vec3f sample_about_lamp(const Vec3f& to_lamp, float u, float v) const;
+
+  const Medium& medium_;
+  std::vector<NarrowLight> lights_;
   std::vector<const PhaseFunction*> peaked_; ///< the world's phase functions with a sharp peak
 };
 

@@ -7,8 +7,9 @@
 namespace vdbeam {
 
 float WalkTracer::roulette_from(const Rgb& throughput) const {
-  return light_branches_.any() ? tuning::roulette_of_branches_below * max_component(throughput)
-                               : tuning::roulette_below;
+  return light_branches_.any_in_peaks()
+             ? tuning::roulette_of_branches_below * max_component(throughput)
+             : tuning::roulette_below;
 }
 
 PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
@@ -28,7 +29,7 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
 /// Density of flights from the walk's collision in this direction, its branches among them.
 float WalkTracer::flight_density(const PathWalk& walk, const Vec3f& direction) const {
   return walk.phase->evaluate(dot(walk.segment.ray.direction, direction)) +
-         light_branches_.density(*walk.phase, direction);
+         light_branches_.density(*walk.phase, walk.segment.ray.origin, direction);
 }
 
 bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
@@ -60,12 +61,12 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     gather_light(walk, hit.t, hit.t);
   if (max_bounces_ && walk.bounces >= *max_bounces_)
     return false;
-  const Vec3f point = walk.segment.ray.at(hit.t);
-  walk.throughput *= hit.volume->albedo_at(point);
+  Ray& ray = walk.segment.ray;
+  ray.origin = ray.at(hit.t);
+  walk.throughput *= hit.volume->albedo_at(ray.origin);
   if (!outlives_roulette(walk) || !walk.length.survive(walk.throughput, walk.rng))
     return false;
   walk.phase = &world_.medium.phases[hit.volume->phase_index];
-  walk.segment.ray.origin = point;
   walk.skips_sampled = walk.from_surface = walk.in_plate = false;
   walk.from_medium = true;
   walk.light = 0;
@@ -101,7 +102,8 @@ void WalkTracer::sample_lights(PathWalk& walk) const {
 
 /// Now and then, a walk of its own from the collision, about the direction of a narrow light.
 void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
-  const std::optional<Vec3f> direction = light_branches_.sample(*walk.phase, walk.rng);
+  const std::optional<Vec3f> direction =
+      light_branches_.sample(*walk.phase, walk.segment.ray.origin, walk.rng);
   if (!direction)
     return;
   PathWalk branch = walk;
@@ -147,7 +149,8 @@ void WalkTracer::look_into_shells(PathWalk& walk) const {
 
 /// Russian roulette on what the walk's flight is about to bring.
 bool WalkTracer::outlives_roulette(PathWalk& walk) const {
-  const float importance = light_branches_.importance(walk.segment.ray.direction);
+  const Ray& ray = walk.segment.ray;
+  const float importance = light_branches_.importance(ray.origin, ray.direction);
   return survive_roulette(walk.least_weight * walk.refraction / importance, walk.throughput,
                           walk.rng);
 }

@@ -81,7 +81,7 @@ public:
   WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()),
-        light_branches_(world, shadow_rays_), shells_(world, shadow_rays_) {}
+        shells_(world, shadow_rays_), light_branches_(world, shadow_rays_, shells_) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -151,8 +151,8 @@ private:
   std::vector<bool> shadow_rays_;
   std::optional<int> max_bounces_;
   bool meets_light_; ///< flights may meet light before they end
-  LightBranches light_branches_;
   LampShells shells_;
+  LightBranches light_branches_;
 };
 
 } // namespace vdbeam
