@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Planned memory is what is taken: 20 drawn scenes, each rendered, its peak beside the plan's total."""
+"""Planned memory is what is taken: 12 drawn scenes, each rendered, its peak beside the plan's total."""
 import json
 import os
 import random
@@ -78,7 +78,7 @@ class PlannedMemory(InTempFolder):
     def test_total_is_the_measured_peak(self):
         ball = self.make_ball()
         wrong = []
-        for seed in range(20):
+        for seed in range(12):
             drawing = Drawing(seed, ball)
             command = [BINARY, "render", str(drawing.scene), "-o", self.file("o.exr"), *drawing.options]
             if drawing.preview:
