@@ -9,6 +9,7 @@
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
 #include "machine/threads.h"
+#include "materials/material_table.h"
 #include "medium/shadow_lattice.h"
 #include "photonmap/photon_blocks.h"
 #include "photonmap/photon_map.h"
@@ -149,9 +150,20 @@ private:
                                              : std::clamp(stored_per_depth * volumes_.depth,
                                                           fewest_stored, tuning::stored_per_path);
     const auto& asked = scene_.render.photons;
-    const double hits = share_of_hits(scene_, volumes_, false) * static_cast<double>(pixels_);
+    const double hits = share_that_wants_photons() * static_cast<double>(pixels_);
     return stored * (asked ? paths_for_photons(static_cast<double>(*asked), stored)
                            : automatic_paths(hits, stored));
+  }
+
+  /// Where mirrors, metal or glass may throw light onto surfaces, every pixel may show one: how
+  /// much of the image they cover is not known before the meshes are read.
+  double share_that_wants_photons() const {
+    const bool throws = std::any_of(
+        scene_.surfaces.begin(), scene_.surfaces.end(), [](const SurfaceSettings& surface) {
+          return material_kind(surface.material.type).make(surface.material, 1)->throws_light();
+        });
+    return throws && plan_.needs(Stage::surface_photons) ? 1
+                                                         : share_of_hits(scene_, volumes_, false);
   }
 
   void add_photons() {
@@ -196,8 +208,7 @@ private:
 
   void add_film() {
     const bool walks = plan_.needs(Stage::photons) && plan_.needs(Stage::beam_query) &&
-                       scene_.render.final_gather != FinalGathering::never &&
-                       scene_.surfaces.empty();
+                       scene_.render.final_gather != FinalGathering::never;
     // The picture that is written is developed once photons are gone.
     const std::uint64_t film = plan_.film_bytes,
                         developed = pixels_ * (Film::developed_bytes_per_pixel(scene_.glows()) +

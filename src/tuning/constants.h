@@ -52,7 +52,7 @@ VDBEAM_TUNED(double, photons_per_hidden_hit, 1);
 VDBEAM_TUNED(double, most_paths_per_photon, 16);
 /// Where the camera sees nothing of a cell, collisions there are stored with at least this share of
 /// the probability of those that it sees best: photons that bring nothing against rare bright ones.
-VDBEAM_TUNED(float, least_importance, 1.0f / 1024);
+VDBEAM_TUNED(float, least_importance, 1.0f / 64);
 /// Photons of less importance than the inverse are thinned even where there are too few.
 VDBEAM_TUNED(double, most_view_factor, 4);
 /// Camera rays along the picture's longer side that find the importance of cells.

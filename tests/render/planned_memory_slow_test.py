@@ -70,10 +70,18 @@ class PlannedMemory(InTempFolder):
                          encoding="utf-8")
         return scene
 
-    def planned(self, drawing):
-        code, text = run(BINARY, "plan", str(drawing.scene), "--json", "--no-pilot", *drawing.options)
+    def planned(self, scene, options):
+        code, text = run(BINARY, "plan", str(scene), "--json", "--no-pilot", *options)
         self.assertEqual(code, 0, text)
         return json.loads(text[text.index("{"):])["memory"]["peak"]
+
+    def test_surfaces_that_throw_light_take_photons(self):
+        """Caustics may be anywhere on the ground, so there are more photons than for the cloud alone."""
+        scene, options = DATA / "cloud_over_ground.toml", ["--resolution", "480x270", "--passes", "2"]
+        code, text, peak = run_measured(BINARY, "render", str(scene), "-o", self.file("o.exr"), *options)
+        self.assertEqual(code, 0, text)
+        share = self.planned(scene, options) / peak
+        self.assertTrue(LEAST <= share <= MOST, share)
 
     def test_total_is_the_measured_peak(self):
         ball = self.make_ball()
@@ -83,7 +91,7 @@ class PlannedMemory(InTempFolder):
             command = [BINARY, "render", str(drawing.scene), "-o", self.file("o.exr"), *drawing.options]
             if drawing.preview:
                 command += ["--preview", self.file("o.png")]
-            planned = self.planned(drawing)
+            planned = self.planned(drawing.scene, drawing.options)
             code, text, peak = run_measured(*command)
             self.assertEqual(code, 0, text)
             share = planned / peak
