@@ -11,9 +11,9 @@ namespace vdbeam {
 
 /// Distances along a piece of a ray in proportion to 1 / r^2, r being the distance to a light at a
 /// point: equal angles seen from there (Kulla and Fajardo, Importance Sampling Techniques for Path
-/// Tracing in Participating Media, 2012); or, in proportion to a density of the scattering angle
-/// over r^2. The scattering angle theta is that by which light of the lamp turns at the point to
-/// travel against the ray.
+/// Tracing in Participating Media, 2012). With a density of the scattering angle, distances are in
+/// proportion to that density over r^2. The scattering angle theta is the angle by which light of
+/// the lamp turns at the point to travel against the ray.
 class EquiAngular {
 public:
   /// The piece from t_begin to t_end, t_begin < t_end. `angles`: their density, which must outlive

@@ -42,12 +42,11 @@ TEST(Draft, IsAsBrightAsThePicture) {
   const StopToken stop;
   for (const int reduction : {2, 3, 5}) {
     Draft draft(scene, prepared, whole(scene), reduction, stop);
-    // A fifth of the size has 260 pixels: over 8 seeds its mean scatters by 0.8 % after 8 passes,
-    // and by 1.5 % after 2.
-    constexpr int kPasses = 8;
-    for (int pass = 0; pass < kPasses; ++pass)
+    // A fifth of the size has 260 pixels: over 8 seeds its mean scatters by 0.8 % after 8 passes.
+    constexpr int passes = 8;
+    for (int pass = 0; pass < passes; ++pass)
       ASSERT_TRUE(draft.add_pass());
-    EXPECT_EQ(draft.passes(), kPasses);
+    EXPECT_EQ(draft.passes(), passes);
     draft.look_through();
     const PassImage image = draft.enlarged(setup.input, whole(scene));
     ASSERT_EQ(image.width, scene.image.width);

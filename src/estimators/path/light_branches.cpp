@@ -62,15 +62,6 @@ bool LightBranches::is_peaked(const PhaseFunction& phase) const {
   return std::find(peaked_.begin(), peaked_.end(), &phase) != peaked_.end();
 }
 
-/// c at a scattering by this phase function.
-float LightBranches::chance(const PhaseFunction& phase, const Vec3f& point) const {
-  const bool worth = any() && (is_peaked(phase) ||
-                               std::any_of(lights_.begin(), lights_.end(), [&](const auto& light) {
-                                 return light.passed_from(point);
-                               }));
-  return worth ? tuning::branches_per_scattering : 0;
-}
-
 /// The angle to the lamp has the density g of scattering angles, whose even part is proportional to
 /// 1 / D per solid angle.
 float LightBranches::density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const {
@@ -102,8 +93,7 @@ float LightBranches::density_about(const NarrowLight& light, const PhaseFunction
 
 std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec3f& point,
                                            Rng& rng) const {
-  const float c = chance(phase, point);
-  if (c == 0 || rng.uniform() >= c)
+  if (!any() || rng.uniform() >= tuning::branches_per_scattering)
     return std::nullopt;
   const auto count = static_cast<float>(lights_.size());
   const auto index = static_cast<std::size_t>(rng.uniform() * count);
@@ -120,13 +110,12 @@ std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec
 
 float LightBranches::density(const PhaseFunction& phase, const Vec3f& point,
                              const Vec3f& direction) const {
-  const float c = chance(phase, point);
-  if (c == 0)
+  if (!any())
     return 0;
   float sum = 0;
   for (const NarrowLight& light : lights_)
     sum += density_about(light, phase, point, direction);
-  return c * sum / static_cast<float>(lights_.size());
+  return tuning::branches_per_scattering * sum / static_cast<float>(lights_.size());
 }
 
 float LightBranches::importance(const Vec3f& point, const Vec3f& direction) const {

@@ -57,7 +57,6 @@ private:
     bool passed_from(const Vec3f& point) const;
   };
   bool is_peaked(const PhaseFunction& phase) const;
-  float chance(const PhaseFunction& phase, const Vec3f& point) const;
   float density_about(const NarrowLight& light, const PhaseFunction& phase, const Vec3f& point,
                       const Vec3f& direction) const;
   float density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const;
