@@ -26,9 +26,10 @@ Rgb scattering_at(const Medium& medium, const Vec3f& point, float cosine) {
   medium.for_each_at(point, [&](std::size_t v) {
     const Volume& volume = medium.volumes[v];
     if (const float density = volume.density(point); density > 0)
-      sum += volume.albedo_at(point) * volume.channel_scale *
-             (density * volume.extinction *
-              medium.phases[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
+      sum +=
+          volume.albedo_at(point) * volume.channel_scale *
+          (density * volume.extinction *
+           medium.gathered_phases()[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
   });
   return sum;
 }

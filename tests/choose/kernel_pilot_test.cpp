@@ -34,7 +34,7 @@ TEST(BestNeighbours, FollowsNoiseAndBias) {
   EXPECT_EQ(best(1, 0, 0), 800);
 }
 
-TEST(BestNeighbours, LeansOnTheUsualNumberWhereTheTrialTellsLittle) {
+TEST(BestNeighbours, LeansOnTheUsualNumberWhereTheTrialShowsLittle) {
   const auto best = [](double change, double error) {
     const KernelErrors errors{1, 0.25, change, error, {}, {}};
     return KernelModel(trial(600), trial(2400), errors, 0.25, 0.6).best_neighbours();

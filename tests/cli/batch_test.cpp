@@ -80,7 +80,7 @@ TEST_F(BatchCommand, PartialResizedAndCutImagesAreRenderedAgain) {
             std::string::npos);
 }
 
-TEST_F(BatchCommand, TellsWhatFailedAndGoesOn) {
+TEST_F(BatchCommand, ReportsFailuresAndGoesOn) {
   write_sequence();
   write("c.0002.vdb", "not a volume");
   const auto result = render_frames("1-5", {"--progress", "openjd"});
@@ -99,7 +99,7 @@ TEST_F(BatchCommand, TellsWhatFailedAndGoesOn) {
 }
 
 /// Once, where it happens; the last line says which frames failed.
-TEST_F(BatchCommand, TellsAFailureOnce) {
+TEST_F(BatchCommand, ReportsAFailureOnce) {
   write_sequence();
   write("c.0002.vdb", "not a volume");
   const std::string text = render_frames("1-2").error, reason = "is not a VDB file";

@@ -86,7 +86,7 @@ TEST_F(Messages, PassesOfAFrameAreNoFinishedPictureByName) {
   EXPECT_EQ(files(), std::vector<std::string>{"cloud.passes_0-1.exr"});
 }
 
-TEST_F(Messages, LastLineTellsWhatThePictureShows) {
+TEST_F(Messages, LastLineDescribesTheImage) {
   const auto result = render({cloud, "--passes", "1", "-o", "c.exr", "--report", "r.json"});
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_NE(result.error.find("; optical depth up to "), std::string::npos) << result.error;

@@ -41,7 +41,7 @@ TEST_F(RenderCommand, WritesImagePreviewAndReport) {
   EXPECT_TRUE(report["versions"].contains("OpenVDB"));
 }
 
-TEST_F(RenderCommand, ImageTellsItsCameraAndScene) {
+TEST_F(RenderCommand, ImageStoresItsCameraAndScene) {
   ASSERT_EQ(render({cloud, "-o", "a.exr", "--passes", "1", "--estimator", "path"}).code, 0);
   const std::string bytes = read("a.exr");
   for (const char* name :

@@ -135,7 +135,7 @@ TEST_F(SplitJob, StalePartsAreNotMerged) {
   expect_like_whole("4");
 }
 
-TEST_F(SplitJob, FarmTellsAtOnceWhichFramesHaveNoVolume) {
+TEST_F(SplitJob, FarmReportsAtOnceWhichFramesHaveNoVolume) {
   for (const char* name : {"v.0001.vdb", "v.0002.vdb", "v.0005.vdb"})
     fs::copy_file(fog_vdb, folder_ / name);
   const auto farm = [&](const std::string& frames, const Names& more = {}) {

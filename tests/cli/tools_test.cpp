@@ -47,7 +47,7 @@ TEST_F(InfoCommand, AgreesWithRenderAboutEveryKindOfVolume) {
   EXPECT_GE(refused, 2); // a background, a frustum
 }
 
-TEST_F(InfoCommand, TellsOfMeshes) {
+TEST_F(InfoCommand, ReportsMeshes) {
   write("uv.obj", "v -1 0 0\nv 1 0 0\nv 1 3 0\nvt 0 0\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\n");
   write("plain.obj", "v 9 0 0\nv 11 0 0\nv 11 3 4\nv 0 0 nan\nf 1 2 3\nf 1 2 4\n");
   const auto result = run({"info", "uv.obj", "plain.obj"});
@@ -60,7 +60,7 @@ TEST_F(InfoCommand, TellsOfMeshes) {
     EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
 }
 
-TEST_F(InfoCommand, TellsOfPictures) {
+TEST_F(InfoCommand, ReportsImages) {
   Image image;
   image.width = 2;
   image.height = 1;
@@ -123,7 +123,7 @@ TEST_F(InitCommand, ReplacesOnlyWhenForced) {
   EXPECT_NE(read("s.toml"), "mine");
 }
 
-TEST_F(PlanCommand, TellsStagesAndReasons) {
+TEST_F(PlanCommand, PrintsStagesAndReasons) {
   const auto result = run({"plan", cloud, "--estimator", "path"});
   ASSERT_EQ(result.code, 0) << result.error;
   EXPECT_NE(result.out.find("the path estimator traces no photons"), std::string::npos)

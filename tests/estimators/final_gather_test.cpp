@@ -18,7 +18,8 @@ std::optional<int> first_final_gather(const MemoryScene& scene) {
   return gather ? std::optional(gather->first) : std::nullopt;
 }
 
-/// Shadow rays from walks to a lamp among the lumps have no bound, so kernels have less noise.
+/// The few walks that come near a lamp among the lumps are far brighter than the others, so kernels
+/// have less noise.
 TEST(FinalGather, IsUsedWhereItPays) {
   MemoryScene scene = lumpy_cloud(160, 48);
   EXPECT_EQ(first_final_gather(scene), 0);
@@ -79,7 +80,7 @@ TEST(FinalGather, LessensTheBlur) {
 
 /// At a probed pixel the blur is measured by the same walks in narrower kernels, and no pixel
 /// changes for it.
-TEST(FinalGather, TellsItsBlur) {
+TEST(FinalGather, EstimatesItsBlur) {
   MemoryScene scene = lumpy_cloud(40, 48);
   RenderSettings& render = scene.scene.render;
   render.kernel = KernelRadius::fixed;

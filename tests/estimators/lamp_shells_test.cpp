@@ -4,9 +4,11 @@
 #include "support/statistics.h"
 #include "support/test_frame.h"
 
-#include "rays/lamp_shells.h"
+#include "rays/lamp_directions.h"
 
 #include <gtest/gtest.h>
+
+#include <numbers>
 
 namespace vdbeam {
 namespace {
@@ -102,6 +104,27 @@ TEST_F(LampShellsTest, AreAroundLampsInTheMediumOnly) {
   EXPECT_FALSE(LampShells(far.world, {true}).any());
 }
 
+/// Directions about a lamp have the density that is stated, close to the lamp too; beyond reach
+/// there are none.
+TEST_F(LampShellsTest, DrawDirectionsAboutLampsByTheirDensity) {
+  const LampDirections directions(world(), shells_);
+  const Vec3f near(lamp_ + Vec3d(0.5, 0, 0) * shells_.radius_of(0));
+  Rng rng({}, RngStage::walk, 2);
+  for (const double angle : {0.03, 1.0}) {
+    Samples cone; // the solid angle of a cone about the lamp
+    for (int i = 0; i < 100000; ++i) {
+      const std::optional<Vec3f> drawn = directions.sample(near, rng);
+      ASSERT_TRUE(drawn);
+      const bool inside = -drawn->x > std::cos(angle);
+      cone.add(inside ? 1 / static_cast<double>(directions.density(near, *drawn)) : 0);
+    }
+    expect_mean(cone, 2 * std::numbers::pi * (1 - std::cos(angle)));
+  }
+  const Vec3f far(lamp_ + Vec3d(2, 0, 0) * LampDirections::reach(shells_, 0));
+  EXPECT_FALSE(directions.sample(far, rng));
+  EXPECT_EQ(directions.density(far, {-1, 0, 0}), 0);
+}
+
 /// Where a path may scatter twice at most, its flights look for lamps only before the second event.
 TEST(LampShellsOfPath, KeepTheLimitOfBounces) {
   for (const int limit : {1, 2, 3}) {
@@ -113,6 +136,16 @@ TEST(LampShellsOfPath, KeepTheLimitOfBounces) {
     expect_same_mean(path.indirect[0], march.indirect[0], 0.02 * march.indirect[0].mean());
     expect_power(path.indirect[0], 0.02 * march.total[0].mean());
   }
+}
+
+/// Walks that gather photons find the light of lamps by the same means as paths do: both have the
+/// same mean, and little noise.
+TEST(LampShellsOfGather, HaveTheLightOfPaths) {
+  const MemoryScene scene = lamp_in_fog();
+  const PassMeans path = render_passes(scene, EstimatorType::path, 200);
+  const PassMeans gather = render_passes(scene, EstimatorType::gather, 200);
+  expect_same_mean(path.indirect[0], gather.indirect[0], 0.04 * path.indirect[0].mean());
+  EXPECT_LT(gather.indirect[0].error(), 0.01 * gather.indirect[0].mean()); // 0.021 by shadow rays
 }
 
 } // namespace

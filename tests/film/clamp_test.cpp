@@ -16,7 +16,7 @@ PassImage two_pixels() {
   return pass;
 }
 
-TEST(Clamp, DimsBrightPixelsAndTellsWhatItTook) {
+TEST(Clamp, DimsBrightPixelsAndReportsTheLightRemoved) {
   PassImage pass = two_pixels();
   const ClampTally tally = clamp_pass(pass, 4);
   // The first has 1 at most, whatever is seen through it; the second 16, so it keeps a quarter.

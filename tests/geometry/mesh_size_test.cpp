@@ -49,7 +49,7 @@ TEST(MeshSize, CountsWhatNodesOfAGltfShow) {
   EXPECT_EQ(foretell_mesh(folder.file("d.glb")).triangles, 10u);
 }
 
-TEST(MeshSize, TellsOfNormals) {
+TEST(MeshSize, ReportsNormals) {
   const TempFolder folder;
   write_bytes(folder.file("a.ply"), "ply\nelement vertex 3\nproperty double nx\nend_header\n");
   write_bytes(folder.file("a.gltf"),

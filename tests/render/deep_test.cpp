@@ -276,7 +276,7 @@ TEST_F(DeepFiles, CheckpointsGoOn) {
   test::expect_same_deep(*resumed.deep, whole);
 }
 
-TEST(Deep, TellsWhatIsWrong) {
+TEST(Deep, NamesTheMistake) {
   try {
     sample_scene("sunlit_cloud.toml", {"render.clamp=3"});
     FAIL();

@@ -137,7 +137,7 @@ TEST(Layers, CompressionOfTheFile) {
   }
 }
 
-TEST(Layers, TellsWhatIsWrong) {
+TEST(Layers, NamesTheMistake) {
   EXPECT_EQ(error_of({"layer.0.name=shadows"}),
             "layer.0.name must be beauty, alpha, volume, volume_direct, volume_indirect, "
             "volume_emission, depth, background, transmittance, variance, error, samples, lights, "

@@ -186,7 +186,7 @@ TEST_F(Look, SeveralMasksMultiply) {
   EXPECT_THROW(render(load({file, "volume.0.mask=tint_g, nothing"})), InputError);
 }
 
-TEST_F(Look, TellsWhatIsWrong) {
+TEST_F(Look, NamesTheMistake) {
   const auto error = [&](const std::vector<std::string>& overrides) {
     try {
       load(overrides);

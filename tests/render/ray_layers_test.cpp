@@ -311,7 +311,7 @@ TEST_F(RayLayersTest, CheckpointsAndCropsKeepThem) {
   }
 }
 
-TEST_F(RayLayersTest, TellsWhatIsWrong) {
+TEST_F(RayLayersTest, NamesTheMistake) {
   const auto error_of = [&](const std::string& text, const std::vector<std::string>& more) {
     try {
       load(text, more);

@@ -51,7 +51,7 @@ TEST_F(ShutterTest, NoTimeNoBlur) {
 }
 
 /// A time limit may end a frame before its passes have seen the whole of the shutter's time.
-TEST_F(ShutterTest, TellsOfTooFewPasses) {
+TEST_F(ShutterTest, WarnsOfTooFewPasses) {
   const auto notes_of = [&](const std::string& passes) {
     std::string all;
     for (const std::string& note :
@@ -64,7 +64,7 @@ TEST_F(ShutterTest, TellsOfTooFewPasses) {
 }
 
 /// Volumes that stay sharp under an open shutter get a note.
-TEST_F(ShutterTest, TellsOfMissingVelocities) {
+TEST_F(ShutterTest, WarnsOfMissingVelocities) {
   const auto notes_of = [&](const std::vector<std::string>& more) {
     std::string all;
     for (const std::string& note : render(load(more)).notes)

@@ -24,7 +24,7 @@ std::string notes_of(const RenderResult& result) {
   return text;
 }
 
-TEST(Sight, TellsTheOpticalDepth) {
+TEST(Sight, ReportsTheOpticalDepth) {
   const RenderResult usual = render_with({});
   EXPECT_GT(usual.picture.optical_depth, 1);
   EXPECT_GT(usual.picture.opacity, 0.05);

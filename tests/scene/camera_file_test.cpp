@@ -50,7 +50,7 @@ TEST_F(CameraFileTest, InterpolatesAndHolds) {
 }
 
 /// Frames that the file does not have are reported; a camera that stands still has them all.
-TEST_F(CameraFileTest, TellsOfFramesBeyondTheFile) {
+TEST_F(CameraFileTest, WarnsOfFramesBeyondTheFile) {
   const auto notes_of = [&](const std::string& text, int frame) {
     write("shot.cam", text);
     std::string notes;
@@ -187,7 +187,7 @@ TEST_F(GltfCamera, BuffersInOtherFilesArePartOfIt) {
   }
 }
 
-TEST_F(GltfCamera, TellsWhatIsWrong) {
+TEST_F(GltfCamera, NamesTheMistake) {
   const auto error = [&](const std::vector<std::string>& overrides) {
     try {
       camera({1}, overrides);
@@ -205,7 +205,7 @@ TEST_F(GltfCamera, TellsWhatIsWrong) {
   EXPECT_THROW(load("[camera]\nfile = \"shot.gltf\"\n"), FrameError);
 }
 
-TEST_F(CameraFileTest, TellsWhatIsWrong) {
+TEST_F(CameraFileTest, NamesTheMistake) {
   const auto error = [&](const std::string& text) {
     write("shot.cam", text);
     return error_of(scene_text);

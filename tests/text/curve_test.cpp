@@ -22,7 +22,7 @@ TEST(Curve, HoldsColours) {
   EXPECT_EQ(curve.at(5, 2), 0.5);
 }
 
-TEST(Curve, TellsWhatIsWrong) {
+TEST(Curve, NamesTheMistake) {
   EXPECT_EQ(why_no_curve("", 1), "");
   EXPECT_EQ(why_no_curve("0:1 1:2", 1), "");
   EXPECT_EQ(why_no_curve("0:1", 1), "must have at least two points x:y, got \"0:1\"");

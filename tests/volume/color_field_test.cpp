@@ -69,7 +69,7 @@ TEST_F(ReadColors, BringsThemToUnity) {
   EXPECT_LT(length(colors.field->sample({1, 2, 3}) - Vec3d(1, 0.25, 1)), 1e-6);
 }
 
-TEST_F(ReadColors, TellsWhatIsWrong) {
+TEST_F(ReadColors, NamesTheMistake) {
   const auto error = [&](const std::string& name) {
     try {
       read_colors(path_, name);

@@ -12,30 +12,6 @@
 
 namespace vdbeam {
 
-namespace {
-
-/// The way light takes to the camera from a direction of travel `ahead`, away from the camera: the
-/// direction of the walk's first flight, and in `weight` phase function over density, which may be
-/// negative.
-Vec3f draw_first_direction(const Medium& medium, int phase_index, const Vec3f& ahead, Rng& rng,
-                           float& weight) {
-  const auto i = static_cast<std::size_t>(phase_index);
-  const PhaseFunction& drawn = medium.phases[i];
-  const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-  weight = 1;
-  if (!medium.peak)
-    return drawn.sample(ahead, u_lobe, u, v);
-  const Vec3f direction = rng.uniform() < tuning::evenly_drawn ? sample_sphere(u, v)
-                                                               : drawn.sample(ahead, u_lobe, u, v);
-  const float cosine = dot(ahead, direction);
-  const float pdf =
-      (1 - tuning::evenly_drawn) * drawn.evaluate(cosine) + tuning::evenly_drawn / (4 * pi);
-  weight = medium.gathered_phases()[i].evaluate(cosine) / pdf;
-  return direction;
-}
-
-} // namespace
-
 /// A walk on its way. Light that travels against its flight counts `throughput` times.
 struct FinalGather::Walk : Flight {
   Walk(const Rng& numbers, const Rgb& weight, RenderStatistics& counts_)
@@ -59,6 +35,7 @@ struct FinalGather::Walk : Flight {
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Maps& maps,
                          const SurfaceLighting& surfaces)
     : world_(world), plan_(plan), maps_(maps), surfaces_(surfaces),
+      shells_(world, plan.sampled_lights), lamps_(world, shells_),
       far_enough_(maps.photons.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
@@ -81,7 +58,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
     const Volume& volume = medium.volumes[chosen->volume];
     float weight = 1;
     const Vec3f direction =
-        draw_first_direction(medium, volume.phase_index, ray.direction, rng, weight);
+        draw_direction({point.position, ray.direction}, volume.phase_index, true, rng, weight);
     Walk walk(rng, chosen->weight * std::abs(weight), counts);
     walk.beginning = point.position;
     set_out(walk, Vec3d(point.position), direction);
@@ -98,18 +75,50 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
   return sum;
 }
 
+/// The direction of the flight after a scattering at the origin of `arriving`, against the light.
+/// `weight` is multiplied by phase function over density, which may be negative at the first
+/// scattering.
+Vec3f FinalGather::draw_direction(const Ray& arriving, int phase_index, bool first, Rng& rng,
+                                  float& weight) const {
+  const Medium& medium = world_.medium;
+  const auto i = static_cast<std::size_t>(phase_index);
+  const PhaseFunction &drawn = medium.phases[i],
+                      &value = first ? medium.gathered_phases()[i] : drawn;
+  const float evenly = first && medium.peak ? tuning::evenly_drawn : 0;
+  std::optional<Vec3f> direction;
+  if (lamps_.any() && rng.uniform() < tuning::branches_per_scattering)
+    direction = lamps_.sample(arriving.origin, rng);
+  if (!direction) {
+    const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    direction = evenly > 0 && rng.uniform() < evenly
+                    ? sample_sphere(u, v)
+                    : drawn.sample(arriving.direction, u_lobe, u, v);
+  }
+  const float about_lamps = lamps_.density(arriving.origin, *direction);
+  if (!(evenly > 0 || about_lamps > 0))
+    return *direction;
+  const float cosine = dot(arriving.direction, *direction);
+  float pdf = (1 - evenly) * drawn.evaluate(cosine) + evenly / (4 * pi);
+  if (about_lamps > 0)
+    pdf += tuning::branches_per_scattering * (about_lamps - pdf);
+  weight *= value.evaluate(cosine) / pdf;
+  return *direction;
+}
+
 /// Follows the walk to its end.
 void FinalGather::follow(Walk& walk) const {
   for (bool goes_on = advance_flight(walk, *this); goes_on;)
     goes_on = step_flight(world_.medium, walk, *this);
 }
 
-/// Begins a flight, which ends at the first surface.
+/// Begins a flight, which ends at the first surface, and adds the light of lamps that it passes.
 void FinalGather::set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
                           bool mirrored) const {
   walk.gathered = 0;
   walk.mirrored = mirrored;
   walk.start(world_.medium, flight_segment(world_, origin, direction, walk.end));
+  if (shells_.any())
+    walk.found.indirect += shells_.along(walk.segment, walk.rng) * walk.throughput;
 }
 
 void FinalGather::meet(Walk& walk, const Collision& hit) const {
@@ -140,7 +149,11 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   send_shadow_rays(walk, medium.gathered_phases()[phase]);
   if (last || !survive_roulette(tuning::roulette_below, walk.throughput, walk.rng))
     return false;
-  set_out(walk, Vec3d(point), walk.sample_direction(medium.phases[phase]));
+  float weight = 1;
+  const Vec3f direction =
+      draw_direction(walk.segment.ray, volume.phase_index, false, walk.rng, weight);
+  walk.throughput *= weight;
+  set_out(walk, Vec3d(point), direction);
   return advance_flight(walk, *this);
 }
 
@@ -191,7 +204,7 @@ bool FinalGather::meet_surface(Walk& walk) const {
 void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const {
   const Ray& flight = walk.segment.ray;
   for (std::size_t l = 0; l < world_.lights.size(); ++l) {
-    if (!plan_.sampled_lights[l])
+    if (!plan_.sampled_lights[l] || shells_.holds(l, flight.origin))
       continue;
     const auto shadow_ray = // these lights are found in no other way
         sample_shadow_ray(world_.lights[l], flight.origin, walk.rng,

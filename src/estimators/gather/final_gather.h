@@ -3,6 +3,7 @@
 #include "estimators/surface_lighting.h"
 #include "layers/ray_sink.h"
 #include "photons/photon_plan.h"
+#include "rays/lamp_directions.h"
 
 namespace vdbeam {
 
@@ -52,6 +53,8 @@ public:
 
 private:
   void follow(Walk& walk) const;
+  Vec3f draw_direction(const Ray& arriving, int phase_index, bool first, Rng& rng,
+                       float& weight) const;
   void set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
                bool mirrored = false) const;
   bool finds(const Walk& walk, std::size_t light) const;
@@ -64,6 +67,8 @@ private:
   const PhotonPlan& plan_;
   const Maps maps_;
   const SurfaceLighting& surfaces_;
+  const LampShells shells_; ///< flights find the light of lamps near by, shadow rays that of others
+  const LampDirections lamps_;
   float far_enough_; ///< distance from its beginning at which a walk ends
   bool meets_light_; ///< flights may meet light before they end
 };

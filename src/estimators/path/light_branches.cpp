@@ -1,11 +1,8 @@
 #include "estimators/path/light_branches.h"
 
-#include "math/sampling.h"
 #include "tuning/constants.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace vdbeam {
 
@@ -52,7 +49,7 @@ LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow
     if (has_peak(phase))
       peaked_.push_back(&phase);
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    const double reach = tuning::reach_of_branches * shells.radius_of(i);
+    const double reach = LampDirections::reach(shells, i);
     if (is_narrow(world.lights[i]) && shadow_rays[i] && (!peaked_.empty() || reach > 0))
       lights_.push_back({&world.lights[i], reach});
   }
@@ -62,32 +59,12 @@ bool LightBranches::is_peaked(const PhaseFunction& phase) const {
   return std::find(peaked_.begin(), peaked_.end(), &phase) != peaked_.end();
 }
 
-/// The angle to the lamp has the density g of scattering angles, whose even part is proportional to
-/// 1 / D per solid angle.
-float LightBranches::density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const {
-  // By the cross product: near the lamp the cosine has no digits left for the sine.
-  const double sine = std::max(1e-7, double{length(cross(to_lamp, direction))});
-  const double angle = std::atan2(sine, double{dot(to_lamp, direction)});
-  const double of_angle = medium_.angles ? medium_.angles->density(angle) : 1 / std::numbers::pi;
-  return static_cast<float>(of_angle / (2 * std::numbers::pi * sine));
-}
-
-Vec3f LightBranches::sample_about_lamp(const Vec3f& to_lamp, float u, float v) const {
-  const double share{u};
-  const double angle = medium_.angles ? medium_.angles->inverse(share) : share * std::numbers::pi;
-  Vec3f tangent, bitangent;
-  orthonormal_frame(to_lamp, tangent, bitangent);
-  const auto sine = static_cast<float>(std::sin(angle)), phi = 2 * pi * v;
-  return normalize(tangent * (sine * std::cos(phi)) + bitangent * (sine * std::sin(phi)) +
-                   to_lamp * static_cast<float>(std::cos(angle)));
-}
-
 /// q of one light.
 float LightBranches::density_about(const NarrowLight& light, const PhaseFunction& phase,
                                    const Vec3f& point, const Vec3f& direction) const {
   const Vec3f to_light = light.towards(point);
   if (light.passed_from(point))
-    return density_about_lamp(to_light, direction);
+    return LampDirections::density_about(medium_, to_light, direction);
   return is_peaked(phase) ? about_light(phase, to_light, direction) : 0;
 }
 
@@ -101,7 +78,7 @@ std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec
   const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
   const Vec3f to_light = light.towards(point);
   if (light.passed_from(point))
-    return sample_about_lamp(to_light, u, v);
+    return LampDirections::sample_about(medium_, to_light, u, v);
   if (!is_peaked(phase))
     return std::nullopt;
   const Vec3f direction = phase.sample(to_light, u_lobe, u, v);
@@ -122,7 +99,8 @@ float LightBranches::importance(const Vec3f& point, const Vec3f& direction) cons
   float most = 0;
   for (const NarrowLight& light : lights_) {
     if (light.passed_from(point))
-      most = std::max(most, density_about_lamp(light.towards(point), direction));
+      most =
+          std::max(most, LampDirections::density_about(medium_, light.towards(point), direction));
     for (const PhaseFunction* phase : peaked_)
       most = std::max(most, phase->evaluate(dot(light.towards(point), direction)));
   }

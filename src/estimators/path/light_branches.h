@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rays/lamp_shells.h"
+#include "rays/lamp_directions.h"
 #include "transport/world.h"
 
 #include <optional>
@@ -17,8 +17,8 @@ namespace vdbeam {
 /// own in a direction about the light's instead of its own. With p the density of the walk's own
 /// direction and c q that of branches, both carry p/(p + c q), which leaves the mean as it is:
 /// flights at the light become many and faint (docs/theory/transport.md, "The reference").
-/// q is the phase function about the light's direction or, for lamps in the medium, a density that
-/// grows as 1 / D towards them.
+/// q is the phase function about the light's direction or, for lamps in the medium, that of
+/// LampDirections.
 ///
 /// This is the idea of DXTRAN in neutron transport (X-5 Monte Carlo Team, *MCNP: A General Monte
 /// Carlo N-Particle Transport Code*, 2003), for directions in place of a region.
@@ -59,8 +59,6 @@ private:
   bool is_peaked(const PhaseFunction& phase) const;
   float density_about(const NarrowLight& light, const PhaseFunction& phase, const Vec3f& point,
                       const Vec3f& direction) const;
-  float density_about_lamp(const Vec3f& to_lamp, const Vec3f& direction) const;
-  Vec3f sample_about_lamp(const Vec3f& to_lamp, float u, float v) const;
 
   const Medium& medium_;
   std::vector<NarrowLight> lights_;
