@@ -14,7 +14,7 @@ namespace vdbeam {
 /// proportional to 1 / D per solid angle (docs/theory/transport.md, T.18).
 class LampDirections {
 public:
-  /// Of the lamps that have shells. `world` must outlive this.
+  /// Takes the lamps that have shells. `world` must outlive this.
   LampDirections(const World& world, const LampShells& shells);
 
   bool any() const { return !lamps_.empty(); }
