@@ -114,7 +114,6 @@ void follow_scene(const EstimatorInput& input, const SceneChoices& scene, Choice
 void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices& choices) {
   PhotonPlan& plan = choices.photons;
   const World& world = input.world;
-  const KernelShare share = boundary_share(input, KernelDomain::disc);
   const double paths = static_cast<double>(plan.paths), photons = plan.stored_per_path * paths;
   const double trial_paths =
       std::ceil(std::clamp(tuning::trial_share * paths,
@@ -139,7 +138,7 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
       radii.neighbours = static_cast<float>(trial->neighbours * trial_paths / paths);
       trial->maps.push_back(PhotonMap::build(traced.photons, input.photon_channels(), radii,
                                              input.settings.kernel_shape));
-      fit_kernels(world, share, trial->maps.back());
+      fit_kernels(input, KernelDomain::disc, true, trial->maps.back());
     }
   }
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);

@@ -1,7 +1,6 @@
 #include "photonmap/photon_map.h"
 
 #include "machine/stopwatch.h"
-#include "photonmap/clear_weight.h"
 #include "photonmap/kernel_radii.h"
 #include "photonmap/map_queries.h"
 #include "photonmap/photon_blocks.h"
@@ -10,6 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -94,9 +94,11 @@ float disc_kernel(KernelShape shape, float s) {
   return 0;
 }
 
-void divide_photon(PhotonBlocks& blocks, std::size_t photon, float divisor) {
-  for (int c = 0; c < blocks.channels(); ++c)
-    blocks.at(photon, PhotonBlocks::power + c) /= divisor;
+void weigh_photon(PhotonBlocks& blocks, std::size_t photon, const Kernel& kernel) {
+  for (int c = 0; c < blocks.channels(); ++c) {
+    float& power = blocks.at(photon, PhotonBlocks::power + c);
+    power = power * kernel.weight / kernel.share;
+  }
 }
 
 } // namespace
@@ -155,29 +157,19 @@ PhotonMap PhotonMap::copy() const {
   return map;
 }
 
-void PhotonMap::keep_clear(const Clearance& clearance) {
+void PhotonMap::fit(const KernelFit& fit) {
   PhotonBlocks& blocks = data_->blocks;
+  std::atomic<bool> resized = false;
   tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
     float& radius = blocks.at(i, PhotonBlocks::radius);
-    constexpr float far = clear_weights.back().ratio;
-    const float clear = clearance(blocks.position(i), far * radius), ratio = clear / radius;
-    if (!(ratio < far))
-      return;
-    const float factor = clear_weight(ratio);
-    radius = factor > 0 ? clear / std::sqrt(1 + ratio * ratio) : 0;
-    for (int c = 0; c < blocks.channels(); ++c)
-      blocks.at(i, PhotonBlocks::power + c) *= factor;
+    const Kernel kernel = fit(blocks.position(i), radius);
+    if (kernel.radius != radius)
+      resized.store(true, std::memory_order_relaxed);
+    radius = kernel.radius;
+    weigh_photon(blocks, i, kernel);
   });
-  data_->refit();
-}
-
-void PhotonMap::divide_power(const KernelShare& share) {
-  if (!share)
-    return;
-  PhotonBlocks& blocks = data_->blocks;
-  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
-    divide_photon(blocks, i, share(blocks.position(i), blocks.at(i, PhotonBlocks::radius)));
-  });
+  if (resized)
+    data_->refit();
 }
 
 PhotonMap PhotonMap::resized(float factor) const {

@@ -10,12 +10,14 @@
 
 namespace vdbeam {
 
-/// Share of a photon's kernel that lies where photons can be stored at all, from its position and
-/// radius.
-using KernelShare = std::function<float(const Vec3f& position, float radius)>;
+/// What a photon's kernel becomes: its radius, the weight of the photon's power, and the share of
+/// the kernel that lies where photons can be, by which the power is divided.
+struct Kernel {
+  float radius, weight = 1, share = 1;
+};
 
-/// The distance of a point from the nearest surface; `most` where that is less.
-using Clearance = std::function<float(const Vec3f& point, float most)>;
+/// Changes a kernel, given the photon's position and the radius so far.
+using KernelFit = std::function<Kernel(const Vec3f& position, float radius)>;
 
 /// How kernel radii are chosen (render units).
 struct RadiusSettings {
@@ -63,14 +65,8 @@ public:
 
   /// The same map once more.
   PhotonMap copy() const;
-  /// Makes kernels end before surfaces: at a distance d from the nearest one the radius r becomes
-  /// d / sqrt(1 + (d / r)^2), less than d, so that no light leaks through it, and no part of a
-  /// kernel is cut off, so that none is lost. Photons nearer than 0.08 r, whose kernels would be
-  /// too small, count as nothing; those further away count so much more or less that even light
-  /// stays even.
-  void keep_clear(const Clearance& clearance);
-  /// Divides every photon's power by its kernel's share; `share` may be empty, for 1 everywhere.
-  void divide_power(const KernelShare& share);
+  /// Changes every kernel.
+  void fit(const KernelFit& fit);
   /// The same map with the radius of every kernel multiplied by `factor`.
   PhotonMap resized(float factor) const;
 

@@ -1,6 +1,8 @@
 #include "photons/kernel_support.h"
 
 #include "math/sampling.h"
+#include "photons/clear_kernel.h"
+#include "tuning/constants.h"
 
 namespace vdbeam {
 
@@ -10,29 +12,56 @@ namespace {
 constexpr float ring_radii[2] = {0.302f, 0.608f};
 constexpr float cos_sixth[6] = {1, 0.5f, -0.5f, -1, -0.5f, 0.5f};
 constexpr float sin_sixth[6] = {0, 0.866025f, 0.866025f, 0, -0.866025f, -0.866025f};
+/// A ring close to the kernel's border, which is looked at for leaks too [radii].
+constexpr float border = 0.9f;
+/// From nearer photons the camera sees discs by rays of very different directions [radii].
+constexpr double least_distance_of_camera = 3;
+
+/// The plane of a photon's disc.
+struct DiscPlane {
+  DiscPlane(const Camera& camera, const Vec3f& photon) : center(photon) {
+    orthonormal_frame(Vec3f(camera.direction_towards(Vec3d(photon))), u, v);
+  }
+  /// One of twelve points at a distance from the centre; those with odd numbers are between those
+  /// with even ones.
+  Vec3f point(int i, float distance) const {
+    const bool turned = i % 2 != 0;
+    const auto k = static_cast<std::size_t>(i / 2);
+    const float c = turned ? sin_sixth[k] : cos_sixth[k], s = turned ? cos_sixth[k] : sin_sixth[k];
+    return center + (u * c + v * s) * distance;
+  }
+  Vec3f center, u, v;
+};
 
 } // namespace
 
-bool KernelSupport::inside(const Vec3f& point) const {
-  bool found = false;
-  medium_->for_each_at(
-      point, [&](std::size_t v) { found = found || medium_->volumes[v].majorant(point) > 0; });
-  return found;
+Kernel KernelSupport::fit(const Vec3f& photon, float radius) const {
+  Kernel kernel{radius};
+  bool cut = false;
+  if (const Surfaces* surfaces = world_->surfaces.get()) {
+    const double far{far_from_surfaces * radius};
+    const auto distance = static_cast<float>(surfaces->set->distance(Vec3d(photon), far));
+    kernel = clear_kernel(radius, distance);
+    const float least = tuning::least_disc_before_surface * radius;
+    cut = domain_ == KernelDomain::disc && kernel.radius < least &&
+          is_cut_without_leak(photon, least);
+    if (cut)
+      kernel = {least};
+  }
+  if (kernel.radius > 0 && (cut || by_medium_))
+    kernel.share = domain_ == KernelDomain::disc ? disc_share(photon, kernel.radius, cut)
+                                                 : ball_share(photon, kernel.radius);
+  return kernel;
 }
 
-float KernelSupport::disc_share(const Vec3f& photon, float radius) const {
-  const Vec3f view(camera_->direction_towards(Vec3d(photon)));
-  Vec3f u, v;
-  orthonormal_frame(view, u, v);
+float KernelSupport::disc_share(const Vec3f& photon, float radius, bool cut) const {
+  const DiscPlane plane(*camera_, photon);
   int hits = 0;
-  for (int ring = 0; ring < 2; ++ring)
-    for (int i = 0; i < 6; ++i) {
-      // The outer ring is turned by a quarter of the plane's symmetry, so that twelve directions
-      // count.
-      const float c = ring == 0 ? cos_sixth[i] : sin_sixth[i];
-      const float s = ring == 0 ? sin_sixth[i] : cos_sixth[i];
-      hits += inside(photon + (u * c + v * s) * (radius * ring_radii[ring]));
-    }
+  // The outer ring is turned by a quarter of the plane's symmetry, so that twelve directions count.
+  for (int i = 0; i < 12; ++i) {
+    const Vec3f point = plane.point(i, radius * ring_radii[i % 2]);
+    hits += (!by_medium_ || in_medium(point)) && (!cut || unobstructed(photon, point));
+  }
   return std::max(least_share, static_cast<float>(hits) / 12);
 }
 
@@ -45,33 +74,58 @@ float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
     for (const float sign : {-1.0f, 1.0f}) {
       Vec3f offset;
       offset[a] = sign * face;
-      hits += inside(photon + offset);
+      hits += in_medium(photon + offset);
     }
   for (int i = 0; i < 8; ++i)
-    hits += inside(photon + Vec3f{i & 1 ? corner : -corner, i & 2 ? corner : -corner,
-                                  i & 4 ? corner : -corner});
+    hits += in_medium(photon + Vec3f{i & 1 ? corner : -corner, i & 2 ? corner : -corner,
+                                     i & 4 ? corner : -corner});
   return std::max(least_share, static_cast<float>(hits) / 14);
 }
 
-void clear_of_surfaces(const World& world, PhotonMap& map) {
-  if (const Surfaces* surfaces = world.surfaces.get())
-    map.keep_clear([&](const Vec3f& point, float most) {
-      return static_cast<float>(surfaces->set->distance(Vec3d(point), static_cast<double>(most)));
-    });
+/// Whether light leaks nowhere though the disc meets a surface.
+bool KernelSupport::is_cut_without_leak(const Vec3f& photon, float radius) const {
+  if (length(Vec3d(photon) - camera_->origin()) < least_distance_of_camera * double{radius})
+    return false;
+  const DiscPlane plane(*camera_, photon);
+  for (int i = 0; i < 12; ++i)
+    if (leaks_to(photon, plane.point(i, radius * border)))
+      return false;
+  for (int i = 1; i < 12; i += 2)
+    if (leaks_to(photon, plane.point(i, radius * ring_radii[1])))
+      return false;
+  return true;
 }
 
-void fit_kernels(const World& world, const KernelShare& share, PhotonMap& map) {
-  clear_of_surfaces(world, map);
-  map.divide_power(share);
+/// The camera sees the point, but the photon does not. What is seen in mirrors is left out.
+bool KernelSupport::leaks_to(const Vec3f& photon, const Vec3f& point) const {
+  if (unobstructed(photon, point))
+    return false;
+  const Vec3d view = camera_->direction_towards(Vec3d(point));
+  const double distance = dot(Vec3d(point) - camera_->origin(), view);
+  const auto hit =
+      world_->surfaces->set->intersect(Vec3d(point), view * -1.0, 0, distance, /*camera=*/true);
+  return !hit || world_->surfaces->material(*hit).is_specular();
 }
 
-KernelShare boundary_share(const EstimatorInput& input, KernelDomain domain) {
-  const KernelSupport support(input.world.medium, input.camera);
-  if (domain == KernelDomain::ball)
-    return
-        [support](const Vec3f& photon, float radius) { return support.ball_share(photon, radius); };
-  return
-      [support](const Vec3f& photon, float radius) { return support.disc_share(photon, radius); };
+bool KernelSupport::in_medium(const Vec3f& point) const {
+  bool found = false;
+  const Medium& medium = world_->medium;
+  medium.for_each_at(
+      point, [&](std::size_t v) { found = found || medium.volumes[v].majorant(point) > 0; });
+  return found;
+}
+
+bool KernelSupport::unobstructed(const Vec3f& photon, const Vec3f& point) const {
+  const Vec3f to_point = point - photon;
+  const float distance = length(to_point);
+  return !(distance > 0) || unoccluded(*world_, Vec3d(photon), to_point / distance, distance);
+}
+
+void fit_kernels(const EstimatorInput& input, KernelDomain domain, bool by_medium, PhotonMap& map) {
+  if (!input.world.surfaces && !by_medium)
+    return;
+  const KernelSupport support(input, domain, by_medium);
+  map.fit([&](const Vec3f& photon, float radius) { return support.fit(photon, radius); });
 }
 
 } // namespace vdbeam

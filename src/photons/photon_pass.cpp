@@ -12,9 +12,7 @@ namespace vdbeam {
 
 PhotonPass::PhotonPass(const EstimatorInput& input, PassWorlds& worlds, const World& first,
                        const PhotonPlan& plan)
-    : input_(input), worlds_(worlds), world_(&first), plan_(plan),
-      disc_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::disc) : nullptr),
-      ball_share_(plan.share_at_boundary ? boundary_share(input, KernelDomain::ball) : nullptr) {
+    : input_(input), worlds_(worlds), world_(&first), plan_(plan) {
   const World& world = first;
   const double rays_per_pixel = shadow_rays_per_pixel(input.of_scene != nullptr);
   if (plan.shadow_lattices && !input.stopped())
@@ -44,21 +42,20 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
   // Only the boundary's correction depends on the camera.
   make_maps(spec, radii, statistics);
   const Stopwatch watch;
-  clear_of_surfaces(world, maps_.medium);
+  const auto fit = [&](KernelDomain over, PhotonMap& map) {
+    fit_kernels(input_, over, plan_.share_at_boundary, map);
+  };
   if (maps_.caustics.size() > 0) {
-    clear_of_surfaces(world, maps_.caustics);
     caustics_along_rays_ = maps_.caustics.copy();
-    caustics_along_rays_.divide_power(disc_share_);
-    maps_.caustics.divide_power(ball_share_);
+    fit(KernelDomain::disc, caustics_along_rays_);
+    fit(KernelDomain::ball, maps_.caustics);
   }
-  const bool ball = domain == KernelDomain::ball;
-  const KernelShare& share = ball ? ball_share_ : disc_share_;
   if (input_.blur_pixels) {
-    compared_map_ =
-        maps_.medium.resized(ball ? BlurProbe::width_of_walks : BlurProbe::width_along_rays);
-    compared_map_.divide_power(share);
+    compared_map_ = maps_.medium.resized(
+        domain == KernelDomain::ball ? BlurProbe::width_of_walks : BlurProbe::width_along_rays);
+    fit(domain, compared_map_);
   }
-  maps_.medium.divide_power(share);
+  fit(domain, maps_.medium);
   statistics.radii += watch.seconds();
   statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);

@@ -57,7 +57,6 @@ private:
   const World* world_; ///< of the pass at hand
   const PhotonPlan& plan_;
   ShadowLattices shadows_;
-  KernelShare disc_share_, ball_share_; ///< of kernels, by what they are normalised over
   PhotonMaps maps_;
   PhotonMap compared_map_, caustics_along_rays_;
 };

@@ -73,6 +73,9 @@ VDBEAM_TUNED(float, roulette_below, 0.1f);
 VDBEAM_TUNED(double, default_neighbours, 500);
 VDBEAM_TUNED(double, surface_neighbours, 64);
 VDBEAM_TUNED(double, widest_surface_kernel, 0.05);
+/// Least radius of a disc that a surface cuts without a leak, in parts of what it is far from
+/// surfaces: small ones are bright, wide ones blur more.
+VDBEAM_TUNED(float, least_disc_before_surface, 0.5f);
 /// Those of a kernel that walks gather in, over those of one along camera rays: the walks even out
 /// some of the noise.
 VDBEAM_TUNED(double, neighbours_of_gather, 0.5);

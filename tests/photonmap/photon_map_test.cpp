@@ -1,4 +1,5 @@
 #include "photonmap/photon_map.h"
+#include "photons/clear_kernel.h"
 
 #include "photonmap/query_cases.h"
 
@@ -70,7 +71,7 @@ TEST(PhotonMap, UniformPhotonsGiveTheirDensity) {
 /// Every other photon keeps half of its kernel, the rest all of it.
 void check_resized(const PhotonList& photons, float factor) {
   const auto share = [](const Vec3f& photon, float radius) {
-    return photon.x > 0 ? 1 : 1 - radius;
+    return Kernel{radius, 1, photon.x > 0 ? 1 : 1 - radius};
   };
   const auto build = [&](float radius) {
     RadiusSettings radii;
@@ -80,10 +81,10 @@ void check_resized(const PhotonList& photons, float factor) {
   };
   PhotonMap own = build(0.5f), own_alone = build(0.5f), resized_alone = build(0.5f * factor);
   PhotonMap resized = own.resized(factor);
-  resized.divide_power(share);
-  own.divide_power(share);
-  own_alone.divide_power(share);
-  resized_alone.divide_power(share);
+  resized.fit(share);
+  own.fit(share);
+  own_alone.fit(share);
+  resized_alone.fit(share);
   EXPECT_FLOAT_EQ(resized.mean_radius(), resized_alone.mean_radius());
   const std::vector<float> weights(2, 1);
   PhotonMap::RayProfile profile;
@@ -305,8 +306,8 @@ TEST(PhotonMap, KernelsKeepClearOfSurfaces) {
   radii.mode = KernelRadius::fixed;
   radii.fixed_radius = 0.1f;
   PhotonMap map = PhotonMap::build(cube_photons(20000), 1, radii, KernelShape::biweight);
-  const auto distance = [](const Vec3f& p, float most) {
-    return std::min(most, std::abs(p.z - 0.5f));
+  const auto before_wall = [](const Vec3f& p, float radius) {
+    return clear_kernel(radius, std::abs(p.z - 0.5f));
   };
   const auto gathered = [&](float z, float cosine) {
     Rgb sum;
@@ -316,7 +317,7 @@ TEST(PhotonMap, KernelsKeepClearOfSurfaces) {
     return sum.x;
   };
   const float far = gathered(0.1f, 1), near = gathered(0.45f, 1);
-  map.keep_clear(distance);
+  map.fit(before_wall);
   EXPECT_EQ(gathered(0.1f, 1), far);
   EXPECT_NEAR(gathered(0.45f, 1), near, 0.5f * near);
   EXPECT_EQ(gathered(0.5f, 1), 0);

@@ -1,4 +1,4 @@
-#include "photonmap/clear_weight.h"
+#include "photons/clear_kernel.h"
 
 #include <gtest/gtest.h>
 

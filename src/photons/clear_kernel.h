@@ -1,6 +1,9 @@
 #pragma once
 
+#include "photonmap/photon_map.h"
+
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace vdbeam {
@@ -23,6 +26,21 @@ inline float clear_weight(float ratio) {
     ++i;
   const ClearWeight &a = clear_weights[i - 1], &b = clear_weights[i];
   return a.weight + (b.weight - a.weight) * (ratio - a.ratio) / (b.ratio - a.ratio);
+}
+
+/// From this distance of a surface on, in radii, kernels are left as they are.
+inline constexpr float far_from_surfaces = clear_weights.back().ratio;
+
+/// A kernel that ends before the surface at the distance d: of radius d / sqrt(1 + (d / r)^2), less
+/// than d, so that no light leaks through the surface, and no part of the kernel is cut off.
+/// Photons nearer than 0.08 r, whose kernels would be too small, count as nothing; those further
+/// away count so much more or less that even light stays even.
+inline Kernel clear_kernel(float radius, float distance) {
+  const float ratio = distance / radius;
+  if (!(ratio < far_from_surfaces))
+    return {radius};
+  const float weight = clear_weight(ratio);
+  return {weight > 0 ? distance / std::sqrt(1 + ratio * ratio) : 0, weight};
 }
 
 } // namespace vdbeam
