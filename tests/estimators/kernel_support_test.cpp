@@ -44,7 +44,7 @@ protected:
   MemoryScene scene_ = fog_around_plane();
 };
 
-/// Of a disc that the ground cuts the camera sees no more than the photon does.
+/// The camera sees no more of a disc that the ground cuts than the photon does.
 TEST_F(KernelSupportTest, GroundCutsDiscs) {
   add_surface(scene_, SurfaceShape::plane, scaled(1), diffuse(0.5));
   const Kernel near = kernel({0.1, 0, 0.02});
