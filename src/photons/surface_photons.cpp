@@ -91,9 +91,11 @@ GroupedLight SurfacePhotons::reflected(const SurfaceVertex& vertex, Rng& rng) co
     const float weight = mean_component(photon.irradiance);
     weights += weight;
     radii += weight * photon.radius;
-    const Rgb light = vertex.evaluate(-photon.direction) * photon.irradiance / cosine;
+    // The power is that of irradiance about the shading normal (arriving_factor).
+    const Rgb light = vertex.evaluate(-photon.direction) * photon.irradiance;
     if (max_component(light) > 0)
-      near.push_back({photon.position, light, photon.group});
+      near.push_back(
+          {photon.position, light / vertex.shading_cosine(-photon.direction), photon.group});
   }
   if (near.empty() || !(weights > 0))
     return {};

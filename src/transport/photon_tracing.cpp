@@ -276,7 +276,8 @@ private:
   void store_at(const SurfaceVertex& vertex, const LightPath& path) {
     surface_photons.position.emplace_back(vertex.hit().position);
     surface_photons.direction.push_back(path.segment.ray.direction);
-    surface_photons.power.push_back(path.throughput);
+    surface_photons.power.push_back(path.throughput *
+                                    vertex.arriving_factor(-path.segment.ray.direction));
     store_group(surface_photons, path);
   }
 

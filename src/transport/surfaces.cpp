@@ -8,6 +8,11 @@
 
 namespace vdbeam {
 
+namespace {
+/// Bound of the ratios of cosines about two normals: at the horizon little light is at stake.
+constexpr float most_power_factor = 8;
+} // namespace
+
 std::size_t Surfaces::bytes() const {
   std::set<const Texture*> known;
   std::size_t sum = set->bytes();
@@ -70,15 +75,21 @@ Rgb SurfaceVertex::matt_share(const Vec3f& wi) const {
   return share;
 }
 
+float SurfaceVertex::arriving_factor(const Vec3f& wi) const {
+  if (!hit_.smooth)
+    return 1;
+  const float met = std::abs(dot(hit_.normal, wi)), counts = shading_cosine(wi);
+  return counts < most_power_factor * met ? counts / met : most_power_factor;
+}
+
 /// How much of the power of a photon goes on, for each unit of radiance that a path would take the
 /// other way: with two normals the cosines do not cancel (Veach, Robust Monte Carlo Methods for
-/// Light Transport Simulation, 1997, eq. 5.17). Bounded: at the horizon little light is at stake.
+/// Light Transport Simulation, 1997, eq. 5.17).
 float SurfaceVertex::power_factor(const Vec3f& local, const Vec3f& wi) const {
-  constexpr float most = 8;
   const float in = std::abs(dot(hit_.normal, from_local(wo_))),
               out = std::abs(dot(hit_.normal, wi));
   const float factor = out * std::abs(wo_.z) / (in * std::abs(local.z));
-  return factor < most ? factor : most;
+  return factor < most_power_factor ? factor : most_power_factor;
 }
 
 /// The same in render space, with the texture.

@@ -95,6 +95,13 @@ public:
       return value * (corrected ? power_factor(local, wi) : 1);
     });
   }
+  /// |cos(wi)| as `evaluate` has it: about the shading normal.
+  float shading_cosine(const Vec3f& wi) const {
+    return sum_of<float>(wi, [](const Vec3f& local) { return std::abs(local.z); });
+  }
+  /// Power of a photon from wi that counts for the curved surface, over that which meets the
+  /// triangle: the ratio of the cosines about the two normals (Veach 1997, 5.3), bounded.
+  float arriving_factor(const Vec3f& wi) const;
   float pdf(const Vec3f& wi) const {
     return sum_of<float>(wi, [&](const Vec3f& local) { return material_.pdf(wo_, local); });
   }

@@ -226,5 +226,48 @@ TEST(SmoothMeshes, focus_light_with_every_estimator) {
         << estimator.name;
 }
 
+/// A column of radius 0.5 along z, of eight faces whose normals begin at this angle [degrees].
+std::string write_column(const TempFolder& folder, double first) {
+  std::ostringstream text;
+  for (int i = 0; i < 8; ++i)
+    for (const double z : {-1.0, 1.0}) {
+      const double phi = (first - 22.5 + 45 * i) * M_PI / 180;
+      text << "v " << 0.5 * std::cos(phi) << " " << 0.5 * std::sin(phi) << " " << z << "\n";
+    }
+  for (int i = 0; i < 8; ++i) {
+    const int low = 2 * i + 1, next = 2 * ((i + 1) % 8) + 1;
+    text << "f " << low << " " << next << " " << next + 1 << " " << low + 1 << "\n";
+  }
+  const std::string path = folder.file("column.obj");
+  test::write_bytes(path, text.str());
+  return path;
+}
+
+/// Sunlight through a pane of index 1, which bends none, meets one face of a column at an angle of
+/// 1 degree. Photons bring it all. The image is as without the pane, nowhere much brighter.
+TEST(SmoothMeshes, ShowNoSpecksWhereLightGrazesAFace) {
+  const TempFolder folder;
+  MemoryScene scene;
+  add_mesh(scene, write_column(folder, 89), 60, scaled(1), diffuse(0.5));
+  LightSettings& sun = scene.add_light(LightType::distant);
+  sun.direction = {-1, 0, 0};
+  sun.irradiance = Rgb(static_cast<float>(M_PI));
+  scene.scene.render.photons = 20000;
+  scene.look({0, 4, 0}, {0, 0, 0}, 16, 24, 24);
+  const PassMeans open = render_passes(scene, EstimatorType::beam, 4);
+  MaterialSettings pane = glass();
+  pane.ior = 1;
+  add_surface(scene, SurfaceShape::quad, {0, 0, 1.5, 1, 0, 1.5, 0, 0, -1.5, 0, 0, 0}, pane);
+  const PassMeans behind = render_passes(scene, EstimatorType::beam, 32);
+  const auto brightest = [](const PassMeans& means) {
+    float most = 0;
+    for (const Rgb& pixel : means.pixels)
+      most = std::max(most, pixel.x);
+    return most;
+  };
+  expect_same_mean(behind.total[0], open.total[0], 0.03 * open.total[0].mean());
+  EXPECT_LT(brightest(behind), 1.2f * brightest(open));
+}
+
 } // namespace
 } // namespace vdbeam
