@@ -136,36 +136,51 @@ def arguments():
     return parser.parse_args()
 
 
+def changes(constant, options, what):
+    """What is measured with the number times each factor."""
+    name, kind, value = constant
+    return [measure_with(f"{name}={changed(kind, value, factor)}", options, what) for factor in FACTORS]
+
+
+def work_rows(constants, options):
+    """Measures the numbers that change images, and prints and returns a row of the table for each."""
+    base = measure_with("", options, "work") if constants else {}
+    rows = []
+    for constant in constants:
+        rows.append(row(constant[0], constant[2], changes(constant, options, "work"), base))
+        print(rows[-1], flush=True)
+    return rows
+
+
+def estimate_rows(constants, options):
+    """The same for the numbers of the error estimate, after a row with all as they are."""
+    if not constants:
+        return []
+    cells = estimate_cells(measure_with("", options, "estimates"))
+    rows = ["| as they are | | " + " | ".join(cells + cells) + " |"]
+    print(rows[-1], flush=True)
+    for constant in constants:
+        cells = [cell for estimates in changes(constant, options, "estimates") for cell in estimate_cells(estimates)]
+        rows.append(f"| `{constant[0]}` | {constant[2]:g} | " + " | ".join(cells) + " |")
+        print(rows[-1], flush=True)
+    return rows
+
+
 def main():
     options = arguments()
-    scenes = options.scenes.split(",")
     if options.here:
         measure = {"work": measure_here, "estimates": estimates_here}[options.here]
-        print(json.dumps(measure(scenes, options)))
+        print(json.dumps(measure(options.scenes.split(","), options)))
         return
     text = CONSTANTS.read_text()
-    constants, of_estimate = read_constants(text), names_of_error_estimate(text)
-    chosen = options.numbers.split(",") if options.numbers else [name for name, _, _ in constants]
-    chosen = [constant for constant in constants if constant[0] in chosen]
-    base = measure_with("", options, "work") if any(name not in of_estimate for name, _, _ in chosen) else {}
-    rows, estimate_rows = [], []
-    if any(name in of_estimate for name, _, _ in chosen):
-        cells = estimate_cells(measure_with("", options, "estimates"))
-        estimate_rows.append("| as they are | | " + " | ".join(cells + cells) + " |")
-        print(estimate_rows[-1], flush=True)
-    for name, kind, value in chosen:
-        what = "estimates" if name in of_estimate else "work"
-        measured = [measure_with(f"{name}={changed(kind, value, factor)}", options, what) for factor in FACTORS]
-        if name in of_estimate:
-            cells = [cell for estimates in measured for cell in estimate_cells(estimates)]
-            estimate_rows.append(f"| `{name}` | {value:g} | " + " | ".join(cells) + " |")
-        else:
-            rows.append(row(name, value, measured, base))
-        print((estimate_rows if name in of_estimate else rows)[-1], flush=True)
+    wanted = options.numbers.split(",") if options.numbers else None
+    chosen = [constant for constant in read_constants(text) if wanted is None or constant[0] in wanted]
+    of_estimate = names_of_error_estimate(text)
+    tables = [table(work_rows([c for c in chosen if c[0] not in of_estimate], options)),
+              estimate_table(estimate_rows([c for c in chosen if c[0] in of_estimate], options))]
     if options.page:
         page = pathlib.Path(options.page)
-        page.write_text(page.read_text().split(MARK)[0] + MARK + "\n\n" + table(rows) + "\n" +
-                        estimate_table(estimate_rows))
+        page.write_text(page.read_text().split(MARK)[0] + MARK + "\n\n" + "\n".join(tables))
 
 
 if __name__ == "__main__":
