@@ -12,8 +12,9 @@ namespace {
 constexpr float ring_radii[2] = {0.302f, 0.608f};
 constexpr float cos_sixth[6] = {1, 0.5f, -0.5f, -1, -0.5f, 0.5f};
 constexpr float sin_sixth[6] = {0, 0.866025f, 0.866025f, 0, -0.866025f, -0.866025f};
-/// A ring close to the kernel's border, which is looked at for leaks too [radii].
-constexpr float border = 0.9f;
+/// A ring of twelve points about the kernel, which is looked at for leaks too [radii]: a straight
+/// edge that cuts the kernel has one of them behind it.
+constexpr float border = 1.0353f; // 1 / cos(15 degrees)
 /// From nearer photons the camera sees discs by rays of very different directions [radii].
 constexpr double least_distance_of_camera = 3;
 

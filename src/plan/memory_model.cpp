@@ -35,9 +35,9 @@ constexpr std::uint64_t thread_bytes = 2 * mib;
 constexpr std::uint64_t cell_bytes = 3 * sizeof(float);
 /// A mesh with its tree, of what it takes while it is read.
 constexpr double kept_of_surfaces = 0.3;
-/// Photons that a light path leaves in a thin medium per optical depth of the medium, fitted to the
-/// sample scenes, which have 0.5 to 1.6; and the fewest, so that paths remain to be counted.
-constexpr double stored_per_depth = 0.8, fewest_stored = 0.01;
+/// Photons that a light path leaves in a thin medium per optical depth of the medium: the middle of
+/// the sample scenes, which have 0.5 to 1.6; and the fewest, so that paths remain to be counted.
+constexpr double stored_per_depth = 0.9, fewest_stored = 0.01;
 /// Memory per pixel while an image is written: half floats beside its own channels, and the
 /// preview.
 constexpr std::uint64_t written_bytes_per_pixel = 24;

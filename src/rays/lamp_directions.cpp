@@ -3,7 +3,6 @@
 #include "math/sampling.h"
 #include "tuning/constants.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,9 +10,14 @@ namespace vdbeam {
 
 LampDirections::LampDirections(const World& world, const LampShells& shells)
     : medium_(world.medium) {
-  for (std::size_t l = 0; l < world.lights.size(); ++l)
+  const auto power = [&](std::size_t l) { return max_component(world.lights[l].power()); };
+  float all = 0;
+  for (std::size_t l = 0; shells.any() && l < world.lights.size(); ++l)
+    all += power(l);
+  for (std::size_t l = 0; all > 0 && l < world.lights.size(); ++l)
     if (const double far = reach(shells, l); far > 0)
-      lamps_.push_back({*world.lights[l].position(), far});
+      lamps_.push_back(
+          {*world.lights[l].position(), far, tuning::branches_per_scattering * power(l) / all});
 }
 
 double LampDirections::reach(const LampShells& shells, std::size_t light) {
@@ -39,30 +43,33 @@ float LampDirections::density_about(const Medium& medium, const Vec3f& to_lamp,
   return static_cast<float>(of_angle / (2 * std::numbers::pi * sine));
 }
 
-std::size_t LampDirections::count_near(const Vec3f& point) const {
-  return static_cast<std::size_t>(
-      std::count_if(lamps_.begin(), lamps_.end(), [&](const Lamp& l) { return l.reaches(point); }));
+std::optional<Vec3f> LampDirections::sample(const Vec3f& point, Rng& rng) const {
+  float place = rng.uniform();
+  for (const Lamp& lamp : lamps_) {
+    if (!lamp.reaches(point))
+      continue;
+    if (place < lamp.chance) {
+      const float u = rng.uniform(), v = rng.uniform();
+      return sample_about(medium_, lamp.from(point), u, v);
+    }
+    place -= lamp.chance;
+  }
+  return std::nullopt;
 }
 
-std::optional<Vec3f> LampDirections::sample(const Vec3f& point, Rng& rng) const {
-  const std::size_t count = count_near(point);
-  if (count == 0)
-    return std::nullopt;
-  const auto drawn = static_cast<std::size_t>(rng.uniform() * static_cast<float>(count));
-  std::size_t skipped = std::min(drawn, count - 1);
-  const auto lamp = std::find_if(lamps_.begin(), lamps_.end(),
-                                 [&](const Lamp& l) { return l.reaches(point) && skipped-- == 0; });
-  const float u = rng.uniform(), v = rng.uniform();
-  return sample_about(medium_, lamp->from(point), u, v);
+float LampDirections::chance(const Vec3f& point) const {
+  float sum = 0;
+  for (const Lamp& lamp : lamps_)
+    sum += lamp.reaches(point) ? lamp.chance : 0;
+  return sum;
 }
 
 float LampDirections::density(const Vec3f& point, const Vec3f& direction) const {
-  const std::size_t count = count_near(point);
   float sum = 0;
   for (const Lamp& lamp : lamps_)
     if (lamp.reaches(point))
-      sum += density_about(medium_, lamp.from(point), direction);
-  return count > 0 ? sum / static_cast<float>(count) : 0;
+      sum += lamp.chance * density_about(medium_, lamp.from(point), direction);
+  return sum;
 }
 
 } // namespace vdbeam

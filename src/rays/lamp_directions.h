@@ -18,9 +18,12 @@ public:
   LampDirections(const World& world, const LampShells& shells);
 
   bool any() const { return !lamps_.empty(); }
-  /// A direction about one of the lamps in reach of the point; none where no lamp is.
+  /// A direction about one of the lamps in reach of the point, with a chance that goes with its
+  /// share of the power of all lights: a faint lamp takes nothing from them.
   std::optional<Vec3f> sample(const Vec3f& point, Rng& rng) const;
-  /// The density of `sample` [1/sr]; 0 where no lamp is in reach.
+  /// The chance that `sample` returns a direction.
+  float chance(const Vec3f& point) const;
+  /// The chance times the density of the directions [1/sr].
   float density(const Vec3f& point, const Vec3f& direction) const;
 
   /// Distance up to which walks look for a lamp [render units]; 0 where it has no shell.
@@ -33,12 +36,11 @@ private:
   struct Lamp {
     Vec3d position;
     double reach;
+    float chance;
 
     bool reaches(const Vec3f& point) const { return length(position - Vec3d(point)) < reach; }
     Vec3f from(const Vec3f& point) const { return Vec3f(normalize(position - Vec3d(point))); }
   };
-  std::size_t count_near(const Vec3f& point) const;
-
   const Medium& medium_;
   std::vector<Lamp> lamps_;
 };

@@ -111,18 +111,20 @@ TEST_F(LampShellsTest, DrawDirectionsAboutLampsByTheirDensity) {
   const Vec3f near(lamp_ + Vec3d(0.5, 0, 0) * shells_.radius_of(0));
   Rng rng({}, RngStage::walk, 2);
   for (const double angle : {0.03, 1.0}) {
-    Samples cone; // the solid angle of a cone about the lamp
-    for (int i = 0; i < 100000; ++i) {
-      const std::optional<Vec3f> drawn = directions.sample(near, rng);
-      ASSERT_TRUE(drawn);
-      const bool inside = -drawn->x > std::cos(angle);
-      cone.add(inside ? 1 / static_cast<double>(directions.density(near, *drawn)) : 0);
+    Samples cone, drawn; // the solid angle of a cone about the lamp, and how many are drawn
+    for (int i = 0; i < 400000; ++i) {
+      const std::optional<Vec3f> direction = directions.sample(near, rng);
+      const bool inside = direction && -direction->x > std::cos(angle);
+      cone.add(inside ? 1 / static_cast<double>(directions.density(near, *direction)) : 0);
+      drawn.add(direction ? 1 : 0);
     }
     expect_mean(cone, 2 * std::numbers::pi * (1 - std::cos(angle)));
+    expect_mean(drawn, static_cast<double>(directions.chance(near)));
   }
   const Vec3f far(lamp_ + Vec3d(2, 0, 0) * LampDirections::reach(shells_, 0));
   EXPECT_FALSE(directions.sample(far, rng));
   EXPECT_EQ(directions.density(far, {-1, 0, 0}), 0);
+  EXPECT_EQ(directions.chance(far), 0);
 }
 
 /// Where a path may scatter twice at most, its flights look for lamps only before the second event.

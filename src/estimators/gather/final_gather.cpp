@@ -86,7 +86,7 @@ Vec3f FinalGather::draw_direction(const Ray& arriving, int phase_index, bool fir
                       &value = first ? medium.gathered_phases()[i] : drawn;
   const float evenly = first && medium.peak ? tuning::evenly_drawn : 0;
   std::optional<Vec3f> direction;
-  if (lamps_.any() && rng.uniform() < tuning::branches_per_scattering)
+  if (lamps_.any())
     direction = lamps_.sample(arriving.origin, rng);
   if (!direction) {
     const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
@@ -94,13 +94,12 @@ Vec3f FinalGather::draw_direction(const Ray& arriving, int phase_index, bool fir
                     ? sample_sphere(u, v)
                     : drawn.sample(arriving.direction, u_lobe, u, v);
   }
-  const float about_lamps = lamps_.density(arriving.origin, *direction);
-  if (!(evenly > 0 || about_lamps > 0))
+  const float to_lamps = lamps_.chance(arriving.origin);
+  if (!(evenly > 0 || to_lamps > 0))
     return *direction;
   const float cosine = dot(arriving.direction, *direction);
-  float pdf = (1 - evenly) * drawn.evaluate(cosine) + evenly / (4 * pi);
-  if (about_lamps > 0)
-    pdf += tuning::branches_per_scattering * (about_lamps - pdf);
+  const float own = (1 - evenly) * drawn.evaluate(cosine) + evenly / (4 * pi);
+  const float pdf = (1 - to_lamps) * own + lamps_.density(arriving.origin, *direction);
   weight *= value.evaluate(cosine) / pdf;
   return *direction;
 }
