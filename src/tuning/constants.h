@@ -223,12 +223,13 @@ VDBEAM_TUNED(int, lamp_rays, 12);
 
 // Path tracing.
 
-/// Branches towards narrow lights per scattering, before those that go elsewhere are left out; the
-/// distance from a lamp in the medium up to which walks branch towards it [radii of its shell]; how
-/// much more than on average a phase function must scatter straight on to be worth branches towards
-/// other lights; the importance of a direction per value of the phase function about the light
-/// [sr]; the weight, in parts of that with which a walk began, under which roulette begins where
-/// walks branch in peaks.
+/// Branches towards narrow lights per scattering, before those that go elsewhere are left out, and
+/// share of the directions of gather's walks about a lamp that has all the power; the distance from
+/// a lamp in the medium up to which walks branch towards it [radii of its shell]; how much more
+/// than on average a phase function must scatter straight on to be worth branches towards other
+/// lights; the importance of a direction per value of the phase function about the light [sr]; the
+/// weight, in parts of that with which a walk began, under which roulette begins where walks branch
+/// in peaks.
 VDBEAM_TUNED(float, branches_per_scattering, 0.25f);
 VDBEAM_TUNED(double, reach_of_branches, 8);
 VDBEAM_TUNED(float, sharp_peak, 200);
