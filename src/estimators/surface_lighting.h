@@ -27,7 +27,6 @@ public:
   /// The light of a shadow catcher that the plate does not have.
   GroupedLight added_to_plate(const SurfaceVertex& vertex, const Vec3f& direction, Rng& rng) const;
 
-public:
   /// Photons bring light to the surface, which it spreads.
   bool shows_photons(const SurfaceVertex& vertex) const {
     return photons_ && vertex.material().takes_photons();

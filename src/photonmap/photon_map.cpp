@@ -141,6 +141,7 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   UnfilledArray<OrderedPhoton> order = finite_photons(photons);
   order_photons(order);
   data.blocks = gather_blocks(photons, order, channels);
+  photons = {}; // its memory is free for what follows
   data.times.order = watch.restart();
 
   find_kernel_radii(data.blocks, radii);

@@ -336,6 +336,7 @@ private:
 PhotonList joined(const std::vector<PathTracer>& tracers, PhotonList PathTracer::*list,
                   int groups) {
   std::vector<const PhotonList*> lists;
+  lists.reserve(tracers.size());
   for (const PathTracer& tracer : tracers)
     lists.push_back(&(tracer.*list));
   return join(lists, groups);
