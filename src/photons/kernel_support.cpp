@@ -105,7 +105,10 @@ bool KernelSupport::leaks_to(const Vec3f& photon, const Vec3f& point) const {
   const double distance = dot(Vec3d(point) - camera_->origin(), view);
   const auto hit =
       world_->surfaces->set->intersect(Vec3d(point), view * -1.0, 0, distance, /*camera=*/true);
-  return !hit || world_->surfaces->material(*hit).is_specular();
+  if (!hit)
+    return true;
+  const Material& material = world_->surfaces->material(*hit);
+  return material.is_specular() || material.refracts();
 }
 
 bool KernelSupport::in_medium(const Vec3f& point) const {
