@@ -23,7 +23,7 @@ import sys
 
 CONSTANTS = pathlib.Path(__file__).resolve().parents[1] / "src" / "tuning" / "constants.h"
 SCENES = "cumulus,cloud_over_ground,lamp_in_smoke,fire_over_floor,droplets_over_ground"
-FACTORS = (0.5, 2.0)
+FACTORS = "0.5,2"
 # The tables follow this line of the page.
 MARK = "<!-- The tables below are written by tools/sensitivity.py. -->"
 # The section of the header whose numbers change no image.
@@ -123,6 +123,7 @@ def table(rows):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--numbers", help="names, separated by commas; default: all")
+    parser.add_argument("--factors", default=FACTORS, help=f"two factors of each number ({FACTORS})")
     parser.add_argument("--scenes", default=SCENES, help="of tools/scene_suite, separated by commas")
     parser.add_argument("--width", type=int, default=128, help="of the images [pixels] (128)")
     parser.add_argument("--passes", type=int, default=4, help="of the default estimator (4)")
@@ -139,7 +140,7 @@ def arguments():
 def changes(constant, options, what):
     """What is measured with the number times each factor."""
     name, kind, value = constant
-    return [measure_with(f"{name}={changed(kind, value, factor)}", options, what) for factor in FACTORS]
+    return [measure_with(f"{name}={changed(kind, value, float(factor))}", options, what) for factor in options.factors.split(",")]
 
 
 def work_rows(constants, options):

@@ -5,6 +5,7 @@
 #include "vdbeam/kinds.h"
 #include "vdbeam/vec.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -14,6 +15,13 @@ namespace vdbeam {
 /// Texture lookup beyond the edges of the image.
 enum class TextureWrap { repeat, mirror, clamp };
 
+/// What the textures of a material are for: factors of its albedo or radiance, of its opacity,
+/// roughness and metal, and the direction of its normal.
+enum class TextureUse { color, opacity, roughness, metal, normal };
+inline constexpr std::array texture_uses{TextureUse::color, TextureUse::opacity,
+                                         TextureUse::roughness, TextureUse::metal,
+                                         TextureUse::normal};
+
 struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
   /// diffuse, standard, shadow_catcher: share of the light that is reflected, per channel; none:
@@ -22,8 +30,20 @@ struct MaterialSettings {
   /// diffuse, standard, shadow_catcher, emissive: image that multiplies albedo or radiance; "":
   /// none
   std::string texture;
-  int texture_image = -1; ///< texture is a glTF, and this one of its images is meant; -1: neither
-  TextureWrap texture_wrap = TextureWrap::repeat;
+  /// diffuse, standard, conductor, holdout: share of the rays that the surface stops, where no ray
+  /// knows of another; the rest goes straight on.
+  double opacity = 1;
+  std::string opacity_texture; ///< image that multiplies it, by its alpha channel or its green one
+  /// Points whose opacity is less are holes, and others stop all rays; 0: each stops its share.
+  double opacity_cutoff = 0;
+  std::string roughness_texture; ///< conductor, standard: image whose green multiplies roughness
+  std::string metal_texture;     ///< standard: image whose blue multiplies metal
+  /// diffuse, standard, conductor, dielectric: image of normals in tangent space, as in glTF.
+  std::string normal_texture;
+  double normal_scale = 1; ///< factor of how far these lean
+  /// By TextureUse: the texture is a glTF, and this one of its images is meant; -1: neither.
+  std::array<int, texture_uses.size()> texture_images{-1, -1, -1, -1, -1};
+  TextureWrap texture_wrap = TextureWrap::repeat; ///< of all of them
   Rgb reflectance{1, 1, 1}; ///< mirror, conductor: the same at normal incidence
   /// conductor, dielectric, standard: alpha of GGX is its square, in [0, 1]; none: 0.2, 0, 0.5.
   std::optional<double> roughness;
@@ -42,6 +62,31 @@ struct MaterialSettings {
   /// Colour space of the colours above, to which the texture is converted; not a key of its own.
   ColorSpace color_space = ColorSpace::rec709;
 };
+
+/// An image that a material names; `file` is "" where there is none.
+struct TextureFile {
+  std::string file;
+  int image = -1; ///< as in texture_images
+
+  bool operator==(const TextureFile&) const = default;
+};
+inline constexpr std::array<std::string MaterialSettings::*, texture_uses.size()> texture_members{
+    &MaterialSettings::texture, &MaterialSettings::opacity_texture,
+    &MaterialSettings::roughness_texture, &MaterialSettings::metal_texture,
+    &MaterialSettings::normal_texture};
+inline TextureFile texture_file(const MaterialSettings& material, TextureUse use) {
+  const auto i = static_cast<std::size_t>(use);
+  return {material.*texture_members[i], material.texture_images[i]};
+}
+inline void set_texture(MaterialSettings& material, TextureUse use, const TextureFile& texture) {
+  const auto i = static_cast<std::size_t>(use);
+  material.*texture_members[i] = texture.file;
+  material.texture_images[i] = texture.image;
+}
+inline bool has_texture(const MaterialSettings& material) {
+  return std::any_of(texture_uses.begin(), texture_uses.end(),
+                     [&](TextureUse use) { return !texture_file(material, use).file.empty(); });
+}
 
 /// file: triangles of an OBJ, PLY or glTF file. The others are a sphere of radius 1 about the
 /// origin, the square from -1 to 1 in x and y, the disk of radius 1 in that plane, all of that

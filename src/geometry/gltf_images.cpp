@@ -2,7 +2,6 @@
 
 #include "geometry/gltf_files.h"
 #include "geometry/gltf_json.h"
-#include "image/srgb.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"
@@ -17,11 +16,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <map>
-#include <mutex>
-#include <vector>
 
 namespace vdbeam {
 namespace {
@@ -178,30 +173,9 @@ Image read_picture(const GltfPicture& picture) {
                            : read_gltf_image(picture.file, picture.image);
 }
 
-DataMeans means_of_data(const GltfPicture& picture) {
-  static std::mutex mutex;
-  static std::map<std::string, DataMeans> known;
-  const std::string identity = fmt::format("{}|{}", model_identity(picture.file), picture.image);
-  {
-    const std::scoped_lock lock(mutex);
-    if (const auto found = known.find(identity); found != known.end())
-      return found->second;
-  }
-  const Image image = read_picture(picture);
+bool is_encoded(const GltfPicture& picture) {
   const std::string ending = lower_case(std::filesystem::path(picture.file).extension().string());
-  const bool linear = ending == ".exr" || ending == ".hdr";
-  // PNG and JPEG images are read as colours.
-  const auto mean = [&](const char* name) {
-    const ImageChannel* channel = image.find(name);
-    double sum = 0;
-    for (const float value : channel ? channel->data : std::vector<float>{1})
-      sum += linear ? std::clamp(double{value}, 0.0, 1.0)
-                    : srgb_of_light(std::clamp(double{value}, 0.0, 1.0));
-    return sum / static_cast<double>(channel ? std::max<std::size_t>(channel->data.size(), 1) : 1);
-  };
-  const DataMeans means{mean("G"), mean("B")};
-  const std::scoped_lock lock(mutex);
-  return known[identity] = means;
+  return ending != ".exr" && ending != ".hdr";
 }
 
 } // namespace vdbeam

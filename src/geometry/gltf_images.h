@@ -25,12 +25,7 @@ Image read_gltf_image(const std::string& path, int index);
 /// Reads a picture. Throws InputError.
 Image read_picture(const GltfPicture& picture);
 
-/// Means of the numbers that a picture of a glTF holds in place of colours, in [0, 1].
-struct DataMeans {
-  double green = 1, blue = 1;
-};
-
-/// Reads them; those of files that did not change are known. Throws InputError.
-DataMeans means_of_data(const GltfPicture& picture);
+/// Whether the numbers of a picture were read as sRGB colours, as those of PNG and JPEG are.
+bool is_encoded(const GltfPicture& picture);
 
 } // namespace vdbeam

@@ -119,7 +119,12 @@ private:
     settings.coat = number(coat("clearcoatFactor"), 0, 0, 1);
     settings.coat_roughness = number(coat("clearcoatRoughnessFactor"), 0, 0, 1);
     use_picture(at(pbr, {"baseColorTexture", "index"}), settings);
-    material.roughness_and_metal = picture_of(at(pbr, {"metallicRoughnessTexture", "index"}));
+    const TextureFile packed = picture_of(at(pbr, {"metallicRoughnessTexture", "index"}));
+    set_texture(settings, TextureUse::roughness, packed);
+    set_texture(settings, TextureUse::metal, packed);
+    set_texture(settings, TextureUse::normal, picture_of(at(json, {"normalTexture", "index"})));
+    settings.normal_scale = number(at(json, {"normalTexture", "scale"}), 1, -10, 10);
+    use_opacity(json, pbr, settings);
     const double transmission = number(
         at(json, {"extensions", "KHR_materials_transmission", "transmissionFactor"}), 0, 0, 1);
     if (!become_lamp(json, material) && transmission > 0.5)
@@ -128,19 +133,26 @@ private:
   }
 
   void note_unused(const Json& json, const Json& pbr) {
-    for (const char* map : {"normalTexture", "occlusionTexture"})
-      if (json.contains(map))
-        note(fmt::format("its {} are not used", map));
-    const Json* mode = at(json, {"alphaMode"});
-    if (mode && mode->is_string() && *mode != "OPAQUE")
-      note(fmt::format("its alphaMode {} is not used: the surfaces are opaque",
-                       as_utf8(mode->get<std::string>())));
     for (const Json* use : {at(pbr, {"baseColorTexture"}), at(json, {"emissiveTexture"}),
-                            at(pbr, {"metallicRoughnessTexture"})})
+                            at(pbr, {"metallicRoughnessTexture"}), at(json, {"normalTexture"})})
       if (use && at(*use, {"extensions", "KHR_texture_transform"}))
         note("its texture transforms are not used");
       else if (use && number(at(*use, {"texCoord"}), 0, 0, 9) > 0)
         note("its second texture coordinates are not used, but the first in their place");
+  }
+
+  /// The alpha of the base colour, where the material says that it counts.
+  static void use_opacity(const Json& json, const Json& pbr, MaterialSettings& settings) {
+    const Json* mode = at(json, {"alphaMode"});
+    const bool mask = mode && *mode == "MASK";
+    if (!mask && !(mode && *mode == "BLEND"))
+      return;
+    const Json* color = at(pbr, {"baseColorFactor"});
+    if (color && color->is_array() && color->size() > 3)
+      settings.opacity = number(&(*color)[3], 1, 0, 1);
+    if (mask)
+      settings.opacity_cutoff = number(at(json, {"alphaCutoff"}), 0.5, 0, 1);
+    set_texture(settings, TextureUse::opacity, texture_file(settings, TextureUse::color));
   }
 
   /// Makes a lamp of what glows; false where it does not, or where only parts of something that has
@@ -157,7 +169,7 @@ private:
       note("the glow of materials with an emissiveTexture and a baseColorTexture is not used");
       return false;
     }
-    material = {material.index, {}, {}};
+    material.settings = {};
     material.settings.type = MaterialType::emissive;
     material.settings.radiance = emission;
     use_picture(map, material.settings);
@@ -168,11 +180,14 @@ private:
     glass.type = MaterialType::dielectric;
     glass.ior = material.settings.ior;
     glass.roughness = material.settings.roughness;
+    set_texture(glass, TextureUse::normal, texture_file(material.settings, TextureUse::normal));
+    glass.normal_scale = material.settings.normal_scale;
+    glass.texture_wrap = material.settings.texture_wrap;
     material.settings = glass;
   }
 
   /// The picture of a texture; without a file where there is none, or none that can be read.
-  GltfPicture picture_of(const Json* index) {
+  TextureFile picture_of(const Json* index) {
     const Json* texture = element(gltf_, "textures", index);
     const Json* source = texture ? at(*texture, {"source"}) : nullptr;
     const Json* image = element(gltf_, "images", source);
@@ -181,13 +196,11 @@ private:
     GltfPicture picture = find_gltf_picture(path_, *image, source->get<int>());
     if (!picture.issue.empty())
       note(picture.issue);
-    return picture;
+    return {picture.file, picture.image};
   }
 
   void use_picture(const Json* index, MaterialSettings& settings) {
-    const GltfPicture picture = picture_of(index);
-    settings.texture = picture.file;
-    settings.texture_image = picture.image;
+    set_texture(settings, TextureUse::color, picture_of(index));
     const Json* texture = element(gltf_, "textures", index);
     const Json* sampler = texture ? element(gltf_, "samplers", at(*texture, {"sampler"})) : nullptr;
     const double wrap = sampler ? number(at(*sampler, {"wrapS"}), 10497, 0, 1e5) : 10497;
@@ -216,6 +229,9 @@ void parse(const std::string& path, int output) {
   Json result{{"notes", materials.notes}, {"used", Json::array()}};
   for (const GltfMaterial& material : materials.used) {
     const MaterialSettings& s = material.settings;
+    Json textures = Json::array();
+    for (const TextureUse use : texture_uses)
+      textures.push_back({texture_file(s, use).file, texture_file(s, use).image});
     result["used"].push_back({{"index", material.index},
                               {"type", s.type.name},
                               {"albedo", to_json(s.albedo.value_or(Rgb(1)))},
@@ -225,10 +241,10 @@ void parse(const std::string& path, int output) {
                               {"coat", s.coat},
                               {"coat_roughness", s.coat_roughness},
                               {"radiance", to_json(s.radiance)},
-                              {"texture", s.texture},
-                              {"texture_image", s.texture_image},
-                              {"rough_file", material.roughness_and_metal.file},
-                              {"rough_image", material.roughness_and_metal.image},
+                              {"opacity", s.opacity},
+                              {"cutoff", s.opacity_cutoff},
+                              {"normal_scale", s.normal_scale},
+                              {"textures", textures},
                               {"wrap", static_cast<int>(s.texture_wrap)}});
   }
   const std::string text = result.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -261,11 +277,14 @@ GltfMaterials read_gltf_materials(const std::string& path) {
         s.type = type;
     if (s.type == MaterialType::standard)
       s.albedo = to_rgb(one.at("albedo"));
-    s.texture = one.at("texture").get<std::string>();
-    s.texture_image = one.at("texture_image").get<int>();
+    for (std::size_t i = 0; i < texture_uses.size(); ++i) {
+      const Json& texture = one.at("textures").at(i);
+      set_texture(s, texture_uses[i], {texture.at(0).get<std::string>(), texture.at(1).get<int>()});
+    }
     s.texture_wrap = static_cast<TextureWrap>(one.at("wrap").get<int>());
-    material.roughness_and_metal = {one.at("rough_file").get<std::string>(),
-                                    one.at("rough_image").get<int>(), ""};
+    s.opacity = one.at("opacity").get<double>();
+    s.opacity_cutoff = one.at("cutoff").get<double>();
+    s.normal_scale = one.at("normal_scale").get<double>();
     s.metal = one.at("metal").get<double>();
     if (s.type != MaterialType::emissive)
       s.roughness = one.at("roughness").get<double>();

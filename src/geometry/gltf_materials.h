@@ -12,7 +12,6 @@ namespace vdbeam {
 struct GltfMaterial {
   int index = 0; ///< by which triangles name it; one beyond the last: of those that name none
   MaterialSettings settings;
-  GltfPicture roughness_and_metal; ///< factors in its green and blue; no file: none
 };
 
 struct GltfMaterials {
@@ -20,11 +19,11 @@ struct GltfMaterials {
   std::vector<std::string> notes; ///< for the user: what is left out
 };
 
-/// The materials of a .gltf or .glb file: base colour, metal, roughness, clear coat, index of
-/// refraction, transmission and emission of the metallic-roughness model, and the textures of base
-/// colour and emission. Something that reflects and glows by a texture reflects only, which a note
-/// says. The file is parsed in a guarded child process. Throws InputError for another
-/// file, FrameError for one that is damaged.
+/// The materials of a .gltf or .glb file: base colour, opacity, metal, roughness, normals, clear
+/// coat, index of refraction, transmission and emission of the metallic-roughness model, with their
+/// textures; of the clear coat and of transmission only the factors. Something that reflects and
+/// glows by a texture reflects only, which a note says. The file is parsed in a guarded child
+/// process. Throws InputError for another file, FrameError for one that is damaged.
 GltfMaterials read_gltf_materials(const std::string& path);
 
 } // namespace vdbeam

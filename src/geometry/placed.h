@@ -23,6 +23,16 @@ struct Placed {
   double stretch(const Vec3d& n) const {
     return std::abs(surface.to_render.determinant()) * length(covector(normalize(n)));
   }
+  /// The normal of the image that a surface has, for its shading normal.
+  Vec3f detailed_normal(const SurfaceHit& hit) const {
+    const Vec3d local = place.to_shape.point(hit.position);
+    // Covectors map back by the transposed map.
+    const auto& rows = surface.to_render.rows;
+    const Vec3d n(hit.normal), local_normal = rows[0] * n.x + rows[1] * n.y + rows[2] * n.z;
+    const UvDirections own = surface.shape->uv_directions(hit.primitive, local, local_normal);
+    const UvDirections there{surface.to_render.vector(own.right), surface.to_render.vector(own.up)};
+    return surface.detail->normal(hit.uv, there, hit.shading_normal, hit.normal);
+  }
   SurfacePoint placed(const ShapePoint& point) const {
     SurfacePoint result;
     result.position = surface.to_render.point(point.position);

@@ -44,6 +44,9 @@ public:
   Uv uv(std::size_t, const Vec3d& point) const override {
     return {near_coordinate(point.x), near_coordinate(point.y)};
   }
+  UvDirections uv_directions(std::size_t, const Vec3d&, const Vec3d&) const override {
+    return {{1, 0, 0}, {0, 1, 0}};
+  }
 };
 
 } // namespace

@@ -18,6 +18,41 @@ Boxd Shape::bounds() const {
 
 namespace {
 
+/// How texture coordinates change along a direction.
+using UvChange = std::pair<double, double>;
+
+/// Directions of the picture where two directions of the surface have these changes; themselves
+/// where the picture has no area.
+UvDirections directions_of(const Vec3d& first, const Vec3d& second, const UvChange& of_first,
+                           const UvChange& of_second) {
+  const auto [u1, v1] = of_first;
+  const auto [u2, v2] = of_second;
+  const double determinant = u1 * v2 - u2 * v1;
+  if (determinant == 0)
+    return {first, second};
+  return {(first * v2 - second * v1) / determinant, (second * u1 - first * u2) / determinant};
+}
+
+} // namespace
+
+UvDirections Shape::uv_directions(std::size_t primitive, const Vec3d& point,
+                                  const Vec3d& normal) const {
+  // Differences over a short way. Where the picture's edges meet, a coordinate jumps by 1.
+  constexpr double step = 1e-3;
+  const Vec3d n = normalize(normal);
+  const Vec3d first = normalize(cross(n, std::abs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}));
+  const Vec3d second = cross(n, first);
+  const auto change = [&](const Vec3d& direction) {
+    const Uv from = uv(primitive, point - direction * step),
+             to = uv(primitive, point + direction * step);
+    const double u{to.u - from.u}, v{to.v - from.v};
+    return UvChange{u - std::round(u), v - std::round(v)};
+  };
+  return directions_of(first, second, change(first), change(second));
+}
+
+namespace {
+
 /// The largest factor by which a map stretches a vector: the root of the largest eigenvalue of its
 /// square (Smith 1961, for symmetric 3x3 matrices).
 double most_stretch(const Affine& map) {
@@ -115,6 +150,17 @@ public:
                    static_cast<double>(second.v) * b1 + static_cast<double>(third.v) * b2;
     return {static_cast<float>(u), static_cast<float>(v)};
   }
+  UvDirections uv_directions(std::size_t i, const Vec3d&, const Vec3d&) const override {
+    const Vec3d e1 = vertex(i, 1) - vertex(i, 0), e2 = vertex(i, 2) - vertex(i, 0);
+    if (mesh_.uvs.empty())
+      return {e1, e2};
+    const auto& [a, b, c] = mesh_.triangles[i];
+    const auto difference = [&](std::uint32_t k) {
+      return std::pair{static_cast<double>(mesh_.uvs[k].u) - static_cast<double>(mesh_.uvs[a].u),
+                       static_cast<double>(mesh_.uvs[k].v) - static_cast<double>(mesh_.uvs[a].v)};
+    };
+    return directions_of(e1, e2, difference(b), difference(c));
+  }
   bool is_smooth() const override { return !mesh_.normals.empty(); }
   Vec3d shading_normal(std::size_t i, const Vec3d& point) const override {
     const auto [b1, b2] = barycentric(i, point);
@@ -203,6 +249,9 @@ public:
   }
   Uv uv(std::size_t, const Vec3d& point) const override {
     return {static_cast<float>((point.x + 1) / 2), static_cast<float>((point.y + 1) / 2)};
+  }
+  UvDirections uv_directions(std::size_t, const Vec3d&, const Vec3d&) const override {
+    return {{1, 0, 0}, {0, 1, 0}};
   }
 };
 

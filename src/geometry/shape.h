@@ -19,6 +19,12 @@ struct ShapePoint {
   Vec3d position, normal;
 };
 
+/// Along which a picture on a surface goes to the right and up at a point, in the shape's own
+/// space. Neither has unit length, and they need not be at right angles.
+struct UvDirections {
+  Vec3d right, up;
+};
+
 /// Numbers in [0, 1) by which the points of a primitive are drawn.
 struct AreaPlace {
   double u = 0, v = 0;
@@ -69,6 +75,9 @@ public:
   virtual bool has_uvs() const { return true; }
   /// Texture coordinates of a point of a primitive.
   virtual Uv uv(std::size_t primitive, const Vec3d& point) const = 0;
+  /// Where the picture goes at a point of a primitive whose normal is `normal`.
+  virtual UvDirections uv_directions(std::size_t primitive, const Vec3d& point,
+                                     const Vec3d& normal) const;
   /// It is shaded as the curved surface that its primitives stand for.
   virtual bool is_smooth() const { return false; }
   /// Normal of that curved surface at a point of a primitive, towards the front, of any length but

@@ -1,10 +1,12 @@
 #include "geometry/shape_tree.h"
 
 #include "machine/stop_reading.h"
+#include "math/rng.h"
 #include "vdbeam/error.h"
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -28,16 +30,14 @@ void shape_bounds(const RTCBoundsFunctionArguments* args) {
 
 /// Tests a primitive; true where it is the nearest so far. Of two at the same distance the one with
 /// the lower numbers counts, whatever Embree's order.
-bool test_primitive(const ShapeTree& tree, unsigned primitive, Query& query) {
+bool test_primitive(unsigned primitive, Query& query) {
   const unsigned surface = query.context.instID[0];
   if (query.camera && !(*query.surfaces)[surface].surface.visible)
     return false;
-  query.enter(surface);
   const double end = query.found == RTC_INVALID_GEOMETRY_ID
                          ? query.t_end
                          : std::nextafter(query.hit.t, static_cast<double>(infinity));
-  const auto hit = tree.shape().intersect(primitive, query.local_origin, query.local_direction,
-                                          query.t_begin, end);
+  const auto hit = query.meet(surface, primitive, end);
   if (!hit)
     return false;
   if (query.found != RTC_INVALID_GEOMETRY_ID && hit->t == query.hit.t &&
@@ -51,8 +51,7 @@ bool test_primitive(const ShapeTree& tree, unsigned primitive, Query& query) {
 
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
-  const auto& tree = *static_cast<const ShapeTree*>(args->geometryUserPtr);
-  if (!args->valid[0] || !test_primitive(tree, args->primID, query))
+  if (!args->valid[0] || !test_primitive(args->primID, query))
     return;
   auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   ray.ray.tfar = std::min(ray.ray.tfar, query.embree_distance(query.hit.t));
@@ -63,12 +62,40 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
 
 void occlude_shape(const RTCOccludedFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
-  const auto& tree = *static_cast<const ShapeTree*>(args->geometryUserPtr);
-  if (args->valid[0] && test_primitive(tree, args->primID, query))
+  if (args->valid[0] && test_primitive(args->primID, query))
     reinterpret_cast<RTCRay*>(args->ray)->tfar = -infinity;
 }
 
+/// The same for the same ray and surface, so that each query of a ray finds the same holes; those
+/// of other rays are independent.
+float chance_of(const Query& query, unsigned surface, std::size_t primitive, int crossing) {
+  std::uint64_t h =
+      mix64((std::uint64_t(surface) << 32) + primitive) ^ static_cast<std::uint64_t>(crossing);
+  for (const Vec3d& v : {query.origin, query.direction})
+    for (const double x : {v.x, v.y, v.z})
+      h = mix64(h + std::bit_cast<std::uint64_t>(x));
+  return static_cast<float>(h >> 40) * 0x1p-24f;
+}
+
 } // namespace
+
+std::optional<ShapeHit> Query::meet(unsigned surface, std::size_t primitive, double end) {
+  enter(surface);
+  const PlacedShape& placed = (*surfaces)[surface].surface;
+  const Shape& shape = *placed.shape;
+  constexpr int most_crossings = 4; // of a primitive, which is convex
+  double begin = t_begin;
+  for (int crossing = 0; crossing < most_crossings; ++crossing) {
+    const auto met = shape.intersect(primitive, local_origin, local_direction, begin, end);
+    if (!met || !placed.detail || !placed.detail->has_holes())
+      return met;
+    const Uv uv = shape.uv(primitive, local_origin + local_direction * met->t);
+    if (placed.detail->stops(uv, chance_of(*this, surface, primitive, crossing)))
+      return met;
+    begin = met->t;
+  }
+  return std::nullopt;
+}
 
 DevicePtr make_device() {
   DevicePtr device(rtcNewDevice(nullptr), [](RTCDevice made) {

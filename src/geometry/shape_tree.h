@@ -71,6 +71,8 @@ struct Query {
     local_origin = map.point(origin);
     local_direction = map.vector(direction);
   }
+  /// Where the ray meets a primitive of a surface, not in a hole of it, before a distance.
+  std::optional<ShapeHit> meet(unsigned surface, std::size_t primitive, double end);
   /// Embree's distance for one of the given ray, rounded up.
   float embree_distance(double t) const {
     return std::nextafter(static_cast<float>(t - shift), infinity);

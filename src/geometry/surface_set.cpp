@@ -167,9 +167,7 @@ bool SurfaceSet::Data::meet_planes(Query& query) const {
     const Placed& entry = surfaces[i];
     if (query.camera && !entry.surface.visible)
       continue;
-    query.enter(i);
-    const auto hit = entry.surface.shape->intersect(0, query.local_origin, query.local_direction,
-                                                    query.t_begin, std::min(query.t_end, farthest));
+    const auto hit = query.meet(i, 0, std::min(query.t_end, farthest));
     if (!hit)
       continue;
     query.hit = *hit;
@@ -275,6 +273,10 @@ std::optional<SurfaceHit> SurfaceSet::intersect(const Vec3d& origin, const Vec3d
         Vec3f(entry.normal(entry.surface.shape->shading_normal(hit.primitive, local)));
     hit.smooth = true;
   }
+  if (entry.surface.detail && entry.surface.detail->has_normals()) {
+    hit.shading_normal = entry.detailed_normal(hit);
+    hit.smooth = true;
+  }
   return hit;
 }
 
@@ -291,7 +293,8 @@ double SurfaceSet::distance(const Vec3d& point, double most) const {
 }
 
 bool SurfaceSet::is_flat_and_alone(std::size_t surface, const Vec3d& point, double radius) const {
-  return data_->surfaces[surface].surface.shape->is_flat() &&
+  const PlacedShape& placed = data_->surfaces[surface].surface;
+  return placed.shape->is_flat() && !(placed.detail && placed.detail->has_holes()) &&
          !(data_->distance(point, radius, static_cast<unsigned>(surface)) < radius);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/shape.h"
+#include "geometry/surface_detail.h"
 #include "math/ray.h"
 
 #include <cmath>
@@ -13,10 +14,11 @@ namespace vdbeam {
 
 /// A shape in its place.
 struct PlacedShape {
-  std::shared_ptr<const Shape> shape; ///< shared by its instances
-  Affine to_render;                   ///< shape's own space -> render space
-  bool visible = true;                ///< to the camera
-  bool textured = false;              ///< its hits and points have their UV
+  std::shared_ptr<const Shape> shape;                    ///< shared by its instances
+  Affine to_render;                                      ///< shape's own space -> render space
+  bool visible = true;                                   ///< to the camera
+  bool textured = false;                                 ///< its hits and points have their UV
+  std::shared_ptr<const SurfaceDetail> detail = nullptr; ///< of images; null: none
 };
 
 /// Where a ray meets a surface.

@@ -47,23 +47,26 @@ Image read_png(const std::string& path) {
   image.width = static_cast<int>(png.width);
   image.height = static_cast<int>(png.height);
   const std::size_t count = static_cast<std::size_t>(png.width) * png.height;
-  for (const char* name : {"R", "G", "B"})
-    image.channels.push_back({name, std::vector<float>(count)});
+  const std::size_t channels = png.format & PNG_FORMAT_FLAG_ALPHA ? 4 : 3;
+  for (std::size_t c = 0; c < channels; ++c)
+    image.channels.push_back({std::string(1, "RGBA"[c]), std::vector<float>(count)});
   if (png.format & PNG_FORMAT_FLAG_LINEAR) { // 16 bits; libpng has multiplied them by their alpha
     const auto pixels = read_pixels<std::uint16_t>(png, PNG_FORMAT_LINEAR_RGB_ALPHA, path);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto alpha = static_cast<float>(pixels[4 * i + 3]);
       for (std::size_t c = 0; c < 3; ++c)
-        image.channels[c].data[i] =
-            pixels[4 * i + 3] == 0
-                ? 0
-                : static_cast<float>(pixels[4 * i + c]) / static_cast<float>(pixels[4 * i + 3]);
+        image.channels[c].data[i] = alpha > 0 ? static_cast<float>(pixels[4 * i + c]) / alpha : 0;
+      if (channels == 4)
+        image.channels[3].data[i] = alpha / 65535;
+    }
     return image;
   }
   const std::array<float, 256> light = light_of_bytes();
   const auto pixels = read_pixels<unsigned char>(png, PNG_FORMAT_RGBA, path);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      image.channels[c].data[i] = light[pixels[4 * i + c]];
+    for (std::size_t c = 0; c < channels; ++c)
+      image.channels[c].data[i] =
+          c < 3 ? light[pixels[4 * i + c]] : static_cast<float>(pixels[4 * i + c]) / 255;
   return image;
 }
 

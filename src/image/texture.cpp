@@ -1,6 +1,7 @@
 #include "image/texture.h"
 
 #include "image/color_conversion.h"
+#include "image/srgb.h"
 #include "machine/stop_reading.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -69,6 +70,14 @@ int Texture::wrapped(int i, int size) const {
   return from_start < size ? from_start : period - 1 - from_start;
 }
 
+std::pair<float, float> Texture::range(int channel) const {
+  const auto [least, most] =
+      std::minmax_element(texels_.begin(), texels_.end(), [channel](const Rgb& a, const Rgb& b) {
+        return a[channel] < b[channel];
+      });
+  return {(*least)[channel], (*most)[channel]};
+}
+
 Rgb Texture::at(const Uv& uv) const {
   const auto share = [](float x) {
     constexpr double most = 1e6; // beyond, a picture repeats too often to be one
@@ -99,6 +108,26 @@ Texture make_texture(Image image, const std::string& name, const MaterialSetting
   convert_colors(image, chromaticities_of(material.color_space));
   StopReading::check();
   return {image, material.texture_wrap, shines ? largest_radiance : 1, name, notes};
+}
+
+Texture make_data_texture(Image image, const std::string& name, const DataKind& kind,
+                          std::vector<std::string>& notes) {
+  StopReading::check();
+  add_note(notes, name, make_finite(image),
+           "that are infinite, taken for 65504, or no numbers, taken for 0");
+  const ImageChannel* alpha = kind.use == TextureUse::opacity ? image.find("A") : nullptr;
+  const std::vector<float> opacity = alpha ? alpha->data : std::vector<float>();
+  for (ImageChannel& channel : image.channels) {
+    if (alpha)
+      channel.data = opacity;
+    else if (kind.alpha_only)
+      std::fill(channel.data.begin(), channel.data.end(), 1.0f);
+    else if (kind.encoded && channel.name != "A")
+      for (float& value : channel.data)
+        value = static_cast<float>(srgb_of_light(std::clamp(static_cast<double>(value), 0.0, 1.0)));
+  }
+  StopReading::check();
+  return {image, kind.wrap, 1, name, notes};
 }
 
 Texture read_texture(const MaterialSettings& material, bool shines,

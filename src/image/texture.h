@@ -5,6 +5,7 @@
 #include "vdbeam/surface_settings.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vdbeam {
@@ -19,6 +20,8 @@ public:
           std::vector<std::string>& notes);
 
   Rgb at(const Uv& uv) const;
+  /// The least and greatest value of a channel.
+  std::pair<float, float> range(int channel) const;
   int width() const { return width_; }
   int height() const { return height_; }
   std::size_t bytes() const { return texels_.size() * sizeof texels_[0]; }
@@ -41,6 +44,19 @@ private:
 /// the image in notes.
 Texture make_texture(Image image, const std::string& name, const MaterialSettings& material,
                      bool shines, std::vector<std::string>& notes);
+
+/// What the numbers of an image mean.
+struct DataKind {
+  TextureUse use;
+  TextureWrap wrap = TextureWrap::repeat;
+  bool encoded = false;    ///< they were read as sRGB colours, which they are not
+  bool alpha_only = false; ///< opacity: without an alpha channel it is 1
+};
+
+/// Makes a texture of numbers from 0 to 1. Of an opacity the alpha channel, where there is one,
+/// counts in place of all others.
+Texture make_data_texture(Image image, const std::string& name, const DataKind& kind,
+                          std::vector<std::string>& notes);
 
 /// Makes the texture of the file that a material names. Throws InputError where there is no such
 /// picture.

@@ -201,7 +201,20 @@ void add_mesh(KeyTable& table) {
            "EXR, HDR, PNG or JPEG image that multiplies albedo or radiance, placed by the "
            "surface's UV")
       .file(InputKind::picture);
-  table.add("texture_wrap", &M::texture_wrap, "texture lookup beyond the edges of the image");
+  table.add("texture_wrap", &M::texture_wrap, "texture lookup beyond the edges of the images");
+  table
+      .add("opacity", &M::opacity,
+           "fraction of the rays that the surface stops; the others go straight on")
+      .within(0, 1);
+  table
+      .add("opacity_texture", &M::opacity_texture,
+           "image that multiplies opacity, by its alpha channel, or its green one if it has none")
+      .file(InputKind::picture);
+  table
+      .add("opacity_cutoff", &M::opacity_cutoff,
+           "opacity below which there is a hole, and from which on all rays are stopped; 0: each "
+           "point stops its fraction")
+      .within(0, 1);
   table.add("reflectance", &M::reflectance, "reflectance at normal incidence").within(0, 1);
   table
       .add("roughness", &M::roughness,
@@ -209,13 +222,28 @@ void add_mesh(KeyTable& table) {
            "conductor, 0 for a dielectric, 0.5 for standard")
       .within(0, 1)
       .absent("auto");
+  table
+      .add("roughness_texture", &M::roughness_texture,
+           "image whose green channel multiplies roughness, as in glTF")
+      .file(InputKind::picture);
   table.add("ior", &M::ior, "relative index of refraction, inside over outside").within(0.1, 10);
   table
       .add("metal", &M::metal,
            "share of the base that is metal, with albedo as its reflectance at normal incidence")
       .within(0, 1);
+  table
+      .add("metal_texture", &M::metal_texture,
+           "image whose blue channel multiplies metal, as in glTF")
+      .file(InputKind::picture);
   table.add("coat", &M::coat, "weight of a clear glossy layer on top").within(0, 1);
   table.add("coat_roughness", &M::coat_roughness, "GGX roughness of the coat").within(0, 1);
+  table
+      .add("normal_texture", &M::normal_texture,
+           "image of normals in tangent space, as in glTF: +x along u, +y along v")
+      .file(InputKind::picture);
+  table
+      .add("normal_scale", &M::normal_scale, "factor of the slope of the normals of normal_texture")
+      .within(-10, 10);
   table.add("absorption", &M::absorption, "absorption coefficient inside, per channel")
       .unit("1 / world")
       .at_least(0);

@@ -50,7 +50,9 @@ private:
   bool narrow_;
 };
 
-constexpr std::string_view keys[] = {"reflectance", "roughness"};
+constexpr std::string_view keys[] = {"reflectance",     "roughness",      "roughness_texture",
+                                     "texture_wrap",    "opacity",        "opacity_cutoff",
+                                     "opacity_texture", "normal_texture", "normal_scale"};
 /// Where the scene gives none: metal is a little rough.
 constexpr double default_roughness = 0.2;
 

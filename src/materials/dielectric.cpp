@@ -59,7 +59,8 @@ private:
   bool solid_;
 };
 
-constexpr std::string_view keys[] = {"roughness", "ior", "absorption", "solid"};
+constexpr std::string_view keys[] = {"roughness",      "ior",          "absorption",  "solid",
+                                     "normal_texture", "normal_scale", "texture_wrap"};
 
 } // namespace
 

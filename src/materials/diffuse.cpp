@@ -6,7 +6,9 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap"};
+constexpr std::string_view keys[] = {"albedo",         "texture",         "texture_wrap",
+                                     "opacity",        "opacity_texture", "opacity_cutoff",
+                                     "normal_texture", "normal_scale"};
 
 } // namespace
 

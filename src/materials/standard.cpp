@@ -207,8 +207,21 @@ private:
   CosineTable glossy_; ///< that all layers over a diffuse base do
 };
 
-constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap", "roughness",
-                                     "metal",  "ior",     "coat",         "coat_roughness"};
+constexpr std::string_view keys[] = {"albedo",
+                                     "texture",
+                                     "texture_wrap",
+                                     "roughness",
+                                     "roughness_texture",
+                                     "metal",
+                                     "ior",
+                                     "coat",
+                                     "coat_roughness",
+                                     "metal_texture",
+                                     "opacity",
+                                     "opacity_texture",
+                                     "opacity_cutoff",
+                                     "normal_texture",
+                                     "normal_scale"};
 constexpr double default_roughness = 0.5;
 
 } // namespace

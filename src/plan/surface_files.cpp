@@ -34,6 +34,21 @@ std::uint64_t mesh_bytes(const Scene& scene, const std::string& file, const Mesh
   return size.vertices * bytes_per_vertex + size.triangles * (bytes_per_triangle + normals);
 }
 
+/// Adds the file of an image that can be read, once.
+void add_texture(const TextureFile& texture, std::set<std::string>& known,
+                 std::vector<SurfaceFile>& files) {
+  if (texture.file.empty() ||
+      !known.insert(fmt::format("{}|{}", texture.file, texture.image)).second)
+    return;
+  try {
+    const Image image = read_picture({texture.file, texture.image, ""});
+    files.push_back({texture.file, 0, image.width, image.height,
+                     bytes_per_texel * static_cast<std::uint64_t>(image.width) *
+                         static_cast<std::uint64_t>(image.height)});
+  } catch (const Error&) {
+  }
+}
+
 } // namespace
 
 std::vector<SurfaceFile> surface_files(const Scene& scene) {
@@ -46,17 +61,8 @@ std::vector<SurfaceFile> surface_files(const Scene& scene) {
         files.push_back(
             {surface.file, size.triangles, 0, 0, mesh_bytes(scene, surface.file, size)});
     }
-    const std::string& texture = surface.material.texture;
-    const int held = surface.material.texture_image;
-    if (texture.empty() || !known.insert(fmt::format("{}|{}", texture, held)).second)
-      continue;
-    try {
-      const Image image = read_picture({texture, held, ""});
-      files.push_back({texture, 0, image.width, image.height,
-                       bytes_per_texel * static_cast<std::uint64_t>(image.width) *
-                           static_cast<std::uint64_t>(image.height)});
-    } catch (const Error&) {
-    }
+    for (const TextureUse use : texture_uses)
+      add_texture(texture_file(surface.material, use), known, files);
   }
   return files;
 }

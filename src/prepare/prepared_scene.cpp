@@ -44,8 +44,8 @@ std::string world_settings(const Scene& scene) {
   for (const VolumeSettings& volume : scene.volumes)
     text += volume.present ? "+" : "-";
   for (const SurfaceSettings& surface : scene.surfaces)
-    text +=
-        fmt::format("{}/{};", surface.file_seconds.value_or(-1), surface.material.texture_image);
+    text += fmt::format("{}/{};", surface.file_seconds.value_or(-1),
+                        fmt::join(surface.material.texture_images, ","));
   if (light_with_air(scene.lights) >= 0)
     for (const LightSettings& light : lights_at_camera(scene))
       text += fmt::format("{};", light.altitude);

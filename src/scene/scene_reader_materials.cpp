@@ -9,28 +9,6 @@
 #include <fmt/format.h>
 
 namespace vdbeam {
-namespace {
-
-/// Multiplies roughness and metal by the means of their picture, which surfaces do not have;
-/// returns the note about it.
-std::string apply_means(GltfMaterial& material) {
-  if (material.roughness_and_metal.file.empty())
-    return {};
-  try {
-    const DataMeans means = means_of_data(material.roughness_and_metal);
-    MaterialSettings& settings = material.settings;
-    settings.roughness = settings.roughness.value_or(1) * means.green;
-    settings.metal *= means.blue;
-    return fmt::format("its metallicRoughnessTexture of material {} counts by its mean: roughness "
-                       "{:.2f}, metal {:.2f}",
-                       material.index, *settings.roughness, settings.metal);
-  } catch (const Error& problem) {
-    return fmt::format("its metallicRoughnessTexture is not used: {}", problem.what());
-  }
-}
-
-} // namespace
-
 /// Gives meshes of animated glTFs the time of the frame.
 void SceneReader::set_file_times() {
   for (SurfaceSettings& surface : scene_.surfaces)
@@ -63,9 +41,6 @@ void SceneReader::use_file_materials() {
     }
     for (const std::string& note : materials.notes)
       scene_.notes.push_back(one_line(fmt::format("{}: {}", mesh.file, note)));
-    for (GltfMaterial& material : materials.used)
-      if (const std::string note = apply_means(material); !note.empty())
-        scene_.notes.push_back(one_line(fmt::format("{}: {}", mesh.file, note)));
     for (std::size_t part = 0; part < materials.used.size(); ++part) {
       SurfaceSettings& surface =
           part == 0 ? scene_.surfaces[i] : scene_.surfaces.emplace_back(mesh);

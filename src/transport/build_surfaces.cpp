@@ -56,6 +56,35 @@ void check_sizes(const std::vector<PlacedShape>& surfaces) {
           "a million million times smaller, in some direction, than");
 }
 
+const char* key_of(TextureUse use) {
+  constexpr const char* keys[] = {"texture", "opacity_texture", "roughness_texture",
+                                  "metal_texture", "normal_texture"};
+  return keys[static_cast<std::size_t>(use)];
+}
+
+/// Adds the materials and textures of a surface, and what they say about its shape.
+PlacedShape add_material(const SurfaceSettings& settings, double scale, SurfaceStore& store,
+                         Surfaces& surfaces, std::vector<std::string>& notes) {
+  const MaterialSettings& material = settings.material;
+  const auto texture = [&](TextureUse use, bool shines = false) {
+    return store.texture(material, use, shines, notes);
+  };
+  surfaces.materials.push_back(make_material(material, scale));
+  surfaces.textures.push_back(texture(TextureUse::color, surfaces.materials.back()->shines()));
+  const auto roughness = texture(TextureUse::roughness), metal = texture(TextureUse::metal),
+             opacity = texture(TextureUse::opacity), normals = texture(TextureUse::normal);
+  surfaces.maps.push_back(
+      roughness || metal ? std::make_shared<const MaterialMaps>(material, scale, roughness, metal)
+                         : nullptr);
+  surfaces.lights.push_back(-1);
+  PlacedShape placed;
+  placed.visible = settings.visible;
+  placed.textured = has_texture(material);
+  if (material.opacity < 1 || opacity || normals)
+    placed.detail = std::make_shared<const SurfaceDetail>(material, opacity, normals);
+  return placed;
+}
+
 const Boxd everywhere{Vec3d(-1e300), Vec3d(1e300)};
 
 /// The material of a lamp whose power is given [W]: radiance times pi times the area of its sides.
@@ -74,11 +103,12 @@ std::vector<WorldShape> read_shapes(const std::vector<SurfaceSettings>& settings
   std::vector<WorldShape> shapes;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const SurfaceStore::KnownShape& known = store.shape(settings[i], notes);
-    if (!settings[i].material.texture.empty() && !known.shape->has_uvs())
-      throw InputError(fmt::format("{}: has no texture coordinates (UV), which "
-                                   "mesh.{}.material.texture needs: export it with them, or leave "
-                                   "out the texture",
-                                   settings[i].file, i));
+    for (const TextureUse use : texture_uses)
+      if (!texture_file(settings[i].material, use).file.empty() && !known.shape->has_uvs())
+        throw InputError(fmt::format("{}: has no texture coordinates (UV), which "
+                                     "mesh.{}.material.{} needs: export it with them, or leave out "
+                                     "the texture",
+                                     settings[i].file, i, key_of(use)));
     shapes.push_back({known.shape, Affine::from_matrix(settings[i].transform)
                                        .after(turned(settings[i].file_axes))
                                        .after(moved(known.center))});
@@ -111,14 +141,9 @@ build_surfaces(const std::vector<SurfaceSettings>& settings, const std::vector<W
   surfaces->store = store;
   std::vector<PlacedShape> placed;
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    const MaterialSettings& material = settings[i].material;
-    surfaces->materials.push_back(make_material(material, space.scale));
-    const bool shines = surfaces->materials[i]->shines();
-    surfaces->textures.push_back(
-        material.texture.empty() ? nullptr : store->texture(material, shines, notes));
-    placed.push_back({shapes[i].shape, space.map().after(shapes[i].to_world), settings[i].visible,
-                      surfaces->textures[i] != nullptr});
-    surfaces->lights.push_back(-1);
+    placed.push_back(add_material(settings[i], space.scale, *store, *surfaces, notes));
+    placed[i].shape = shapes[i].shape;
+    placed[i].to_render = space.map().after(shapes[i].to_world);
   }
   check_sizes(placed);
   const double reach = static_cast<double>(length(medium.center) + medium.radius);

@@ -24,7 +24,7 @@ SurfaceStore::SurfaceStore(const std::vector<SurfaceSettings>& settings,
                            const SurfaceStore* previous)
     : previous_(previous) {
   for (const SurfaceSettings& surface : settings)
-    textured_[surface.file] = textured_[surface.file] || !surface.material.texture.empty();
+    textured_[surface.file] = textured_[surface.file] || has_texture(surface.material);
 }
 
 const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surface,
@@ -59,20 +59,33 @@ const SurfaceStore::KnownShape& SurfaceStore::shape(const SurfaceSettings& surfa
   return shapes_[name] = std::move(made);
 }
 
-std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material, bool shines,
+std::shared_ptr<const Texture> SurfaceStore::texture(const MaterialSettings& material,
+                                                     TextureUse use, bool shines,
                                                      std::vector<std::string>& notes) {
-  const std::string name = fmt::format(
-      "{}|{}|{}|{}|{}", model_identity(material.texture), material.texture_image,
-      static_cast<int>(material.texture_wrap), static_cast<int>(material.color_space), shines);
+  const auto [file, image] = texture_file(material, use);
+  if (file.empty())
+    return nullptr;
+  // The colours of an image are not its opacity, even where it has no alpha channel.
+  const bool colors = use == TextureUse::opacity &&
+                      texture_file(material, use) == texture_file(material, TextureUse::color);
+  const std::string name =
+      fmt::format("{}|{}|{}|{}|{}|{}|{}", model_identity(file), image, static_cast<int>(use),
+                  static_cast<int>(material.texture_wrap), static_cast<int>(material.color_space),
+                  shines, colors);
   if (const KnownTexture* known = find(textures_, name))
     return known->texture;
   KnownTexture made;
   if (const KnownTexture* known = previous_ ? find(previous_->textures_, name) : nullptr) {
     made = *known;
   } else {
+    const GltfPicture picture{file, image, ""};
+    Image pixels = read_picture(picture);
     made.texture = std::make_shared<const Texture>(
-        make_texture(read_picture({material.texture, material.texture_image, ""}), material.texture,
-                     material, shines, made.notes));
+        use == TextureUse::color
+            ? make_texture(std::move(pixels), file, material, shines, made.notes)
+            : make_data_texture(std::move(pixels), file,
+                                {use, material.texture_wrap, is_encoded(picture), colors},
+                                made.notes));
     ++textures_read_;
   }
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());

@@ -28,9 +28,10 @@ public:
 
   /// Throws InputError and FrameError for a mesh file that cannot be read.
   const KnownShape& shape(const SurfaceSettings& surface, std::vector<std::string>& notes);
-  /// Throws InputError where there is no such picture.
-  std::shared_ptr<const Texture> texture(const MaterialSettings& material, bool shines,
-                                         std::vector<std::string>& notes);
+  /// The texture of a material for that use; null where it has none. Throws InputError where there
+  /// is no such picture.
+  std::shared_ptr<const Texture> texture(const MaterialSettings& material, TextureUse use,
+                                         bool shines, std::vector<std::string>& notes);
 
   int meshes_read() const { return meshes_read_; }
   int textures_read() const { return textures_read_; }

@@ -3,6 +3,7 @@
 #include "geometry/surface_set.h"
 #include "image/texture.h"
 #include "materials/material.h"
+#include "transport/material_maps.h"
 #include "transport/surface_store.h"
 
 #include <algorithm>
@@ -15,12 +16,15 @@ namespace vdbeam {
 struct Surfaces {
   std::shared_ptr<const SurfaceSet> set;
   std::vector<std::shared_ptr<const Material>> materials; ///< per surface
-  std::vector<std::shared_ptr<const Texture>> textures;   ///< per surface; null: none
+  /// Per surface: its materials from point to point; null: it has but one.
+  std::vector<std::shared_ptr<const MaterialMaps>> maps;
+  std::vector<std::shared_ptr<const Texture>> textures; ///< per surface; null: none
   std::shared_ptr<const SurfaceStore> store; ///< what they were made of, for the next frame
   std::vector<int> lights; ///< per surface: its index among the lights, -1 where it does not shine
 
   const Material& material(const SurfaceHit& hit) const {
-    return *materials[static_cast<std::size_t>(hit.surface)];
+    const auto i = static_cast<std::size_t>(hit.surface);
+    return maps[i] ? maps[i]->at(hit) : *materials[i];
   }
   /// Memory of meshes, trees and textures.
   std::size_t bytes() const;
@@ -28,21 +32,18 @@ struct Surfaces {
 
   /// Some surface is a mirror, glass, or metal that is not very rough.
   bool show_surroundings() const {
-    return std::any_of(materials.begin(), materials.end(),
-                       [](const auto& material) { return material->shows_surroundings(); });
+    return any([](const Material& material) { return material.shows_surroundings(); });
   }
 
   /// Some surface is a mirror or smooth glass: path tracing may miss light that it focuses.
   bool focus_light() const {
-    return std::any_of(materials.begin(), materials.end(), [](const auto& material) {
-      return material->is_specular() && !material->is_black();
-    });
+    return any(
+        [](const Material& material) { return material.is_specular() && !material.is_black(); });
   }
 
   /// Some surface sends light on in narrow lobes (Material::throws_light).
   bool throw_light() const {
-    return std::any_of(materials.begin(), materials.end(),
-                       [](const auto& material) { return material->throws_light(); });
+    return any([](const Material& material) { return material.throws_light(); });
   }
 
   /// How far from its beginning a flight that ends there meets the medium. Within a solid, whose
@@ -56,12 +57,20 @@ struct Surfaces {
 
   /// Some surface is neither only matt nor specular.
   bool any_gloss() const {
-    return std::any_of(materials.begin(), materials.end(), [](const auto& material) {
-      return !material->is_all_matt() && !material->is_black() && !material->is_specular();
+    return any([](const Material& material) {
+      return !material.is_all_matt() && !material.is_black() && !material.is_specular();
     });
   }
 
 private:
+  template <class Predicate>
+  bool any(const Predicate& is_wanted) const {
+    const auto wanted = [&](const auto& material) { return is_wanted(*material); };
+    return std::any_of(materials.begin(), materials.end(), wanted) ||
+           std::any_of(maps.begin(), maps.end(), [&](const auto& map) {
+             return map && std::any_of(map->materials().begin(), map->materials().end(), wanted);
+           });
+  }
   bool inside_solid(SurfaceHit end, const Vec3f& direction) const;
 };
 

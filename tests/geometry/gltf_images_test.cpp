@@ -1,5 +1,7 @@
 #include "geometry/gltf_images.h"
 
+#include "image/texture.h"
+
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
 #include "vdbeam/image_file.h"
@@ -112,10 +114,15 @@ TEST_F(GltfImages, DamageIsOneLine) {
 }
 
 /// Pictures of data are no colours: the numbers count, not the light that they would be.
-TEST_F(GltfImages, MeansOfData) {
-  const DataMeans means = means_of_data({folder_.file("a.png"), -1, ""});
-  EXPECT_NEAR(means.green, 0.375, 0.006);
-  EXPECT_NEAR(means.blue, 0.5, 0.006);
+TEST_F(GltfImages, DataOfEightBitsIsDecoded) {
+  const GltfPicture picture{folder_.file("a.png"), -1, ""};
+  std::vector<std::string> notes;
+  const Texture texture =
+      make_data_texture(read_picture(picture), "a.png",
+                        {.use = TextureUse::roughness, .encoded = is_encoded(picture)}, notes);
+  const auto [least, most] = texture.range(1);
+  EXPECT_NEAR((least + most) / 2, 0.375, 0.006);
+  EXPECT_FALSE(is_encoded({"a.exr", -1, ""}));
 }
 
 } // namespace

@@ -126,25 +126,58 @@ TEST(GltfMaterials, TexturesOfTheBaseColour) {
   write_bytes(folder.file("my wood.png"), "any");
   const GltfMaterials beside = with_image(R"({"uri": "my%20wood.png"})");
   EXPECT_EQ(beside.used[0].settings.texture, folder.file("my wood.png"));
-  EXPECT_EQ(beside.used[0].settings.texture_image, -1);
+  EXPECT_EQ(texture_file(beside.used[0].settings, TextureUse::color).image, -1);
   EXPECT_EQ(beside.used[0].settings.texture_wrap, TextureWrap::clamp);
-  EXPECT_EQ(beside.notes,
-            (std::vector<std::string>{"its alphaMode MASK is not used: the surfaces are opaque",
-                                      "its normalTexture are not used"}));
+  EXPECT_TRUE(beside.notes.empty());
   for (const char* image : {R"({"bufferView": 0, "mimeType": "image/png"})",
                             R"({"uri": "data:image/jpeg;base64,AAAA"})"}) {
     const GltfMaterials held = with_image(image);
     EXPECT_EQ(held.used[0].settings.texture, path) << image;
-    EXPECT_EQ(held.used[0].settings.texture_image, 0) << image;
-    EXPECT_EQ(held.notes.size(), 2u) << image;
+    EXPECT_EQ(texture_file(held.used[0].settings, TextureUse::color).image, 0) << image;
+    EXPECT_TRUE(held.notes.empty()) << image;
   }
   for (const char* image :
        {R"({"uri": "wood.webp"})", R"({"bufferView": 0, "mimeType": "image/webp"})",
         R"({"uri": "data:image/webp;base64,AAAA"})"}) {
     const GltfMaterials without = with_image(image);
     EXPECT_EQ(without.used[0].settings.texture, "") << image;
-    EXPECT_EQ(without.notes.size(), 3u) << image;
+    EXPECT_EQ(without.notes.size(), 1u) << image;
   }
+}
+
+/// Alpha counts where the material says so; roughness and metal share an image.
+TEST(GltfMaterials, TexturesOfOpacityRoughnessAndNormals) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.gltf");
+  write_bytes(path, triangles({R"(, "material": 0)", R"(, "material": 1)", R"(, "material": 2)"},
+                              R"({"alphaMode": "MASK", "alphaCutoff": 0.25,
+                                  "pbrMetallicRoughness": {"baseColorTexture": {"index": 0},
+                                  "metallicRoughnessTexture": {"index": 1}},
+                                  "normalTexture": {"index": 2, "scale": 0.5}},
+                                 {"alphaMode": "BLEND",
+                                  "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}},
+                                 {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5],
+                                  "baseColorTexture": {"index": 0}}})",
+                              R"(, "textures": [{"source": 0}, {"source": 1}, {"source": 2}],
+                                  "images": [{"uri": "a.png"}, {"uri": "b.png"},
+                                             {"uri": "data:image/png;base64,AAAA"}])"));
+  const GltfMaterials materials = read_gltf_materials(path);
+  ASSERT_EQ(materials.used.size(), 3u);
+  const MaterialSettings& leaf = materials.used[0].settings;
+  EXPECT_EQ(leaf.opacity, 1);
+  EXPECT_EQ(leaf.opacity_cutoff, 0.25);
+  EXPECT_EQ(leaf.opacity_texture, folder.file("a.png"));
+  EXPECT_EQ(leaf.roughness_texture, folder.file("b.png"));
+  EXPECT_EQ(leaf.metal_texture, folder.file("b.png"));
+  EXPECT_EQ(texture_file(leaf, TextureUse::normal), (TextureFile{path, 2}));
+  EXPECT_EQ(leaf.normal_scale, 0.5);
+  const MaterialSettings& veil = materials.used[1].settings;
+  EXPECT_EQ(veil.opacity, 0.5);
+  EXPECT_EQ(veil.opacity_cutoff, 0);
+  EXPECT_EQ(veil.opacity_texture, "");
+  const MaterialSettings& opaque = materials.used[2].settings;
+  EXPECT_EQ(opaque.opacity, 1);
+  EXPECT_EQ(opaque.opacity_texture, "");
 }
 
 /// What glows by a texture alone is a lamp; what has other textures too is not, and says so.

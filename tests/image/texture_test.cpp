@@ -147,6 +147,36 @@ TEST(ReadPng, linear_of_16_bits_without_its_alpha) {
   EXPECT_NEAR(read.find("G")->data[0], 0.5, 1e-3);
   EXPECT_NEAR(read.find("G")->data[1], 0.1, 1e-4);
   EXPECT_EQ(read.find("B")->data[1], 0);
+  EXPECT_NEAR(read.find("A")->data[0], 0.5, 1e-4);
+  EXPECT_EQ(read.find("A")->data[1], 1);
+}
+
+TEST(ReadPng, keeps_alpha_of_8_bits) {
+  test::TempFolder folder;
+  const std::string path = folder.file("leaf.png");
+  write_row<png_byte>(path, {255, 0, 0, 51, 0, 255, 0, 255}, PNG_FORMAT_RGBA);
+  const Image read = read_image(path);
+  EXPECT_NEAR(read.find("A")->data[0], 0.2f, 1e-6f);
+  EXPECT_EQ(read.find("R")->data[0], 1);
+}
+
+/// An image of numbers counts as it was written, and one with alpha as its alpha.
+TEST(DataTexture, numbers_and_alpha) {
+  test::TempFolder folder;
+  std::vector<std::string> notes;
+  const auto value = [&](const std::string& path, const DataKind& kind) {
+    return make_data_texture(read_image(path), path, kind, notes).at({0.5f, 0.5f});
+  };
+  const std::string grey = folder.file("grey.png"), leaf = folder.file("leaf.png");
+  write_row<png_byte>(grey, {51, 102, 204}, PNG_FORMAT_RGB);
+  write_row<png_byte>(leaf, {51, 102, 204, 153}, PNG_FORMAT_RGBA);
+  const DataKind roughness{.use = TextureUse::roughness, .encoded = true};
+  EXPECT_NEAR(value(grey, roughness).y, 0.4f, 1e-5f);
+  EXPECT_NEAR(value(leaf, roughness).z, 0.8f, 1e-5f);
+  EXPECT_NEAR(value(leaf, {.use = TextureUse::opacity, .encoded = true}).y, 0.6f, 1e-5f);
+  EXPECT_NEAR(value(grey, {.use = TextureUse::opacity, .encoded = true}).y, 0.4f, 1e-5f);
+  EXPECT_EQ(value(grey, {.use = TextureUse::opacity, .encoded = true, .alpha_only = true}).y, 1);
+  EXPECT_TRUE(notes.empty());
 }
 
 TEST(ReadPng, damaged_files_are_one_clear_line) {
