@@ -1,6 +1,6 @@
 #include "geometry/mesh_size.h"
 
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_json.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "text/text.h"

@@ -1,6 +1,6 @@
 #include "geometry/uri_files.h"
 
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>

@@ -117,5 +117,6 @@ void add_image_keys(KeyTable& table);
 void add_camera_keys(KeyTable& table);
 void add_instance_keys(KeyTable& table);
 void add_light_keys(KeyTable& table);
+void add_material_keys(KeyTable& table);
 
 } // namespace vdbeam

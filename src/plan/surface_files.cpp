@@ -1,6 +1,6 @@
 #include "plan/surface_files.h"
 
-#include "geometry/gltf_images.h"
+#include "geometry/gltf/gltf_images.h"
 #include "geometry/mesh_size.h"
 #include "vdbeam/error.h"
 

@@ -1,6 +1,6 @@
 #include "prepare/prepared_scene.h"
 
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 #include "keys/scene_keys.h"
 #include "lights/sky/aerial_perspective.h"
 #include "machine/memory.h"

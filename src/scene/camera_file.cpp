@@ -1,7 +1,7 @@
 #include "scene/camera_file.h"
 
-#include "geometry/gltf_camera.h"
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_camera.h"
+#include "geometry/gltf/gltf_files.h"
 #include "keys/scene_enums.h"
 #include "machine/input_file.h"
 #include "text/text.h"

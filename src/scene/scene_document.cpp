@@ -1,6 +1,6 @@
 #include "scene/scene_document.h"
 
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 #include "lights/light_table.h"
 #include "machine/input_file.h"
 #include "materials/material_table.h"

@@ -1,4 +1,4 @@
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 #include "layers/plane_layers.h"
 #include "machine/input_file.h"
 #include "scene/content_hash.h"

@@ -1,6 +1,6 @@
 #include "scene/scene_inputs.h"
 
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 #include "machine/input_file.h"
 #include "scene/toml_value.h"
 #include "text/text.h"

@@ -1,4 +1,4 @@
-#include "geometry/gltf_camera.h"
+#include "geometry/gltf/gltf_camera.h"
 #include "scene/camera_file.h"
 #include "scene/scene_reader.h"
 #include "vdbeam/error.h"

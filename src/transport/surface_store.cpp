@@ -1,8 +1,8 @@
 #include "transport/surface_store.h"
 
 #include "geometry/corner_normals.h"
-#include "geometry/gltf_files.h"
-#include "geometry/gltf_images.h"
+#include "geometry/gltf/gltf_files.h"
+#include "geometry/gltf/gltf_images.h"
 #include "geometry/mesh_reader.h"
 #include "machine/stop_reading.h"
 

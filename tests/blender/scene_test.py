@@ -154,6 +154,44 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(self.keys(shader), {"type": "diffuse", "texture": "bricks.png", "albedo": [1.0] * 3})
 
 
+    def test_maps_of_opacity_roughness_and_normal(self):
+        shader = self.principled(Specular=0.5, Alpha=1.0)
+        shader.inputs.append(Socket("Normal"))
+        picture = node("TEX_IMAGE", image="packed.png")
+        apart = node("SEPARATE_COLOR", {"Color": None})
+        apart.outputs[0].name = "Green"
+        link(picture, apart, "Color")
+        link(apart, shader, "Roughness")
+        link(node("TEX_IMAGE", image="metal.png"), shader, "Metallic")
+        link(node("TEX_IMAGE", image="leaf.png"), shader, "Alpha")
+        bumps = node("NORMAL_MAP", {"Strength": 0.5, "Color": None}, space="TANGENT")
+        link(node("TEX_IMAGE", image="bumps.png"), bumps, "Color")
+        link(bumps, shader, "Normal")
+        self.assertEqual(self.keys(shader), {
+            "type": "standard", "metal": 1.0, "metal_texture": "metal.png", "ior": 1.5, "roughness": 1.0,
+            "roughness_texture": "packed.png", "opacity_texture": "leaf.png", "normal_texture": "bumps.png",
+            "normal_scale": 0.5, "albedo": [0.8] * 3})
+        self.assertEqual(self.notes.lines, [])
+        apart.outputs[0].name = "Red"  # no channel of roughness
+        self.assertNotIn("roughness_texture", self.keys(shader))
+        self.assertEqual(len(self.notes.lines), 1)
+
+    def test_mixture_with_nothing_has_an_opacity(self):
+        def mixture(factor, first, second):
+            both = node("MIX_SHADER", {"Fac": factor, "1": None, "2": None})
+            link(first, both, "1")
+            return link(second, both, "2")
+
+        clear, matt = node("BSDF_TRANSPARENT"), node("BSDF_DIFFUSE", {"Color": (1, 1, 1, 1)})
+        self.assertEqual(self.keys(mixture(0.25, clear, matt)), {"type": "diffuse", "albedo": [1.0] * 3, "opacity": 0.25})
+        self.assertEqual(self.keys(mixture(0.25, matt, clear))["opacity"], 0.75)
+        leaf = link(node("TEX_IMAGE", image="leaf.png"), mixture(0.5, clear, matt), "Fac")
+        self.assertEqual(self.keys(leaf)["opacity_texture"], "leaf.png")
+        self.assertEqual(self.notes.lines, [])
+        self.assertEqual(self.keys(mixture(0.5, matt, matt))["type"], "diffuse")
+        self.assertEqual(len(self.notes.lines), 1)
+
+
 class Worlds(unittest.TestCase):
     def lights(self, colour_node=None, strength=1.0):
         background = node("BACKGROUND", {"Color": (0.1, 0.2, 0.3, 1), "Strength": strength})

@@ -1,4 +1,4 @@
-#include "geometry/gltf_images.h"
+#include "geometry/gltf/gltf_images.h"
 
 #include "image/texture.h"
 

@@ -1,4 +1,4 @@
-#include "geometry/gltf_materials.h"
+#include "geometry/gltf/gltf_materials.h"
 
 #include "geometry/mesh_reader.h"
 #include "support/temp_folder.h"

@@ -1,6 +1,6 @@
 #include "geometry/mesh_reader.h"
 
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 #include "support/gltf.h"
 #include "support/temp_folder.h"
 

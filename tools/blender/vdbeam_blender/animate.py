@@ -2,7 +2,8 @@
 
 # Keys that a scene file does not animate: names, choices, whole files.
 STILL = {"name", "type", "file", "density", "mask", "color_grid", "image", "texture", "group", "visible", "shape",
-         "width", "height", "projection", "up", "blades", "sun", "two_sided"}
+         "width", "height", "projection", "up", "blades", "sun", "two_sided", "opacity_texture", "roughness_texture",
+         "metal_texture", "normal_texture"}
 
 
 def is_number(value):

@@ -24,6 +24,12 @@ def source(input_socket):
     return None
 
 
+def output_name(input_socket):
+    """The name of the output to which a socket is linked, through reroutes; requires a `source`."""
+    link = input_socket.links[0]
+    return link.from_socket.name if link.from_node.type != "REROUTE" else output_name(link.from_node.inputs[0])
+
+
 def number(node, *names, default=0.0):
     """The value of a socket without its link."""
     found = socket(node, *names)

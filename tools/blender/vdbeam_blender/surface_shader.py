@@ -1,7 +1,7 @@
 """From surface shaders to the material of a [[mesh]]."""
 import math
 
-from . import nodes
+from . import nodes, surface_maps
 
 TEXTURES = "Base Color", "Color"
 TINT = "tint"  # no key of vdbeam's: the colour of glass until its mesh is known
@@ -59,11 +59,6 @@ def metal(node, notes, subject):
             "roughness": nodes.constant_number(node, notes, subject, "Roughness")}
 
 
-def share(value):
-    """A number within [0, 1]."""
-    return max(0.0, min(1.0, value))
-
-
 def gloss_ior(node, notes, subject):
     """The index of refraction with the reflectance of a Principled BSDF's gloss straight on; 1: it has none. Blender 4
     scales that of IOR by twice the level, earlier versions have 0.08 of Specular."""
@@ -84,22 +79,43 @@ def principled(node, notes, subject, image_path):
     if strength * max(colour) > 0:
         return emission(colour, strength)
     transmission = nodes.constant_number(node, notes, subject, "Transmission Weight", "Transmission")
-    metallic = nodes.constant_number(node, notes, subject, "Metallic")
+    metal_keys = surface_maps.number(node, "metal", notes, subject, image_path, "Metallic")
+    metallic = metal_keys["metal"]
     if 0.01 < transmission < 0.99:
         notes.add(subject, f"a transmission of {transmission:.2g} has no counterpart; it is rounded to 0 or 1")
     if transmission > 0.5 and metallic < 0.5:
-        return glass(node, notes, subject)
+        return {**glass(node, notes, subject), **surface_maps.normal(node, notes, subject, image_path)}
     ior = gloss_ior(node, notes, subject)
     coat = nodes.constant_number(node, notes, subject, "Coat Weight", "Clearcoat")
-    if ior == 1 and metallic == 0 and coat == 0:
-        return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
-    keys = {"type": "standard", "metal": share(metallic), "ior": ior,
-            "roughness": share(nodes.constant_number(node, notes, subject, "Roughness", default=0.5))}
+    more = {**surface_maps.opacity(node, "Alpha", notes, subject, image_path),
+            **surface_maps.normal(node, notes, subject, image_path)}
+    if ior == 1 and metallic == 0 and "metal_texture" not in metal_keys and coat == 0:
+        return with_texture(node, {"type": "diffuse", **more}, notes, subject, image_path)
+    keys = {"type": "standard", **metal_keys, "ior": ior,
+            **surface_maps.number(node, "roughness", notes, subject, image_path, "Roughness", default=0.5), **more}
     if coat > 0:
-        keys["coat"] = share(coat)
-        keys["coat_roughness"] = share(nodes.constant_number(node, notes, subject, "Coat Roughness",
-                                                             "Clearcoat Roughness"))
+        keys["coat"] = min(1.0, coat)
+        keys["coat_roughness"] = max(0.0, min(1.0, nodes.constant_number(
+            node, notes, subject, "Coat Roughness", "Clearcoat Roughness")))
     return with_texture(node, keys, notes, subject, image_path)
+
+
+def cut_out(node, notes, subject, image_path):
+    """A mixture of a surface and nothing, as leaves have it; None for another mixture."""
+    factor, *sides = node.inputs
+    shaders = [nodes.source(side) for side in sides[:2]]
+    for i, shader in enumerate(shaders):
+        if shader is None or shader.type != "BSDF_TRANSPARENT" or shaders[1 - i] is None:
+            continue
+        keys = surface_keys(shaders[1 - i], notes, subject, image_path)
+        share = surface_maps.opacity(node, factor.name, notes, subject, image_path)
+        if i == 1:  # the factor is the share of nothing
+            if "opacity_texture" in share:
+                notes.add(subject, "an image of transparency has no counterpart, only one of opacity; it is left out")
+                return keys
+            share = {"opacity": 1 - share.get("opacity", 1.0)}
+        return None if keys is None else {**keys, **share}
+    return None
 
 
 def surface_keys(node, notes, subject, image_path):
@@ -109,7 +125,8 @@ def surface_keys(node, notes, subject, image_path):
     if node.type == "BSDF_PRINCIPLED":
         return principled(node, notes, subject, image_path)
     if node.type == "BSDF_DIFFUSE":
-        return with_texture(node, {"type": "diffuse"}, notes, subject, image_path)
+        return with_texture(node, {"type": "diffuse", **surface_maps.normal(node, notes, subject, image_path)}, notes,
+                            subject, image_path)
     if node.type in ("BSDF_GLOSSY", "BSDF_ANISOTROPIC"):
         return metal(node, notes, subject)
     if node.type == "BSDF_GLASS":
@@ -117,6 +134,8 @@ def surface_keys(node, notes, subject, image_path):
     if node.type == "EMISSION":
         return emission(nodes.constant_colour(node, notes, subject, "Color"),
                         nodes.constant_number(node, notes, subject, "Strength", default=1.0))
+    if node.type == "MIX_SHADER" and (keys := cut_out(node, notes, subject, image_path)) is not None:
+        return keys
     if node.type == "HOLDOUT":
         return {"type": "holdout"}
     notes.add(subject, f"the shader {node.bl_label} has no counterpart; the surface is matt grey")

@@ -1,7 +1,7 @@
-#include "geometry/gltf_images.h"
+#include "geometry/gltf/gltf_images.h"
 
-#include "geometry/gltf_files.h"
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_files.h"
+#include "geometry/gltf/gltf_json.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"

@@ -1,4 +1,4 @@
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_json.h"
 
 #include "machine/input_file.h"
 #include "text/text.h"

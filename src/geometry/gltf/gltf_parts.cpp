@@ -1,6 +1,6 @@
-#include "geometry/gltf_parts.h"
+#include "geometry/gltf/gltf_parts.h"
 
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_json.h"
 #include "vdbeam/error.h"
 
 #include <assimp/material.h>

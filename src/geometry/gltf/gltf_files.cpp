@@ -1,6 +1,6 @@
-#include "geometry/gltf_files.h"
+#include "geometry/gltf/gltf_files.h"
 
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_json.h"
 #include "machine/input_file.h"
 #include "text/text.h"
 #include "vdbeam/error.h"

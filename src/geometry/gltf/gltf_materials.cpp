@@ -1,7 +1,7 @@
-#include "geometry/gltf_materials.h"
+#include "geometry/gltf/gltf_materials.h"
 
-#include "geometry/gltf_camera.h"
-#include "geometry/gltf_json.h"
+#include "geometry/gltf/gltf_camera.h"
+#include "geometry/gltf/gltf_json.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"
 #include "machine/memory.h"

@@ -1,4 +1,4 @@
-#include "geometry/gltf_motion.h"
+#include "geometry/gltf/gltf_motion.h"
 
 #include <assimp/scene.h>
 

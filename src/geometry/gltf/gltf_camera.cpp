@@ -1,7 +1,7 @@
-#include "geometry/gltf_camera.h"
+#include "geometry/gltf/gltf_camera.h"
 
-#include "geometry/gltf_files.h"
-#include "geometry/gltf_motion.h"
+#include "geometry/gltf/gltf_files.h"
+#include "geometry/gltf/gltf_motion.h"
 #include "geometry/uri_files.h"
 #include "machine/guarded_process.h"
 #include "machine/input_file.h"

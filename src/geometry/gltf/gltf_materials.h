@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/gltf_images.h"
+#include "geometry/gltf/gltf_images.h"
 #include "vdbeam/surface_settings.h"
 
 #include <string>
