@@ -11,14 +11,12 @@ struct KernelTrialResult;
 /// How the passes of a frame are rendered: chosen once, before the first pass, as a pure function
 /// of the estimator's input (by counts, never by a clock).
 struct Choices {
-  std::string_view estimator;       ///< of passes without final gathering
+  std::string_view estimator;       ///< of all passes
   PeakOrders peak;                  ///< of phase functions, which photons live without
   PhotonPlan photons;               ///< lights, light paths, photons and kernels
-  std::optional<GatherPlan> gather; ///< of final gathering; empty: no such passes
+  std::optional<GatherPlan> gather; ///< of final gathering; empty: there is none
   /// Result of the kernel pilot; null without one.
   std::shared_ptr<const KernelTrialResult> trial;
-
-  bool gathers_finally(int pass) const { return gather && pass >= gather->first; }
 };
 
 /// The choices of a scene whose moments are other worlds, and where these are.

@@ -22,8 +22,8 @@ namespace {
 /// in the radius.
 double in_kernel_steps(double neighbours) {
   return std::min(tuning::most_neighbours,
-                  tuning::middle_neighbours *
-                      std::exp2(std::round(std::log2(neighbours / tuning::middle_neighbours))));
+                  tuning::most_neighbours *
+                      std::exp2(std::round(std::log2(neighbours / tuning::most_neighbours))));
 }
 
 /// About the radius that kernels would have without regard to the view.
@@ -171,8 +171,6 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
       is_possible(final_gather_feature, facts))
     choices.gather.emplace();
   plan.share_at_boundary = is_possible(boundary_share_feature, facts);
-  if (!choices.trial && is_possible(hidden_lights_feature, facts))
-    plan.paths = paths_with_hidden_lights(input, plan);
 }
 
 } // namespace
@@ -191,9 +189,7 @@ SceneChoices SceneChoices::in_units(double scale) const {
 
 Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {
   Choices choices;
-  const bool mixed =
-      kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::gather.name;
-  choices.estimator = mixed ? EstimatorType::beam.name : kind.name;
+  choices.estimator = kind.name;
   if (!kind.shoots_photons())
     return choices;
   if (is_possible(forward_peak_feature, {input, kind}))
@@ -204,6 +200,12 @@ Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorld
   else
     choose_photons(first, kind, choices);
   PhotonPlan& plan = choices.photons;
+  const bool of_two =
+      kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::gather.name;
+  if (choices.gather)
+    choices.estimator = EstimatorType::gather.name;
+  else if (of_two)
+    choices.estimator = EstimatorType::beam.name;
   plan.shadow_lattices = is_possible(shadow_lattice_feature, {first, kind, plan.sampled_lights});
   return choices;
 }

@@ -21,12 +21,6 @@ namespace {
 /// Names random numbers that neither passes nor other pilots draw.
 constexpr int first_trial_pass = -200;
 
-int trial_passes_of(std::size_t pixels) {
-  return static_cast<int>(std::clamp(tuning::wanted_trial_rays / pixels,
-                                     std::size_t{tuning::fewest_trial_passes},
-                                     std::size_t{tuning::most_trial_passes}));
-}
-
 /// Weighted variance of independent images of the same scene: mean over the pixels.
 double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
   const auto count = static_cast<float>(images.size());
@@ -51,7 +45,7 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
                              const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
   const EstimatorInput in = input.in(photons.world());
   const auto width = static_cast<std::size_t>(input.camera.width());
-  const int passes = trial_passes_of(pixels.size());
+  const int passes = tuning::trial_passes;
   std::vector<PassImage> images(static_cast<std::size_t>(passes));
   std::vector<RenderStatistics> counts_by_pixel(pixels.size());
   for (int t = 0; t < passes; ++t) {
@@ -82,7 +76,7 @@ double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>
   for (const TrialPixel& pixel : pixels)
     places.push_back(pixel.pixel);
   const PathEstimator path(input);
-  std::vector<PassImage> images(static_cast<std::size_t>(trial_passes_of(pixels.size())));
+  std::vector<PassImage> images(tuning::trial_passes);
   std::vector<std::uint8_t> finished;
   for (std::size_t t = 0; t < images.size(); ++t)
     path.render_pixels(first_trial_pass + static_cast<int>(t), places, images[t], finished, counts);
@@ -95,7 +89,7 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
   const Choices& choices = passes.choices();
   const PhotonPlan& plan = choices.photons;
   const std::vector<TrialPixel>& pixels = choices.trial->pixels;
-  const double rays = static_cast<double>(pixels.size()) * trial_passes_of(pixels.size());
+  const double rays = static_cast<double>(pixels.size()) * tuning::trial_passes;
   RenderStatistics path_counts, beam_counts;
   const double path_spread = spread_of_path(path_input, pixels, path_counts);
   // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
@@ -110,18 +104,16 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
           rays;
   const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(photon_input);
   const double beam_time =
+      tuning::time_of_camera_ray +
       tuning::time_of_photon_pass *
-      (tuning::time_of_camera_ray + tuning::time_of_query +
-       of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
-       paths_per_ray * (tuning::time_of_light_collision * plan.collisions_per_path +
-                        tuning::time_of_photon * plan.stored_per_path));
-  double of_photons = choices.trial->model.error(plan.neighbours, tuning::passes_compared_for_auto);
-  if (choices.gathers_finally(0))
-    of_photons =
-        std::min(of_photons, choices.gather->error_after(tuning::passes_compared_for_auto));
-  const double beam_error = of_photons + beside / tuning::passes_compared_for_auto;
-  const double path_error =
-      path_spread * path_time / (tuning::passes_compared_for_auto * beam_time);
+          (of_shadow_ray * static_cast<double>(beam_counts.shadow_rays) / rays +
+           paths_per_ray * (tuning::time_of_light_collision * plan.collisions_per_path +
+                            tuning::time_of_photon * plan.stored_per_path));
+  double of_photons = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
+  if (choices.gather)
+    of_photons = std::min(of_photons, choices.gather->error_after(tuning::passes_compared));
+  const double beam_error = of_photons + beside / tuning::passes_compared;
+  const double path_error = path_spread * path_time / (tuning::passes_compared * beam_time);
   return beam_error > 0 ? path_error / beam_error : 1;
 }
 
@@ -160,8 +152,7 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
     return {EstimatorType::path, std::move(*reason), 0, nullptr};
   auto passes = std::make_unique<FramePasses>(EstimatorType::automatic, photon_input);
   const Choices& choices = passes->choices();
-  const EstimatorType type =
-      choices.gathers_finally(0) ? EstimatorType::gather : EstimatorType::beam;
+  const EstimatorType type = choices.gather ? EstimatorType::gather : EstimatorType::beam;
   // Most light passes the medium by, as where it hangs over a wide ground. A kernel pilot, which
   // needs thousands of photons, shows what they are worth.
   const double fewest_per_path =
@@ -183,10 +174,8 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
         EstimatorType::path,
         fmt::format("at equal time {} has {:.2g} times its predicted error", type.name, 1 / lead),
         lead, nullptr};
-  std::string reason = fmt::format("at equal time path has {:.2g} times its predicted error", lead);
-  if (choices.gather && choices.gather->first > 0)
-    reason += fmt::format("; gather goes on after {} passes", choices.gather->first);
-  return {type, std::move(reason), lead, std::move(passes)};
+  return {type, fmt::format("at equal time path has {:.2g} times its predicted error", lead), lead,
+          std::move(passes)};
 }
 
 // It reads the keys of beam, and is planned as beam; the choice is made before the first pass.

@@ -94,22 +94,17 @@ std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const Estim
   const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
   const double of_photons =
       in_trial * trial.neighbours / (tuning::neighbours_of_gather * plan.neighbours);
-  GatherPlan gather{0, noise.walks, of_photons, choices.trial->regression};
+  const GatherPlan gather{noise.walks, of_photons, choices.trial->regression};
   if (forces_final_gather(kind, input.settings))
     return gather;
   // The forecast also lacks the kernels' bias for caustics, at which walks look near their
   // beginning.
   const double preference = tuning::preference_for_gather *
                             (1 - share_of_lamps_inside(input.world)) * (1 - plan.caustic_share);
-  for (int first = 0; first <= tuning::most_passes_before_gather;
-       first = std::max(tuning::fewest_passes_before_gather, 2 * first)) {
-    const int passes = tuning::passes_compared_for_gather * std::max(1, first);
-    const double error = gather.error_after(passes);
-    gather.first = first;
-    const double without = choices.trial->model.error(plan.neighbours, passes);
-    if (error > 0 && error < preference * without)
-      return gather;
-  }
+  const double error = gather.error_after(tuning::passes_compared);
+  const double without = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
+  if (error > 0 && error < preference * without)
+    return gather;
   return std::nullopt;
 }
 

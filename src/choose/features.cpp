@@ -193,22 +193,6 @@ const Feature boundary_share_feature{
     .conditions = boundary_share_conditions};
 
 namespace {
-constexpr FeatureCondition hidden_lights_conditions[] = {
-    {[](const Facts& facts) { return facts.input.settings.photons.has_value(); },
-     "render.photons is given"},
-    {[](const Facts& facts) { return facts.sampled_lights == facts.input.shadow_ray_lights(); },
-     "shadow rays reach every light"}};
-}
-const Feature hidden_lights_feature{
-    .name = "hidden lights",
-    .key = "render.photons",
-    .help = "more light paths for lights that no shadow ray reaches",
-    .stage = Stage::photons,
-    .conditions = hidden_lights_conditions,
-    .used = [](const Facts&, const Choices& choices) { return choices.trial == nullptr; },
-    .unused = "the kernel pilot fixed the number of light paths"};
-
-namespace {
 bool has_surfaces(const Facts& facts) {
   return facts.input.world.surfaces != nullptr;
 }

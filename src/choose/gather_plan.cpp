@@ -40,7 +40,7 @@ double GatherPlan::error_after(double passes_along) const {
 float GatherPlan::regression_radius(int pass) const {
   // Assumes that the render will be twice as long as it is now, and that a pass of walks costs 1.5
   // passes of beam.
-  return RegressionTrial::radii[best_radius(2 * 1.5 * (pass - first + 1))];
+  return RegressionTrial::radii[best_radius(2 * 1.5 * (pass + 1))];
 }
 
 int GatherPlan::walks(int pass) const {

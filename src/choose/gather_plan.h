@@ -19,7 +19,6 @@ struct RegressionTrial {
 
 /// Plan of final gathering (FinalGather).
 struct GatherPlan {
-  int first = 0;            ///< pass from which on they do
   double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
   RegressionTrial regression;

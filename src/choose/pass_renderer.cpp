@@ -9,15 +9,7 @@ FramePasses::FramePasses(const EstimatorType& type, const EstimatorInput& input)
   if (estimator_kind(type).shoots_photons())
     photons_.emplace(input_, worlds_, worlds_.of(peak_order(choices_.peak, 0, false)),
                      choices_.photons);
-  // An estimator may measure when it is made, which must not depend on the pass that comes first.
-  estimator(schedule(choices_, input_.settings, 0).estimator);
-}
-
-Estimator& FramePasses::estimator(std::string_view name) {
-  std::unique_ptr<Estimator>& made = estimators_[name];
-  if (!made)
-    made = estimator_kind({name}).make(input_, photons_ ? &*photons_ : nullptr);
-  return *made;
+  estimator_ = estimator_kind({choices_.estimator}).make(input_, photons_ ? &*photons_ : nullptr);
 }
 
 void FramePasses::render_pass(int pass, PassImage& image, RenderStatistics& statistics) {
@@ -26,8 +18,7 @@ void FramePasses::render_pass(int pass, PassImage& image, RenderStatistics& stat
     statistics.pilot_paths += choices_.photons.pilot_paths;
     statistics.importance_rays += choices_.photons.importance_rays;
   }
-  const PassSpec spec = schedule(choices_, input_.settings, pass);
-  estimator(spec.estimator).render(spec, image, statistics);
+  estimator_->render(schedule(choices_, input_.settings, pass), image, statistics);
 }
 
 std::unique_ptr<PassRenderer> make_pass_renderer(const EstimatorType& type,

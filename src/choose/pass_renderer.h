@@ -5,8 +5,6 @@
 #include "estimators/estimator.h"
 #include "photons/photon_pass.h"
 
-#include <map>
-
 namespace vdbeam {
 
 /// Renders independent passes of one frame. A pass is a pure function of (scene, seed, frame, pass
@@ -25,7 +23,7 @@ public:
 };
 
 /// The passes of a frame under all of its lights:
-///   choices = choose(input), spec = schedule(choices, pass), image = estimators[spec](spec).
+///   choices = choose(input), spec = schedule(choices, pass), image = estimator(spec).
 class FramePasses final : public PassRenderer {
 public:
   FramePasses(const EstimatorType& type, const EstimatorInput& input);
@@ -38,13 +36,11 @@ public:
   const PhotonPass& photons() const { return *photons_; }
 
 private:
-  Estimator& estimator(std::string_view name);
-
   EstimatorInput input_;
   PassWorlds worlds_;
   Choices choices_;
   std::optional<PhotonPass> photons_;
-  std::map<std::string_view, std::unique_ptr<Estimator>> estimators_; ///< that of pass 0 first
+  std::unique_ptr<Estimator> estimator_;
   bool pilot_counted_ = false;
 };
 

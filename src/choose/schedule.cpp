@@ -28,13 +28,13 @@ constexpr int order_step = 2;
 
 } // namespace
 
-int peak_order(const PeakOrders& first, int pass, bool gathers_finally) {
+int peak_order(const PeakOrders& first, int pass, bool gathers) {
   if (!first.taken_out)
     return 0;
   // Multiples of the golden ratio spread the pairs of passes of one more evenly.
   const double spread = std::fmod(0.5 + 0.61803398875 * (pass / 2), 1.0);
-  int result = static_cast<int>((gathers_finally ? first.of_gather : first.along_rays) + spread);
-  const OrderGrowth growth = gathers_finally ? growth_of_gather : growth_along_rays;
+  int result = static_cast<int>((gathers ? first.of_gather : first.along_rays) + spread);
+  const OrderGrowth growth = gathers ? growth_of_gather : growth_along_rays;
   for (std::int64_t until = growth.passes_of_first_order; pass >= until; until *= growth.factor)
     ++result;
   // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
@@ -52,10 +52,10 @@ float radius_scale(int pass, double alpha) {
 }
 
 PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pass) {
-  const bool gathers = choices.gathers_finally(pass);
+  const bool gathers = choices.gather.has_value();
   PassSpec spec;
   spec.pass = pass;
-  spec.estimator = gathers ? EstimatorType::gather.name : choices.estimator;
+  spec.estimator = choices.estimator;
   spec.peak_order = peak_order(choices.peak, pass, gathers);
   spec.kernel_scale = radius_scale(pass, settings.alpha);
   spec.neighbours = choices.photons.neighbours;
@@ -77,8 +77,6 @@ std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& 
     const auto pass = static_cast<int>(power);
     passes.insert({pass, std::min(last, pass + 1)}); // truncation takes turns from pass to pass
   }
-  if (choices.gather && choices.gather->first <= last)
-    passes.insert(choices.gather->first);
   std::vector<PassSpec> list;
   for (const int pass : passes)
     list.push_back(schedule(choices, settings, pass));

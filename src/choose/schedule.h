@@ -17,7 +17,7 @@ std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& 
 /// number of passes has tripled, or doubled for final gathering, so that the estimate
 /// stays consistent (docs/theory/beam.md, "Forward peaks"). One pass of two takes less out, so that
 /// the difference shows the bias that is left.
-int peak_order(const PeakOrders& first, int pass, bool gathers_finally);
+int peak_order(const PeakOrders& first, int pass, bool gathers);
 
 /// Radius factor of a pass: r_p^2 = r_0^2 prod (i + alpha) / (i + 1) (Knaus and Zwicker 2011).
 float radius_scale(int pass, double alpha);

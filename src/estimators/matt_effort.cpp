@@ -107,8 +107,8 @@ MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float 
       tr * tr / (per_gloss * per_gloss);
   const float of_smooth =
       near.spread(near.smooth, near.smooth_squares) * tuning::left_by_plane * relative;
-  return {samples_for(of_smooth + of_gloss, tuning::error_of_matt_path),
-          samples_for(of_ray, tuning::error_of_matt_ray)};
+  return {samples_for(of_smooth + of_gloss, tuning::error_of_matt_light),
+          samples_for(of_ray, tuning::error_of_matt_light)};
 }
 
 } // namespace

@@ -82,7 +82,6 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
   plan.direct_samples =
       settings.direct_samples > 0 ? settings.direct_samples : tuning::most_direct_samples;
   plan.most_direct_samples = plan.direct_samples;
-  plan.chooses_direct_samples = settings.direct_samples == 0;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : tuning::default_neighbours;
   return plan;
 }
@@ -124,16 +123,6 @@ double automatic_paths(double hits, double stored_per_path) {
 
 double paths_for_photons(double photons, double stored_per_path) {
   return photons * std::min(1 / stored_per_path, tuning::most_paths_per_photon);
-}
-
-std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan) {
-  if (!(plan.stored_per_path > 0))
-    return plan.paths;
-  const double paths = static_cast<double>(plan.paths);
-  const double wanted =
-      std::ceil(tuning::photons_per_hidden_hit * count_hits(input) / plan.stored_per_path);
-  return static_cast<std::uint64_t>(
-      std::clamp(wanted, paths, tuning::most_for_hidden_lights * paths));
 }
 
 bool reach_bounce_limit(const EstimatorInput& input) {

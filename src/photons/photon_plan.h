@@ -18,7 +18,6 @@ struct PhotonPlan {
   std::vector<bool> sampled_lights;
   /// Shadow-ray samples per camera ray, at least and at most.
   int direct_samples = 1, most_direct_samples = 1;
-  bool chooses_direct_samples = false; ///< the scene asks for no number
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
   /// always in scatter storage, in fluence storage where all volumes have the same albedo.
   bool albedo_in_power = false;
@@ -65,10 +64,6 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
 double automatic_paths(double hits, double stored_per_path);
 /// The same, where the scene asks for a number of photons.
 double paths_for_photons(double photons, double stored_per_path);
-
-/// The plan's light paths, or more where lights were left to photons that shadow rays do not reach:
-/// all that the medium shows of them comes from photons, and few photons leave a lamp's housing.
-std::uint64_t paths_with_hidden_lights(const EstimatorInput& input, const PhotonPlan& plan);
 
 /// The pilots' pass numbers count down from here, far from those of the picture.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);

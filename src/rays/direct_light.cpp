@@ -173,9 +173,7 @@ private:
     float t = profile_.front(), seen = 0, sum = 0, before = shadow.transmittance(ray_.at(t));
     for (std::size_t k = 1; k <= last; ++k) {
       const float now = opacity_of(profile_.total(k));
-      const bool small =
-          now - seen < opacity / tuning::shadow_pieces && profile_.t(k) - t < shadow.step();
-      if (k < last && (now == seen || small))
+      if (k < last && (now == seen || profile_.t(k) - t < shadow.step()))
         continue;
       t = profile_.t(k);
       const float after = shadow.transmittance(ray_.at(t));

@@ -14,7 +14,7 @@ namespace vdbeam::tuning {
 // Costs: processor time [ns] of what renders count. Only ratios matter: they decide how work is
 // shared out. Fitted to 39 scenes, where the ratio of two estimators came out right within 30 %.
 
-/// A camera ray with its depth profile.
+/// A camera ray with its depth profile, and the query of the photon map of one of `beam`.
 VDBEAM_TUNED(double, time_of_camera_ray, 10000);
 /// A walk of `path` from a camera ray, and each tentative collision of a walk.
 VDBEAM_TUNED(double, time_of_walk, 1000);
@@ -24,12 +24,11 @@ VDBEAM_TUNED(double, time_of_surface_path, 2000);
 /// A shadow ray through voxels; through layers, whose optical depth has a closed form.
 VDBEAM_TUNED(double, time_of_ray_in_voxels, 5000);
 VDBEAM_TUNED(double, time_of_ray_in_layers, 500);
-/// A camera ray's query of the photon map.
-VDBEAM_TUNED(double, time_of_query, 8000);
 /// A tentative collision of a light path, and a photon stored.
 VDBEAM_TUNED(double, time_of_light_collision, 150);
 VDBEAM_TUNED(double, time_of_photon, 2000);
-/// Factor of a pass of photons by these, which overestimate it against a pass of `path`.
+/// Factor of what photons and their shadow rays cost by these, which overestimate it against a pass
+/// of `path`.
 VDBEAM_TUNED(double, time_of_photon_pass, 0.56);
 /// Time of the most walks of final gathering over that of a pass that gathers along camera rays.
 VDBEAM_TUNED(double, time_of_walks, 1.2);
@@ -43,10 +42,6 @@ VDBEAM_TUNED(double, fewest_paths, 10000);
 VDBEAM_TUNED(double, most_photons, 4e6);
 /// Photons stored per path, mean; more are nearly redundant.
 VDBEAM_TUNED(double, stored_per_path, 4);
-/// For lights that shadow rays do not reach there are more light paths: at most this factor, until
-/// there are these photons per camera ray that meets the medium.
-VDBEAM_TUNED(double, most_for_hidden_lights, 8);
-VDBEAM_TUNED(double, photons_per_hidden_hit, 1);
 /// Light paths per photon that a scene asks for: in a medium so thin that more would be needed,
 /// photons are few.
 VDBEAM_TUNED(double, most_paths_per_photon, 16);
@@ -81,10 +76,9 @@ VDBEAM_TUNED(float, least_disc_before_surface, 0.5f);
 VDBEAM_TUNED(double, neighbours_of_gather, 0.5);
 /// Those of a kernel of photons that mirrors and glass brought, where final gathering needs them.
 VDBEAM_TUNED(float, caustic_neighbours, 8);
-/// What a pilot may choose: this, twice and half of it and so on, up to the most, beyond which
-/// kernels are many mean free paths wide and have a bias that the pilot does not show, and down to
-/// the fewest, at which adaptive radii are still accurate.
-VDBEAM_TUNED(double, middle_neighbours, 640);
+/// What a pilot may choose: the most, half of it and so on. Beyond the most, kernels are many mean
+/// free paths wide and have a bias that the pilot does not show; with fewer than the fewest,
+/// adaptive radii are no longer accurate.
 VDBEAM_TUNED(double, most_neighbours, 1280);
 VDBEAM_TUNED(double, fewest_neighbours, 32);
 /// Bias grows with the neighbours to this power: 2 / 3 where kernels are small against all that
@@ -123,9 +117,8 @@ VDBEAM_TUNED(int, trial_tiles, 120);
 VDBEAM_TUNED(std::size_t, pixels_between_samples, 48);
 VDBEAM_TUNED(std::size_t, fewest_trial_pixels, 64);
 /// Part of the picture's mean brightness that is added to a pixel's in the weights of trials, as
-/// 0.01 is in MRSE; more for `path`, whose few draws often find little.
+/// 0.01 is in MRSE.
 VDBEAM_TUNED(double, dark_offset, 0.03);
-VDBEAM_TUNED(double, dark_offset_of_path, 0.05);
 /// Light paths that fit the path guide: a share of a pass, within limits; photons at most, and
 /// those without which no guide is fitted.
 VDBEAM_TUNED(double, guide_share, 0.25);
@@ -154,11 +147,6 @@ VDBEAM_TUNED(float, evenly_drawn, 0.25f);
 VDBEAM_TUNED(float, deepest_over_width, 8);
 /// Kernels have blurred already what the pilot sees: factor of the regression's squared bias.
 VDBEAM_TUNED(double, blur_of_walks, 1.5);
-/// Passes before the first of final gathering, unless it is the first.
-VDBEAM_TUNED(int, fewest_passes_before_gather, 4);
-VDBEAM_TUNED(int, most_passes_before_gather, 512);
-/// Forecasts are compared at this multiple of the passes before the switch.
-VDBEAM_TUNED(int, passes_compared_for_gather, 8);
 /// Final gathering is used unless its forecast error is this factor above that without, times the
 /// share of light that does not come from lamps in the medium: its forecast comes from few pixels,
 /// and leaves out that walks even out other noise, too.
@@ -180,13 +168,9 @@ VDBEAM_TUNED(double, depth_of_lowest_order, 24);
 VDBEAM_TUNED(double, direct_per_collision, 12);
 VDBEAM_TUNED(int, fewest_direct_samples, 2);
 VDBEAM_TUNED(int, most_direct_samples, 6);
-/// Factor of these where rays cross shafts of light.
-VDBEAM_TUNED(int, samples_in_shafts, 2);
 /// Optical depth before which no shadow ray ends at random.
 VDBEAM_TUNED(float, certain_depth, 3);
-/// Pieces of a ray that a shadow lattice weighs, and the part of the mean light that each gets:
-/// what the lattice may have missed.
-VDBEAM_TUNED(float, shadow_pieces, 32);
+/// The part of the mean light that each piece of a ray gets: what a shadow lattice may have missed.
 VDBEAM_TUNED(float, lit_everywhere, 0.05f);
 /// Radius of the shell around a lamp in which flights of walks look for its light (LampShells): in
 /// optical depth, and at most this part of the medium's radius.
@@ -210,8 +194,7 @@ VDBEAM_TUNED(float, most_noise_of_step, 0.3f);
 
 /// Squared relative error of a pixel at which one set of shadow rays, or one path, is enough, and
 /// the most of them.
-VDBEAM_TUNED(float, error_of_matt_ray, 5e-4f);
-VDBEAM_TUNED(float, error_of_matt_path, 0.015f);
+VDBEAM_TUNED(float, error_of_matt_light, 0.015f);
 VDBEAM_TUNED(int, most_matt_samples, 16);
 /// How many times the variance of its samples a difference of glossy light from a plane may have to
 /// count as noise: few samples of a narrow lobe show less variance than they have.
@@ -242,12 +225,9 @@ VDBEAM_TUNED(double, least_share_of_rays, 0.05);
 
 /// Passes after which estimators are compared: the lead of photons shrinks as passes are added,
 /// since the bias of kernels falls more slowly than noise.
-VDBEAM_TUNED(int, passes_compared_for_auto, 16);
-/// Renders of each trial pixel, more in small images, so that their noise is measured by these
-/// rays.
-VDBEAM_TUNED(std::size_t, fewest_trial_passes, 2);
-VDBEAM_TUNED(std::size_t, most_trial_passes, 16);
-VDBEAM_TUNED(std::size_t, wanted_trial_rays, 1000);
+VDBEAM_TUNED(int, passes_compared, 16);
+/// Renders of each trial pixel, by which their noise is measured.
+VDBEAM_TUNED(int, trial_passes, 4);
 /// `path` must be ahead by this factor: a few pixels miss its rarest and brightest paths.
 VDBEAM_TUNED(double, safe_lead, 1.25);
 /// Collisions of a light path beyond which `path` is taken without a trial.

@@ -13,16 +13,14 @@ VIEW = {"view importance", "path guide", "kernel pilot"}
 GATHER = VIEW | {"forward peak", "final gathering", "shadow lattice", "boundary correction", "refined edges"}
 # Scene, options, estimator of the first pass, features that are on, and why one of the others is off.
 SCENES = [
-    ("cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
+    ("cloud", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cloud", ["--estimator", "beam"], "beam", GATHER - {"final gathering", "refined edges"},
      ("final gathering", "render.estimator names another method")),
     ("cloud", ["--estimator", "path"], "path", set(), ("shadow lattice", "the estimator traces no photons")),
     ("smoke", ["-f", "8"], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
-    ("sunlit_cloud", [], "gather", GATHER, ("hidden lights", "shadow rays reach every light")),
-    ("fire", ["-f", "14"], "gather", GATHER,
-     ("hidden lights", "shadow rays reach every light")),
-    ("ball_in_smoke", [], "gather", GATHER,
-     ("hidden lights", "shadow rays reach every light")),
+    ("sunlit_cloud", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
+    ("fire", ["-f", "14"], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
+    ("ball_in_smoke", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cloud_over_ground", [], "gather", GATHER, ("branches", "photons carry the light; only bias probes are path traced")),
     ("cornell_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, ("shadow lattice", "no light has a single direction")),
     ("glass_in_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, ("shadow lattice", "no light has a single direction")),

@@ -170,7 +170,7 @@ double KernelModel::best_neighbours() const {
   const double x =
       std::pow(noise_power_ * at.noise / (2 * tuning::bias_power * bias_ * at.bias_factor),
                1 / (noise_power_ + 2 * tuning::bias_power));
-  return std::max(tuning::fewest_neighbours, narrow_ * std::clamp(x, 0.05, wide_ / narrow_));
+  return std::max(tuning::fewest_neighbours, std::min(narrow_ * x, wide_));
 }
 
 double KernelModel::error(double neighbours, int passes) const {

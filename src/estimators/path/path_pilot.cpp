@@ -157,7 +157,7 @@ PathTrial PathEstimator::try_pixels() const {
   }
   PathTrial sum;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double known = std::max(0.0, brightness[i]) + tuning::dark_offset_of_path * mean;
+    const double known = std::max(0.0, brightness[i]) + tuning::dark_offset * mean;
     if (known > 0)
       sum += trial_of(rays[i], 1 / (known * known));
   }
