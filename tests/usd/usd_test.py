@@ -206,7 +206,10 @@ def CylinderLight "tube"
     def test_textures_and_parts_of_a_mesh(self):
         here = "color3f inputs:diffuseColor = (0.4, 0.3, 0.2)"
         scene = self.variant((here, """color3f inputs:diffuseColor.connect = </looks/stone/image.outputs:rgb>
-            float inputs:roughness.connect = </looks/stone/image.outputs:r>
+            float inputs:roughness.connect = </looks/stone/image.outputs:g>
+            float inputs:opacity.connect = </looks/stone/image.outputs:a>
+            float inputs:opacityThreshold = 0.3
+            normal3f inputs:normal.connect = </looks/stone/image.outputs:a>
             float inputs:metallic = 0.25
             float inputs:clearcoat = 0.5
         }
@@ -224,8 +227,10 @@ def CylinderLight "tube"
         }"""))
         ground = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/world/ground")
         self.assertEqual(ground["material"], {"type": "standard", "albedo": [1, 1, 1], "texture": "stone.png", "ior": 1.5,
-                                              "metal": 0.25, "roughness": 0.5, "coat": 0.5, "coat_roughness": 0.01})
-        self.assertIn("/world/ground: the texture of roughness has no counterpart", self.notes)
+                                              "metal": 0.25, "roughness": 1, "roughness_texture": "stone.png", "coat": 0.5,
+                                              "coat_roughness": 0.01, "opacity": 1, "opacity_texture": "stone.png",
+                                              "opacity_cutoff": 0.3})
+        self.assertIn("/world/ground: the texture of normal has no counterpart", self.notes)
         self.assertIn("/world/ground: materials of parts (GeomSubset) have no counterpart", self.notes)
         self.assertNotIn("/world/ground: a subdivision surface", self.notes)
 

@@ -72,6 +72,32 @@ def texture_of(surface, stage, name, time):
     return values.asset(shader, "file", time)
 
 
+# Inputs that a file may give: the key that they become, the outputs of UsdUVTexture that have what the key takes (one of
+# a grey image is as good as another), and the number that the file multiplies.
+MAPS = {"opacity": ("opacity_texture", ("a", "r"), {"opacity": 1.0}),
+        "roughness": ("roughness_texture", ("g", "r"), {"roughness": 1.0}),
+        "metallic": ("metal_texture", ("b", "r"), {"metal": 1.0}),
+        "normal": ("normal_texture", ("rgb",), {})}
+
+
+def map_keys(surface, stage, subject, time, notes):
+    """Keys of the images that an UsdPreviewSurface is connected to, but for its colours."""
+    keys = {}
+    for name, (texture, outputs, factor) in MAPS.items():
+        path = values.source(surface, name)
+        if path is None:
+            continue
+        file = texture_of(surface, stage, name, time)
+        if not file or str(path).rpartition(":")[2] not in outputs:
+            notes.add(subject, f"the texture of {name} has no counterpart and is left out")
+            continue
+        keys |= {texture: file, **factor}
+    threshold = values.number(surface, "opacityThreshold", time, 0.0)
+    if "opacity_texture" in keys and threshold > 0:
+        keys["opacity_cutoff"] = clamped(threshold)
+    return keys
+
+
 def clamped(number):
     """A number in [0, 1]."""
     return min(max(number, 0.0), 1.0)
@@ -90,6 +116,7 @@ def standard_keys(surface, stage, subject, time, notes):
     if coat > 0:
         keys["coat"] = coat
         keys["coat_roughness"] = clamped(values.number(surface, "clearcoatRoughness", time, 0.01))
+    keys |= map_keys(surface, stage, subject, time, notes)
     texture = texture_of(surface, stage, "diffuseColor", time)
     if texture:
         return {**keys, "albedo": [1.0, 1.0, 1.0], "texture": texture}
@@ -106,13 +133,13 @@ def material_keys(surface, stage, prim, time, notes):
         shown = values.value(prim, "primvars:displayColor", time)
         colour = [float(part) for part in shown[0]] if shown else [0.5] * 3
         return {"type": "diffuse", "albedo": [clamped(part) for part in colour]}
-    for name in ("emissiveColor", "metallic", "roughness", "opacity", "normal", "displacement"):
+    for name in ("emissiveColor", "displacement"):
         if values.source(surface, name) is not None:
             notes.add(subject, f"the texture of {name} has no counterpart and is left out")
     emitted = values.colour(surface, "emissiveColor", time, (0.0, 0.0, 0.0))
     if max(emitted) > 0:
         return {"type": "emissive", "radiance": emitted, "two_sided": True}
-    if values.number(surface, "opacity", time, 1.0) < 0.5:
+    if values.source(surface, "opacity") is None and values.number(surface, "opacity", time, 1.0) < 0.5:
         return {"type": "dielectric", "ior": values.number(surface, "ior", time, 1.5),
                 "roughness": clamped(values.number(surface, "roughness", time, 0.5))}
     return standard_keys(surface, stage, subject, time, notes)
