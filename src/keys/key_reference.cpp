@@ -56,7 +56,7 @@ std::vector<const SceneKey*> keys_of(SceneSection section, bool advanced) {
 
 /// A key's meaning, values and choices, for a terminal.
 std::string key_text(const SceneKey& key, std::size_t width) {
-  constexpr std::size_t indent = 20;
+  constexpr std::size_t indent = 21;
   const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
   std::string text = two_columns(key.name, owners(key) + key.doc, indent, width);
   text += two_columns("",
