@@ -4,6 +4,7 @@
 #include "estimators/surface_fit.h"
 
 #include "machine/stopwatch.h"
+#include "rays/crossed_shadows.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
@@ -151,6 +152,19 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
 }
 
+/// Shadow rays of a pixel: more where its ray crosses shafts of light.
+int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, const RngKey& key) {
+  if (ray.profile.empty())
+    return 1;
+  const PhotonPlan& plan = photons.plan();
+  const int samples = plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1));
+  Rng rng(key, RngStage::crossed_shadows, ray.stream);
+  return plan.chooses_direct_samples && crosses_shadows(photons.world(), ray.camera.ray(),
+                                                        ray.profile, plan.sampled_lights, rng)
+             ? samples * tuning::samples_in_shafts
+             : samples;
+}
+
 /// Which pixels of the tile lie on edges.
 std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, const World& world,
                                                 const TileScratch& scratch, bool refine_medium,
@@ -239,8 +253,7 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
   shade_emission(input, world, ray.camera, ray.profile, target.pixel, image, counts.emission_rays);
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
-  const int of_pixel =
-      ray.profile.empty() ? 1 : plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1));
+  const int of_pixel = direct_samples(photons, ray, key);
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
   const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
                                &photons.shadows(), input.stop};

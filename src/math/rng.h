@@ -25,6 +25,7 @@ enum class RngStage : std::uint64_t {
   surface,
   line,
   final_gather,
+  crossed_shadows,
   more_surface
 };
 

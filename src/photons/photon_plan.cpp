@@ -82,6 +82,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
   plan.direct_samples =
       settings.direct_samples > 0 ? settings.direct_samples : tuning::most_direct_samples;
   plan.most_direct_samples = plan.direct_samples;
+  plan.chooses_direct_samples = settings.direct_samples == 0;
   plan.neighbours = settings.neighbours > 0 ? settings.neighbours : tuning::default_neighbours;
   return plan;
 }

@@ -18,6 +18,7 @@ struct PhotonPlan {
   std::vector<bool> sampled_lights;
   /// Shadow-ray samples per camera ray, at least and at most.
   int direct_samples = 1, most_direct_samples = 1;
+  bool chooses_direct_samples = false; ///< the scene asks for no number
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
   /// always in scatter storage, in fluence storage where all volumes have the same albedo.
   bool albedo_in_power = false;
