@@ -42,7 +42,7 @@ MaterialMaps::MaterialMaps(const MaterialSettings& settings, double scale,
     if (roughness_texture_)
       one.roughness = (first_step_ + step) / static_cast<double>(steps);
     if (metal_texture_)
-      one.metal = static_cast<int>(i) / rough;
+      one.metal = static_cast<int>(i) < rough ? 0 : 1;
     materials_[i] = make_material(one, scale);
   });
 }
@@ -56,7 +56,8 @@ const Material& MaterialMaps::at(const SurfaceHit& hit) const {
     step = std::clamp(static_cast<int>(place + by_roughness), 0, count_ - 1);
   }
   const bool metal = metal_texture_ && by_metal < metal_texture_->at(hit.uv).z * metal_;
-  return *materials_[static_cast<std::size_t>(step + (metal ? std::max(1, count_) : 0))];
+  const std::size_t first = metal ? materials_.size() / 2 : 0;
+  return *materials_[first + static_cast<std::size_t>(step)];
 }
 
 } // namespace vdbeam
