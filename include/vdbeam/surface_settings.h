@@ -30,8 +30,8 @@ struct MaterialSettings {
   /// diffuse, standard, shadow_catcher, emissive: image that multiplies albedo or radiance; "":
   /// none
   std::string texture;
-  /// diffuse, standard, conductor, holdout: share of the rays that the surface stops, where no ray
-  /// knows of another; the rest goes straight on.
+  /// diffuse, standard, conductor, holdout: share of the rays that the surface stops, each by a
+  /// draw of its own; the others go straight on.
   double opacity = 1;
   std::string opacity_texture; ///< image that multiplies it, by its alpha channel or its green one
   /// Points whose opacity is less are holes, and others stop all rays; 0: each stops its share.

@@ -200,11 +200,11 @@ Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorld
   else
     choose_photons(first, kind, choices);
   PhotonPlan& plan = choices.photons;
-  const bool of_two =
+  const bool may_gather =
       kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::gather.name;
   if (choices.gather)
     choices.estimator = EstimatorType::gather.name;
-  else if (of_two)
+  else if (may_gather)
     choices.estimator = EstimatorType::beam.name;
   plan.shadow_lattices = is_possible(shadow_lattice_feature, {first, kind, plan.sampled_lights});
   return choices;

@@ -62,7 +62,8 @@ const char* key_of(TextureUse use) {
   return keys[static_cast<std::size_t>(use)];
 }
 
-/// Adds the materials and textures of a surface, and what they say about its shape.
+/// Adds the materials and textures of a surface. The result has its holes and normals, but neither
+/// shape nor place.
 PlacedShape add_material(const SurfaceSettings& settings, double scale, SurfaceStore& store,
                          Surfaces& surfaces, std::vector<std::string>& notes) {
   const MaterialSettings& material = settings.material;

@@ -147,11 +147,13 @@ private:
     const bool mask = mode && *mode == "MASK";
     if (!mask && !(mode && *mode == "BLEND"))
       return;
+    const double cutoff = mask ? number(at(json, {"alphaCutoff"}), 0.5, 0, 1) : 0;
+    if (mask && !(cutoff > 0)) // every alpha reaches it
+      return;
+    settings.opacity_cutoff = cutoff;
     const Json* color = at(pbr, {"baseColorFactor"});
     if (color && color->is_array() && color->size() > 3)
       settings.opacity = number(&(*color)[3], 1, 0, 1);
-    if (mask)
-      settings.opacity_cutoff = number(at(json, {"alphaCutoff"}), 0.5, 0, 1);
     set_texture(settings, TextureUse::opacity, texture_file(settings, TextureUse::color));
   }
 
