@@ -104,15 +104,7 @@ TEST(Opacity, photons_and_paths_agree_in_fog) {
   sun.angular_radius = 2;
   scene.scene.render.photons = 10000;
   scene.look({0.5, 0.8, 4}, {0, 0, 0}, 34, 8, 8);
-  const PassMeans path = render_passes(scene, EstimatorType::path, 400);
-  for (const DirectLight direct : {DirectLight::sampled, DirectLight::photons}) {
-    scene.scene.render.direct = direct;
-    const PassMeans beam = render_passes(scene, EstimatorType::beam, 48);
-    EXPECT_EQ(regions_apart(beam, path, 0.03), 0)
-        << beam.total[0].mean() << " against " << path.total[0].mean();
-    test::expect_power(path.total[0], 0.02 * path.total[0].mean());
-    test::expect_power(beam.total[0], 0.03 * beam.total[0].mean());
-  }
+  expect_beam_agrees_with_path(scene);
 }
 
 /// Whole texels are there or not: no pixel is in between.
