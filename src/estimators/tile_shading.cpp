@@ -1,10 +1,9 @@
 #include "estimators/tile_shading.h"
 
-#include "estimators/matt_effort.h"
+#include "estimators/shaft_effort.h"
 #include "estimators/surface_fit.h"
 
 #include "machine/stopwatch.h"
-#include "rays/crossed_shadows.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
@@ -152,17 +151,12 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
 }
 
-/// Shadow rays of a pixel: more where its ray crosses shafts of light.
-int direct_samples(const PhotonPass& photons, const TileRays::PixelRay& ray, const RngKey& key) {
+/// Sets of shadow rays of a ray.
+int direct_samples(const PhotonPlan& plan, const TileRays::PixelRay& ray, float effort) {
   if (ray.profile.empty())
     return 1;
-  const PhotonPlan& plan = photons.plan();
   const int samples = plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1));
-  Rng rng(key, RngStage::crossed_shadows, ray.stream);
-  return plan.chooses_direct_samples && crosses_shadows(photons.world(), ray.camera.ray(),
-                                                        ray.profile, plan.sampled_lights, rng)
-             ? samples * tuning::samples_in_shafts
-             : samples;
+  return std::max(1, static_cast<int>(std::lround(static_cast<float>(samples) * effort)));
 }
 
 /// Which pixels of the tile lie on edges.
@@ -224,7 +218,7 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
                  transmittance(world.medium, ray.profile) * air_to_end(ray.camera).left, rays++);
       const OpacityAndDepth seen =
           shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
-                    TileRays::rays_if_refined);
+                    scratch.effort[static_cast<std::size_t>(i)] / TileRays::rays_if_refined);
       medium.opacity += seen.opacity;
       medium.depth += seen.depth;
     }
@@ -239,7 +233,7 @@ void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
 
 OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                           const TileRays::PixelRay& ray, const RngKey& key,
-                          const PixelTarget& target, const SeenSurface& surface, int rays) {
+                          const PixelTarget& target, const SeenSurface& surface, float effort) {
   const World& world = photons.world();
   RenderStatistics& counts = target.counts;
   PassImage& image = target.image;
@@ -253,9 +247,8 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
   shade_emission(input, world, ray.camera, ray.profile, target.pixel, image, counts.emission_rays);
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
-  const int of_pixel = direct_samples(photons, ray, key);
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
-  const LightSampling sampling{plan.sampled_lights, std::max(1, of_pixel / rays),
+  const LightSampling sampling{plan.sampled_lights, direct_samples(plan, ray, effort),
                                &photons.shadows(), input.stop};
   image.add(&PassImage::direct, target.pixel,
             light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
@@ -293,6 +286,10 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
     const bool shows_surface = scratch.rays.show_surface();
     if (surfaces)
       see_surfaces(input, *surfaces, key, pass, scratch);
+    scratch.effort.fill(1);
+    if (world.surfaces && photons.plan().chooses_direct_samples)
+      scratch.effort =
+          shaft_effort(world, photons.plan().sampled_lights, scratch.rays, scratch.seen, key);
     for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
         const SeenSurface& surface = scratch.seen[static_cast<std::size_t>(i)];
@@ -304,7 +301,8 @@ void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass
                 mean_component(light_of_end(world, ray, surface, tr)), ray.camera.hit.has_value()};
         }
         scratch.medium[static_cast<std::size_t>(i)] =
-            shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface);
+            shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface,
+                      scratch.effort[static_cast<std::size_t>(i)]);
       }
     if (tiles.refine_medium || shows_surface) {
       scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, shows_surface);

@@ -22,6 +22,7 @@ struct TileScratch {
   std::array<OpacityAndDepth, TileRays::count> medium{};
   std::array<EndOfRay, TileRays::count> ends{}; ///< of the rays; nothing without surfaces
   std::array<bool, TileRays::count> uneven{};   ///< pixels that several rays see
+  std::array<float, TileRays::count> effort{};  ///< factor of the shadow rays of each pixel
 };
 
 /// The pixel to which a ray adds its light, and the counters of its work.
@@ -33,11 +34,12 @@ struct PixelTarget {
 
 /// Adds what a ray of the picture sees but for what it gathers from the photon map: direct light,
 /// and what is seen through the medium. `surface`: what is seen of the surface at which the ray
-/// ends, if it does. `rays`: how many rays of the pixel share its shadow rays. Returns opacity and
-/// depth of the medium alone.
+/// ends, if it does. `effort`: factor of the number of shadow rays. Returns opacity and depth of
+/// the medium alone.
 OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons,
                           const TileRays::PixelRay& ray, const RngKey& key,
-                          const PixelTarget& target, const SeenSurface& surface = {}, int rays = 1);
+                          const PixelTarget& target, const SeenSurface& surface = {},
+                          float effort = 1);
 
 /// Work of an estimator on the rays of a tile.
 struct TileGather {

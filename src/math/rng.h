@@ -25,7 +25,7 @@ enum class RngStage : std::uint64_t {
   surface,
   line,
   final_gather,
-  crossed_shadows,
+  shaft_light,
   more_surface
 };
 

@@ -15,8 +15,9 @@ constexpr float sin_sixth[6] = {0, 0.866025f, 0.866025f, 0, -0.866025f, -0.86602
 /// A ring of twelve points about the kernel, which is looked at for leaks too [radii]: a straight
 /// edge that cuts the kernel has one of them behind it.
 constexpr float border = 1.0353f; // 1 / cos(15 degrees)
-/// From nearer photons the camera sees discs by rays of very different directions [radii].
-constexpr double least_distance_of_camera = 3;
+/// Discs before surfaces are tried at the least radius, at half of it and so on, down to this part
+/// of the kernel's radius.
+constexpr float least_cut = 1.0f / 16;
 
 /// The plane of a photon's disc.
 struct DiscPlane {
@@ -43,11 +44,11 @@ Kernel KernelSupport::fit(const Vec3f& photon, float radius) const {
     const double far{far_from_surfaces * radius};
     const auto distance = static_cast<float>(surfaces->set->distance(Vec3d(photon), far));
     kernel = clear_kernel(radius, distance);
-    const float least = tuning::least_disc_before_surface * radius;
-    cut = domain_ == KernelDomain::disc && kernel.radius < least &&
-          is_cut_without_leak(photon, least);
-    if (cut)
-      kernel = {least};
+    if (domain_ == KernelDomain::disc)
+      for (float wide = tuning::least_disc_before_surface * radius;
+           !cut && wide > kernel.radius && wide >= least_cut * radius; wide /= 2)
+        if ((cut = is_cut_without_leak(photon, wide)))
+          kernel = {wide};
   }
   if (kernel.radius > 0 && (cut || by_medium_))
     kernel.share = domain_ == KernelDomain::disc ? disc_share(photon, kernel.radius, cut)
@@ -85,30 +86,49 @@ float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
 
 /// Whether light leaks nowhere though the disc meets a surface.
 bool KernelSupport::is_cut_without_leak(const Vec3f& photon, float radius) const {
-  if (length(Vec3d(photon) - camera_->origin()) < least_distance_of_camera * double{radius})
-    return false;
-  const DiscPlane plane(*camera_, photon);
   for (int i = 0; i < 12; ++i)
-    if (leaks_to(photon, plane.point(i, radius * border)))
+    if (leaks_to(photon, i, radius * border))
       return false;
   for (int i = 1; i < 12; i += 2)
-    if (leaks_to(photon, plane.point(i, radius * ring_radii[1])))
+    if (leaks_to(photon, i, radius * ring_radii[1]))
       return false;
   return true;
 }
 
-/// The camera sees the point, but the photon does not. What is seen in mirrors is left out.
-bool KernelSupport::leaks_to(const Vec3f& photon, const Vec3f& point) const {
-  if (unobstructed(photon, point))
+/// The i-th of twelve camera rays that pass the photon at a distance sees a point where it counts
+/// the photon, but the photon does not. What is seen in mirrors is left out.
+bool KernelSupport::leaks_to(const Vec3f& photon, int i, float distance) const {
+  const std::optional<SeenPoint> seen = point_on_ray(photon, i, distance);
+  if (!seen || unobstructed(photon, Vec3f(seen->point)))
     return false;
-  const Vec3d view = camera_->direction_towards(Vec3d(point));
-  const double distance = dot(Vec3d(point) - camera_->origin(), view);
-  const auto hit =
-      world_->surfaces->set->intersect(Vec3d(point), view * -1.0, 0, distance, /*camera=*/true);
+  const auto hit = world_->surfaces->set->intersect(seen->point, seen->view * -1.0, 0,
+                                                    seen->distance, /*camera=*/true);
   if (!hit)
     return true;
   const Material& material = world_->surfaces->material(*hit);
   return material.is_specular() || material.refracts();
+}
+
+/// Where that ray comes nearest to the photon. The points of all such rays lie on a sphere through
+/// the photon and the camera (Thales): near the camera they are far from the plane through the
+/// photon.
+std::optional<KernelSupport::SeenPoint> KernelSupport::point_on_ray(const Vec3f& photon, int i,
+                                                                    float distance) const {
+  constexpr double widest = 0.98; // sine of the angle at the camera
+  const bool parallel = camera_->has_own_origins();
+  const double away = length(Vec3d(photon) - camera_->origin());
+  const double sine = std::min(double{distance} / away, widest);
+  const float in_plane =
+      parallel ? distance : static_cast<float>(away * sine / std::sqrt(1 - sine * sine));
+  const Vec3d target(DiscPlane(*camera_, photon).point(i, in_plane));
+  const Vec3d view = camera_->direction_towards(target);
+  const Vec3d from = parallel ? target : camera_->origin();
+  const double along = dot(Vec3d(photon) - from, view);
+  const Vec3d point = from + view * along;
+  const double from_camera = dot(point - camera_->origin(), view);
+  if (!(from_camera > 0))
+    return std::nullopt;
+  return SeenPoint{point, view, from_camera};
 }
 
 bool KernelSupport::in_medium(const Vec3f& point) const {

@@ -3,6 +3,8 @@
 #include "photonmap/photon_map.h"
 #include "rays/estimator_input.h"
 
+#include <optional>
+
 namespace vdbeam {
 
 /// Domain over which a kernel is normalised: the disc across the camera ray, or the ball.
@@ -36,7 +38,13 @@ private:
   float disc_share(const Vec3f& photon, float radius, bool cut) const;
   float ball_share(const Vec3f& photon, float radius) const;
   bool is_cut_without_leak(const Vec3f& photon, float radius) const;
-  bool leaks_to(const Vec3f& photon, const Vec3f& point) const;
+  bool leaks_to(const Vec3f& photon, int i, float distance) const;
+  /// A point at a distance from the camera, along a unit direction.
+  struct SeenPoint {
+    Vec3d point, view;
+    double distance;
+  };
+  std::optional<SeenPoint> point_on_ray(const Vec3f& photon, int i, float distance) const;
   bool in_medium(const Vec3f& point) const;
   bool unobstructed(const Vec3f& photon, const Vec3f& point) const;
 
