@@ -31,7 +31,7 @@ std::array<float, TileRays::count> shaft_effort(const World& world,
   for (int y = 0; y < width; ++y)
     for (int x = 0; x < width; ++x) {
       const auto center = static_cast<std::size_t>(TileRays::ray_at(x, y));
-      if (!(shafts[center].points > 0))
+      if (!(shafts[center].rays > 0))
         continue;
       ShaftLight around;
       for (int py = std::max(0, y - reach); py <= std::min(width - 1, y + reach); ++py)

@@ -11,7 +11,7 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int points_of_ray = 4;
+constexpr std::size_t points_of_ray = 2;
 
 /// What the volumes of a point scatter from a direction into the ray, per unit of radiance.
 float scattered_at(const Medium& medium, const ScatterPoint& point, float cosine) {
@@ -35,18 +35,19 @@ LightAtPoints light_at_points(const World& world, const Light& light, const Ray&
                               DistanceSampler& distances, const std::array<float, points_of_ray>& u,
                               Rng& rng) {
   LightAtPoints found;
-  for (int i = 0; i < points_of_ray; ++i) {
-    const ScatterPoint point = distances.sample(u[static_cast<std::size_t>(i)], 0);
+  for (std::size_t i = 0; i < points_of_ray; ++i) {
+    const ScatterPoint point = distances.sample(u[i], 0);
     const float a = rng.uniform(), b = rng.uniform();
     const IncidentSample incident = light.sample_incident(point.position, a, b);
     const float radiance = point.pdf > 0 ? mean_component(incident.value) : 0;
+    bool& lit = found.lit[i];
+    lit = true; // beyond the cone of a spot, too: surfaces are what this looks for
     if (!(radiance > 0))
       continue;
     found.unhidden += radiance *
                       scattered_at(world.medium, point, dot(ray.direction, incident.wi)) /
                       points_of_ray;
-    found.lit[static_cast<std::size_t>(i)] =
-        unoccluded(world, Vec3d(point.position), incident.wi, incident.distance);
+    lit = unoccluded(world, Vec3d(point.position), incident.wi, incident.distance);
   }
   return found;
 }
@@ -54,11 +55,8 @@ LightAtPoints light_at_points(const World& world, const Light& light, const Ray&
 } // namespace
 
 float ShaftLight::effort(float behind) const {
-  if (points < 2)
-    return 1;
-  const float mean = light / points, all = mean + behind;
-  const float variance = std::max(0.0f, squares / points - mean * mean) * points / (points - 1);
-  return all > 0 ? std::clamp(tuning::effort_in_shafts * std::sqrt(variance) / all, 1.0f,
+  const float all = light / rays + behind;
+  return all > 0 ? std::clamp(tuning::effort_in_shafts * std::sqrt(variance / rays) / all, 1.0f,
                               tuning::most_effort_in_shafts)
                  : 1;
 }
@@ -71,8 +69,8 @@ ShaftLight look_for_shafts(const World& world, const Ray& ray, const DepthProfil
   if (!(distances.opacity(0) > 0))
     return {};
   std::array<float, points_of_ray> u;
-  for (int i = 0; i < points_of_ray; ++i)
-    u[static_cast<std::size_t>(i)] = (static_cast<float>(i) + rng.uniform()) / points_of_ray;
+  for (float& place : u)
+    place = rng.uniform();
   std::array<float, points_of_ray> light{};
   for (std::size_t l = 0; l < world.lights.size(); ++l)
     if (sampled[l]) {
@@ -80,12 +78,8 @@ ShaftLight look_for_shafts(const World& world, const Ray& ray, const DepthProfil
       for (std::size_t i = 0; i < points_of_ray; ++i)
         light[i] += found.lit[i] ? found.unhidden : 0;
     }
-  ShaftLight sums{points_of_ray};
-  for (const float found : light) {
-    sums.light += found;
-    sums.squares += found * found;
-  }
-  return sums;
+  const float difference = light[0] - light[1];
+  return {1, 0.5f * (light[0] + light[1]), 0.5f * difference * difference};
 }
 
 } // namespace vdbeam

@@ -7,16 +7,18 @@
 
 namespace vdbeam {
 
-/// Light that is scattered once into rays, as a few points along them find it behind surfaces or
-/// not: where a ray crosses shafts of light, chance decides whether a shadow ray is lit, and that
-/// is most of the noise of single scattering.
+/// Light that is scattered once into rays, as two points along each find it behind surfaces or not:
+/// where a ray crosses shafts of light, chance decides whether a shadow ray is lit, and that is
+/// most of the noise of single scattering.
 struct ShaftLight {
-  float points = 0, light = 0, squares = 0; ///< sums over the points [radiance], mean of channels
+  float rays = 0;     ///< that were looked at
+  float light = 0;    ///< sum over them of the mean [radiance], mean of channels
+  float variance = 0; ///< sum over them of the variance of a point
 
   ShaftLight& operator+=(const ShaftLight& other) {
-    points += other.points;
+    rays += other.rays;
     light += other.light;
-    squares += other.squares;
+    variance += other.variance;
     return *this;
   }
 
@@ -25,9 +27,9 @@ struct ShaftLight {
   float effort(float behind) const;
 };
 
-/// Looks for the lights at points drawn by what scatters along the ray. `sampled`: per light, it is
-/// looked for. Uses random numbers of its own: what chooses the number of shadow rays must not
-/// depend on what they find.
+/// Looks for the lights at two points drawn by what scatters along the ray. `sampled`: per light,
+/// it is looked for. Uses random numbers of its own: what chooses the number of shadow rays must
+/// not depend on what they find.
 ShaftLight look_for_shafts(const World& world, const Ray& ray, const DepthProfile& profile,
                            const std::vector<bool>& sampled, Rng& rng);
 

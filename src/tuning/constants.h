@@ -170,7 +170,7 @@ VDBEAM_TUNED(int, fewest_direct_samples, 2);
 VDBEAM_TUNED(int, most_direct_samples, 6);
 /// Factor of these where rays cross shafts of light: this times the relative deviation of what one
 /// shadow ray finds, up to the most.
-VDBEAM_TUNED(float, effort_in_shafts, 3);
+VDBEAM_TUNED(float, effort_in_shafts, 2);
 VDBEAM_TUNED(float, most_effort_in_shafts, 8);
 /// Optical depth before which no shadow ray ends at random.
 VDBEAM_TUNED(float, certain_depth, 3);

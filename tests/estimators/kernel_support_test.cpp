@@ -76,5 +76,28 @@ TEST_F(KernelSupportTest, DiscsEndBeforeThinCardsAndGlass) {
   EXPECT_LT(kernel({0.1, 0, 0.1}).radius, 0.1f);
 }
 
+/// What fits beside a card that hides fog from the photon is taken: half the least disc here.
+TEST_F(KernelSupportTest, DiscsShrinkUntilNothingLeaks) {
+  add_surface(scene_, SurfaceShape::plane, scaled(1), diffuse(0.5));
+  add_surface(scene_, SurfaceShape::disk, upright, diffuse(0.5));
+  EXPECT_FLOAT_EQ(kernel({0.8, 0, 0.02}).radius, tuning::least_disc_before_surface);
+  EXPECT_FLOAT_EQ(kernel({0.4, 0, 0.02}).radius, tuning::least_disc_before_surface / 2);
+}
+
+/// A photon close to the camera, over the ground: it shows in rays of very different directions,
+/// but only where both see the fog.
+TEST_F(KernelSupportTest, DiscsNearTheCamera) {
+  add_surface(scene_, SurfaceShape::plane, scaled(1), diffuse(0.5));
+  scene_.look({-0.1, 0, 0.5}, {-0.1, 1, 0.5}, 60, 32, 32);
+  const Vec3d photon{0, 0.6, 0.1};
+  EXPECT_FLOAT_EQ(kernel(photon).radius, tuning::least_disc_before_surface);
+  // The camera sees both sides of a card on edge, the photon sees one.
+  Transform card = upright;
+  for (double& value : card)
+    value *= 0.3;
+  add_surface(scene_, SurfaceShape::disk, moved(card, {-0.1, 0.6, 0.1}), diffuse(0.5));
+  EXPECT_LT(kernel(photon).radius, 0.1f);
+}
+
 } // namespace
 } // namespace vdbeam

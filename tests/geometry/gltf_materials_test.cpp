@@ -20,7 +20,7 @@ std::string triangles(const std::vector<std::string>& primitives, const std::str
                       const std::string& more = "") {
   std::string list;
   for (const std::string& primitive : primitives)
-    list += fmt::format(R"({}{{"attributes": {{"POSITION": 1}}, "indices": 0{}}})",
+    list += fmt::format(R"({}{{"attributes": {{"POSITION": 1, "TEXCOORD_0": 2}}, "indices": 0{}}})",
                         list.empty() ? "" : ", ", primitive);
   return fmt::format(
       R"({{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
@@ -29,7 +29,8 @@ std::string triangles(const std::vector<std::string>& primitives, const std::str
     "bufferViews": [{{"buffer": 0, "byteOffset": 0, "byteLength": 6, "target": 34963}},
                     {{"buffer": 0, "byteOffset": 8, "byteLength": 36, "target": 34962}}],
     "accessors": [{{"bufferView": 0, "componentType": 5123, "count": 3, "type": "SCALAR", "max": [2], "min": [0]}},
-                  {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3", "max": [1, 1, 0], "min": [0, 0, 0]}}]}})",
+                  {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3", "max": [1, 1, 0], "min": [0, 0, 0]}},
+                  {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}}]}})",
       list, materials, more);
 }
 
@@ -181,6 +182,29 @@ TEST(GltfMaterials, TexturesOfOpacityRoughnessAndNormals) {
 }
 
 /// What glows by a texture alone is a lamp; what has other textures too is not, and says so.
+/// The part without texture coordinates does without the texture, the other one has it.
+TEST(GltfMaterials, PartsWithoutTextureCoordinates) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.gltf");
+  std::string text = triangles({R"(, "material": 0)", R"(, "material": 1)"},
+                               R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 1],
+                                   "baseColorTexture": {"index": 0}}, "normalTexture": {"index": 0}},
+                                  {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})",
+                               R"(, "textures": [{"source": 0}], "images": [{"uri": "a.png"}])");
+  write_bytes(folder.file("a.png"), "");
+  const std::string uvs = R"(, "TEXCOORD_0": 2)";
+  text.erase(text.find(uvs), uvs.size());
+  write_bytes(path, text);
+  const GltfMaterials materials = read_gltf_materials(path);
+  ASSERT_EQ(materials.used.size(), 2u);
+  EXPECT_EQ(texture_file(materials.used[0].settings, TextureUse::color), TextureFile());
+  EXPECT_EQ(texture_file(materials.used[0].settings, TextureUse::normal), TextureFile());
+  EXPECT_EQ(materials.used[0].settings.albedo, Rgb(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(texture_file(materials.used[1].settings, TextureUse::color).file, folder.file("a.png"));
+  ASSERT_EQ(materials.notes.size(), 1u);
+  EXPECT_NE(materials.notes[0].find("TEXCOORD_0"), std::string::npos);
+}
+
 TEST(GltfMaterials, TexturesOfEmission) {
   const TempFolder folder;
   const std::string path = folder.file("a.gltf");

@@ -74,10 +74,12 @@ public:
       GltfMaterial material;
       material.index = static_cast<int>(index);
       material.settings.type = MaterialType::standard;
-      if (index < count)
+      if (index < count) {
         fill((*materials)[index], material);
-      else
+        drop_textures_without_uvs(index, material.settings);
+      } else {
         material.settings.metal = material.settings.roughness.emplace(1);
+      }
       result.used.push_back(material);
     }
     if (result.used.size() > most_materials)
@@ -89,7 +91,8 @@ public:
 
 private:
   /// Indices of the materials that primitives name; `count` for those that name none.
-  std::set<std::size_t> used(std::size_t count) const {
+  /// Notes those of primitives without texture coordinates.
+  std::set<std::size_t> used(std::size_t count) {
     std::set<std::size_t> indices;
     const Json* meshes = at(gltf_, {"meshes"});
     for (const Json& mesh : meshes && meshes->is_array() ? *meshes : Json::array()) {
@@ -98,7 +101,10 @@ private:
            primitives && primitives->is_array() ? *primitives : Json::array()) {
         const Json* index = at(primitive, {"material"});
         const bool named = index && index->is_number_unsigned();
-        indices.insert(named ? std::min(index->get<std::size_t>(), count) : count);
+        const std::size_t material = named ? std::min(index->get<std::size_t>(), count) : count;
+        indices.insert(material);
+        if (!at(primitive, {"attributes", "TEXCOORD_0"}))
+          lack_uvs_.insert(material);
       }
     }
     return indices;
@@ -130,6 +136,18 @@ private:
     if (!become_lamp(json, material) && transmission > 0.5)
       become_glass(material);
     note_unused(json, pbr);
+  }
+
+  /// Nothing says where textures go on parts without texture coordinates.
+  void drop_textures_without_uvs(std::size_t index, MaterialSettings& settings) {
+    if (!lack_uvs_.contains(index))
+      return;
+    for (const TextureUse use : texture_uses) {
+      if (texture_file(settings, use).file.empty())
+        continue;
+      set_texture(settings, use, {});
+      note("the textures of parts without texture coordinates (TEXCOORD_0) are not used");
+    }
   }
 
   void note_unused(const Json& json, const Json& pbr) {
@@ -215,6 +233,7 @@ private:
 
   std::string path_;
   Json gltf_;
+  std::set<std::size_t> lack_uvs_; ///< materials of primitives without texture coordinates
   std::set<std::string> notes_;
 };
 
