@@ -10,9 +10,8 @@ namespace vdbeam {
 
 namespace {
 
-/// Pixels to each side that decide, and how many of them there must be.
-constexpr int around = 2, fewest_around = 4;
-constexpr int width = PassImage::tile_width;
+/// Pixels around one without which nothing is decided.
+constexpr int fewest_around = 4;
 
 /// Sums over the pixels around one.
 struct Around {
@@ -40,41 +39,14 @@ struct Around {
   }
 };
 
-/// The surfaces of a tile by their pixels.
-class Pixels {
-public:
-  Pixels(const TileRays& rays, const TileSurfaces& seen, int image_width)
-      : rays_(rays), image_width_(static_cast<std::size_t>(image_width)) {
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      if (rays[static_cast<int>(i)].inside && seen[i].surface >= 0)
-        pixels_[index(i)] = &seen[i];
-  }
-
-  Around around_ray(std::size_t ray) const {
-    Around sums;
-    const std::size_t center = index(ray);
-    const int x = static_cast<int>(center) % width, y = static_cast<int>(center) / width;
-    for (int py = std::max(0, y - around); py <= std::min(width - 1, y + around); ++py)
-      for (int px = std::max(0, x - around); px <= std::min(width - 1, x + around); ++px) {
-        const auto other = static_cast<std::size_t>(py * width + px);
-        if (other != center && pixels_[other] &&
-            pixels_[other]->surface == pixels_[center]->surface)
-          sums.add(*pixels_[other]);
-      }
-    return sums;
-  }
-
-private:
-  std::size_t index(std::size_t ray) const {
-    const std::size_t pixel = rays_[static_cast<int>(ray)].pixel;
-    return (pixel / image_width_ - static_cast<std::size_t>(rays_.y0())) * width +
-           pixel % image_width_ - static_cast<std::size_t>(rays_.x0());
-  }
-
-  const TileRays& rays_;
-  std::size_t image_width_;
-  std::array<const SeenSurface*, TileRays::count> pixels_{};
-};
+Around around_ray(const TileSurfaces& seen, int ray) {
+  Around sums;
+  for_each_near(seen, ray, [&](int other) {
+    if (other != ray)
+      sums.add(seen[static_cast<std::size_t>(other)]);
+  });
+  return sums;
+}
 
 /// Samples in all, where one has this squared relative error.
 int samples_for(float error, float error_of_one) {
@@ -114,15 +86,13 @@ MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float 
 } // namespace
 
 std::array<MattSamples, TileRays::count> more_samples(const Medium& medium, const TileRays& rays,
-                                                      const TileSurfaces& seen, int image_width,
-                                                      int pass) {
+                                                      const TileSurfaces& seen, int pass) {
   std::array<MattSamples, TileRays::count> more;
-  const Pixels pixels(rays, seen, image_width);
   for (std::size_t i = 0; i < more.size(); ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || seen[i].surface < 0 || seen[i].samples.paths == 0)
       continue;
-    const Around near = pixels.around_ray(i);
+    const Around near = around_ray(seen, static_cast<int>(i));
     if (near.count < fewest_around)
       continue;
     const MattSamples& has = seen[i].samples;

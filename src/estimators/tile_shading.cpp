@@ -189,8 +189,7 @@ void see_surfaces(const EstimatorInput& input, const SurfaceShading& surfaces, c
   for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
     scratch.seen[i] = surfaces.seen(ray.camera, key, ray.stream, scratch.statistics);
   });
-  const auto more =
-      more_samples(input.world.medium, scratch.rays, scratch.seen, input.camera.width(), pass);
+  const auto more = more_samples(input.world.medium, scratch.rays, scratch.seen, pass);
   for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
     if (scratch.seen[i].surface >= 0)
       surfaces.matt().add(ray.camera, more[i], key, ray.stream, scratch.seen[i]);

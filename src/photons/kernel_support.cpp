@@ -115,14 +115,15 @@ bool KernelSupport::leaks_to(const Vec3f& photon, int i, float distance) const {
 std::optional<KernelSupport::SeenPoint> KernelSupport::point_on_ray(const Vec3f& photon, int i,
                                                                     float distance) const {
   constexpr double widest = 0.98; // sine of the angle at the camera
-  const bool parallel = camera_->has_own_origins();
+  // Rays of a lens or parallel ones do not all begin at the origin: theirs are taken in the plane.
+  const bool own_origins = camera_->has_own_origins();
   const double away = length(Vec3d(photon) - camera_->origin());
   const double sine = std::min(double{distance} / away, widest);
   const float in_plane =
-      parallel ? distance : static_cast<float>(away * sine / std::sqrt(1 - sine * sine));
+      own_origins ? distance : static_cast<float>(away * sine / std::sqrt(1 - sine * sine));
   const Vec3d target(DiscPlane(*camera_, photon).point(i, in_plane));
   const Vec3d view = camera_->direction_towards(target);
-  const Vec3d from = parallel ? target : camera_->origin();
+  const Vec3d from = own_origins ? target : camera_->origin();
   const double along = dot(Vec3d(photon) - from, view);
   const Vec3d point = from + view * along;
   const double from_camera = dot(point - camera_->origin(), view);

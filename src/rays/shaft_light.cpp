@@ -27,7 +27,7 @@ float scattered_at(const Medium& medium, const ScatterPoint& point, float cosine
 
 /// Light of one lamp at each point, if nothing hid it, and whether something does.
 struct LightAtPoints {
-  float unhidden = 0; ///< mean
+  float unoccluded_light = 0; ///< mean
   std::array<bool, points_of_ray> lit{};
 };
 
@@ -44,9 +44,9 @@ LightAtPoints light_at_points(const World& world, const Light& light, const Ray&
     lit = true; // beyond the cone of a spot, too: surfaces are what this looks for
     if (!(radiance > 0))
       continue;
-    found.unhidden += radiance *
-                      scattered_at(world.medium, point, dot(ray.direction, incident.wi)) /
-                      points_of_ray;
+    found.unoccluded_light += radiance *
+                              scattered_at(world.medium, point, dot(ray.direction, incident.wi)) /
+                              points_of_ray;
     lit = unoccluded(world, Vec3d(point.position), incident.wi, incident.distance);
   }
   return found;
@@ -76,7 +76,7 @@ ShaftLight look_for_shafts(const World& world, const Ray& ray, const DepthProfil
     if (sampled[l]) {
       const LightAtPoints found = light_at_points(world, world.lights[l], ray, distances, u, rng);
       for (std::size_t i = 0; i < points_of_ray; ++i)
-        light[i] += found.lit[i] ? found.unhidden : 0;
+        light[i] += found.lit[i] ? found.unoccluded_light : 0;
     }
   const float difference = light[0] - light[1];
   return {1, 0.5f * (light[0] + light[1]), 0.5f * difference * difference};

@@ -32,8 +32,7 @@ void TileRays::prepare(const EstimatorInput& input, const RngKey& key, int x0, i
   used_ = 0;
   first_more_.fill(-1);
   for (int i = 0; i < count; ++i) {
-    const int subtile = i / 16, ray = i % 16;
-    const int x = x0 + subtile % 4 * 4 + ray % 4, y = y0 + subtile / 4 * 4 + ray / 4;
+    const int x = x0 + column(i), y = y0 + row(i);
     PixelRay& out = rays_[i];
     DepthProfile profile = std::move(out.profile); // for its memory
     out = pixel_ray(input, key, std::min(x, camera.width() - 1), std::min(y, camera.height() - 1));

@@ -18,8 +18,10 @@ class TileRays {
 public:
   static constexpr int count = BeamTile::ray_count;
   static constexpr int across = 16; ///< rays along each side
-  /// The ray of the tile's pixel (x, y), both counted from its upper left one.
+  /// The ray of the tile's pixel (x, y), both counted from its upper left one, and the reverse.
   static constexpr int ray_at(int x, int y) { return 16 * (y / 4 * 4 + x / 4) + y % 4 * 4 + x % 4; }
+  static constexpr int column(int ray) { return ray / 16 % 4 * 4 + ray % 4; }
+  static constexpr int row(int ray) { return ray / 64 * 4 + ray % 16 / 4; }
 
   /// One jittered ray per pixel of the tile whose upper left pixel is (x0, y0), and its profile.
   void prepare(const EstimatorInput& input, const RngKey& key, int x0, int y0);
