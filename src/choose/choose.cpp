@@ -34,6 +34,8 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
   for (std::size_t i = 0; i < pilot.size(); i += stride) {
     sample.position.push_back(pilot.position[i]);
     sample.power.push_back(pilot.power[i]);
+    if (!pilot.part.empty())
+      sample.part.push_back(pilot.part[i]);
   }
   RadiusSettings radii = radius_settings(input, plan.neighbours);
   const double photons =

@@ -7,9 +7,9 @@
 
 namespace vdbeam {
 
-/// A light whose photons are aimed at several targets, one within the other: the medium, what
-/// stands about it, and so on to all that stands in the scene. Few photons go to a wide ground
-/// then, however wide it is, and each of them brings much.
+/// A light whose photons are aimed at several targets, one within the other: nests of the medium,
+/// the medium, what stands about it, and so on to all that stands in the scene. Few photons go to a
+/// wide ground or a wide layer of fog then, however wide it is, and each of them brings much.
 ///
 /// An aim is the same light, made for the target alone. What it sends may meet a target before its
 /// own, which is then another aim's: such a photon does not count (EmittedPhoton::first_target). So
@@ -21,8 +21,9 @@ public:
     int first_target, last_target; ///< that its photons count for
     double share;                  ///< of the photons, > 0; they add up to 1
   };
-  /// Requires an aim; the first is at the medium.
-  explicit AimedLight(std::vector<Aim> aims);
+  /// The aims at nests come first, then that at the medium, `medium_aim`, which stands for the
+  /// light in all else.
+  AimedLight(std::vector<Aim> aims, std::size_t medium_aim);
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override {
     return light().sample_incident(point, u, v);
@@ -46,11 +47,12 @@ public:
   }
 
 private:
-  const Light& light() const { return *aims_[0].light; }
+  const Light& light() const { return *aims_[medium_aim_].light; }
 
   std::vector<Aim> aims_;
+  std::size_t medium_aim_;
   Rgb power_;
-  float flux_to_medium_; ///< of a photon of the first aim
+  std::vector<float> fluxes_to_medium_; ///< of a photon of each aim up to that at the medium
 };
 
 } // namespace vdbeam

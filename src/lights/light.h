@@ -4,6 +4,8 @@
 #include "math/rng.h"
 #include "vdbeam/scene.h"
 
+#include <span>
+
 namespace vdbeam {
 
 struct SurfaceHit;
@@ -29,8 +31,9 @@ struct EmittedPhoton {
   /// Where the light is aimed at several targets (AimedLight): those that the photon counts for, if
   /// its ray meets none before them.
   int first_target = 0, last_target = 0;
-  /// Flux of such a light's photons to the medium, in the strongest channel; 0: of any other light.
-  float flux_to_medium = 0;
+  /// Flux of such a light's photons to each nest of the medium and to the medium, in the strongest
+  /// channel; empty: of any other light.
+  std::span<const float> fluxes_to_medium = {};
 };
 
 /// A light in render space. All quantities that depend on length are converted when it is made.

@@ -13,6 +13,12 @@ struct Parallelepiped {
   Vec3f corner;
   std::array<Vec3f, 3> edges;
 
+  double surface_area() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      sum += 2 * static_cast<double>(length(cross(edges[i], edges[(i + 1) % 3])));
+    return sum;
+  }
   Boxd bounds() const {
     Boxd result;
     for (int i = 0; i < 8; ++i) {

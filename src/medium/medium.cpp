@@ -4,6 +4,19 @@
 
 namespace vdbeam {
 
+Affine Volume::to_render() const {
+  Affine map;
+  for (std::size_t row = 0; row < 3; ++row)
+    map.rows[row] = Vec3d(to_local.rows[row]);
+  map.translation = Vec3d(to_local.translation);
+  return map.inverse();
+}
+
+Boxd Volume::bounds() const {
+  const Vec3d cells = Vec3d(field.cell_counts()) * double{DensityField::cell_width};
+  return to_render().bounds({Vec3d(0), cells});
+}
+
 bool Medium::isotropic() const {
   for (const PhaseFunction& phase : phases)
     if (!phase.isotropic())
@@ -34,13 +47,7 @@ void Medium::grow_tree() {
   std::vector<Boxf> boxes;
   boxes.reserve(volumes.size());
   for (const Volume& volume : volumes) {
-    // All cells, since light paths collide in empty parts of cells too.
-    const Vec3d cells = Vec3d(volume.field.cell_counts()) * double{DensityField::cell_width};
-    Affine to_local;
-    for (std::size_t row = 0; row < 3; ++row)
-      to_local.rows[row] = Vec3d(volume.to_local.rows[row]);
-    to_local.translation = Vec3d(volume.to_local.translation);
-    const Boxd box = to_local.inverse().bounds({Vec3d(0), cells});
+    const Boxd box = volume.bounds();
     const Vec3d margin =
         box.size() * 1e-5 + max(max(box.upper, -box.lower), Vec3d(0)) * 1e-6 + Vec3d(1e-7);
     boxes.push_back({Vec3f(box.lower - margin), Vec3f(box.upper + margin)});

@@ -4,6 +4,8 @@
 #include "math/ray.h"
 #include "medium/grid_traversal.h"
 #include "medium/majorant_grid.h"
+#include "medium/medium_parts.h"
+#include "medium/nests.h"
 #include "medium/volume_tree.h"
 #include "phase/aureole.h"
 #include "phase/phase_function.h"
@@ -45,6 +47,9 @@ struct Volume {
   std::size_t cell_at(const Vec3f& p) const;
   /// sigma_t of the strongest channel's majorant at a point; 0 outside.
   float majorant(const Vec3f& p) const;
+  Affine to_render() const;
+  /// Bounds of all of the field's cells, also of empty ones: light paths collide there, too.
+  Boxd bounds() const;
   /// The segment in units of the field's 8^3 cells.
   GridTraversal traverse(const Segment& segment) const {
     return {local_point(segment.ray.origin) * 0.125f, local_vector(segment.ray.direction) * 0.125f,
@@ -76,6 +81,8 @@ struct Medium {
   std::shared_ptr<const ScatteringAngles> angles; ///< of the scene's phase functions; null: even
   std::shared_ptr<const PeakTakenOut> peak;       ///< null: this is the scene's own medium
   std::shared_ptr<const VolumeTree> tree;         ///< over the volumes; null: they are few
+  MediumParts parts;                              ///< of like extinction
+  Nests nests;                                    ///< of small volumes in large ones
   Boxf bounds;                                    ///< of all that is not empty, render space
   bool chromatic = false;                         ///< extinction differs between channels
 

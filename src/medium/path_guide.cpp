@@ -1,5 +1,7 @@
 #include "medium/path_guide.h"
 
+#include "medium/nest_bounds.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,25 +13,55 @@ constexpr int most_blocks = 64; ///< along an axis
 
 } // namespace
 
-MediumBlocks::MediumBlocks(const Medium& medium) : lower_(medium.bounds.lower) {
-  const Vec3f size = max(medium.bounds.size(), Vec3f(0));
-  float width = max_component(size) / most_blocks;
-  float finest = infinity;
-  for (const Volume& volume : medium.volumes)
-    finest = std::min(finest, DensityField::cell_width * volume.voxel_size);
-  width = std::max(width, std::min(finest, max_component(size)));
+MediumBlocks::Lattice::Lattice(const Boxf& box, float finest, std::size_t first_block)
+    : lower(box.lower), first(first_block) {
+  const Vec3f size = max(box.size(), Vec3f(0));
+  const float longest = max_component(size);
+  const float width = std::max(longest / most_blocks, std::min(finest, longest));
   for (int a = 0; a < 3; ++a) {
-    counts_[a] = std::clamp(static_cast<int>(std::lround(size[a] / width)), 1, most_blocks);
-    per_unit_[a] = size[a] > 0 ? static_cast<float>(counts_[a]) / size[a] : 0;
+    counts[a] = std::clamp(static_cast<int>(std::lround(size[a] / width)), 1, most_blocks);
+    per_unit[a] = size[a] > 0 ? static_cast<float>(counts[a]) / size[a] : 0;
   }
 }
 
-Vec3f MediumBlocks::point(const Vec3<int>& block, const Vec3f& within) const {
-  Vec3f result = lower_;
+MediumBlocks::MediumBlocks(const Medium& medium) {
+  const auto add = [&](const Boxf& box, float finest) {
+    lattices_.emplace_back(box, finest, lattices_.empty() ? 0 : size());
+  };
+  const auto cell_width = [](const Volume& volume) {
+    return DensityField::cell_width * volume.voxel_size;
+  };
+  for (const std::vector<std::size_t>& nest : medium.nests) {
+    float finest = infinity;
+    for (const std::size_t v : nest)
+      finest = std::min(finest, cell_width(medium.volumes[v]));
+    add(nest_bounds(medium, nest), finest);
+  }
+  float finest = infinity;
+  for (const Volume& volume : medium.volumes)
+    finest = std::min(finest, cell_width(volume));
+  add(medium.bounds, finest);
+}
+
+Vec3f MediumBlocks::point(std::size_t lattice, const Vec3<int>& block, const Vec3f& within) const {
+  const Lattice& of = lattices_[lattice];
+  Vec3f result = of.lower;
   for (int a = 0; a < 3; ++a)
-    if (per_unit_[a] > 0)
-      result[a] += (static_cast<float>(block[a]) + within[a]) / per_unit_[a];
+    if (of.per_unit[a] > 0)
+      result[a] += (static_cast<float>(block[a]) + within[a]) / of.per_unit[a];
   return result;
+}
+
+void MediumBlocks::move(const Vec3f& by) {
+  for (Lattice& lattice : lattices_)
+    lattice.lower += by;
+}
+
+void MediumBlocks::scale(float factor) {
+  for (Lattice& lattice : lattices_) {
+    lattice.lower *= factor;
+    lattice.per_unit *= 1 / factor;
+  }
 }
 
 /// Flux is radiance times area: what a unit of it brings goes as the inverse.

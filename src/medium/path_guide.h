@@ -6,38 +6,60 @@
 
 namespace vdbeam {
 
-/// A lattice of equal blocks over the medium, no finer than the cells of its volumes, for tables of
-/// bounded size.
+/// Lattices of equal blocks over the medium and over each of its nests, no finer than the cells of
+/// their volumes, for tables of bounded size. A point belongs to the smallest one around it.
 class MediumBlocks {
 public:
   explicit MediumBlocks(const Medium& medium);
 
-  const Vec3<int>& counts() const { return counts_; }
-  std::size_t size() const { return static_cast<std::size_t>(counts_.x) * counts_.y * counts_.z; }
+  /// Number of lattices: those of nests, smallest first, and last that of the medium.
+  std::size_t lattices() const { return lattices_.size(); }
+  const Vec3<int>& counts(std::size_t lattice) const { return lattices_[lattice].counts; }
+  /// Offset of a lattice's first block; its further ones follow, z fastest.
+  std::size_t first(std::size_t lattice) const { return lattices_[lattice].first; }
+  /// Blocks of all lattices.
+  std::size_t size() const { return lattices_.back().first + lattices_.back().size(); }
   /// Offset of the block of a point, outside of the nearest one.
   std::size_t at(const Vec3f& point) const {
-    const Vec3f block = (point - lower_) * per_unit_;
-    const Vec3f inside = min(max(block, Vec3f(0)), Vec3f(counts_) - Vec3f(1));
-    return (static_cast<std::size_t>(inside.x) * counts_.y + static_cast<std::size_t>(inside.y)) *
-               counts_.z +
-           static_cast<std::size_t>(inside.z);
+    for (std::size_t i = 0; i + 1 < lattices_.size(); ++i)
+      if (lattices_[i].holds(point))
+        return lattices_[i].at(point);
+    return lattices_.back().at(point);
   }
-  /// The point at `within`, in [0, 1]^3, of the block (x, y, z).
-  Vec3f point(const Vec3<int>& block, const Vec3f& within) const;
+  /// The point at `within`, in [0, 1]^3, of the block (x, y, z) of a lattice.
+  Vec3f point(std::size_t lattice, const Vec3<int>& block, const Vec3f& within) const;
 
-  /// Moves the lattice [render units].
-  void move(const Vec3f& by) { lower_ += by; }
-  /// The lattice in other units; `factor` of them are one present unit.
-  void scale(float factor) {
-    lower_ *= factor;
-    per_unit_ *= 1 / factor;
-  }
+  /// Moves the lattices [render units].
+  void move(const Vec3f& by);
+  /// The lattices in other units; `factor` of them are one present unit.
+  void scale(float factor);
 
   bool operator==(const MediumBlocks&) const = default;
 
 private:
-  Vec3<int> counts_{1, 1, 1};
-  Vec3f lower_, per_unit_; ///< blocks per render unit
+  struct Lattice {
+    Vec3<int> counts{1, 1, 1};
+    Vec3f lower, per_unit; ///< blocks per render unit
+    std::size_t first = 0;
+
+    Lattice(const Boxf& box, float finest, std::size_t first_block);
+    std::size_t size() const { return static_cast<std::size_t>(counts.x) * counts.y * counts.z; }
+    bool holds(const Vec3f& point) const {
+      const Vec3f block = (point - lower) * per_unit;
+      return max_component(-block) <= 0 && max_component(block - Vec3f(counts)) < 0;
+    }
+    std::size_t at(const Vec3f& point) const {
+      const Vec3f block = (point - lower) * per_unit;
+      const Vec3f inside = min(max(block, Vec3f(0)), Vec3f(counts) - Vec3f(1));
+      return first +
+             (static_cast<std::size_t>(inside.x) * counts.y + static_cast<std::size_t>(inside.y)) *
+                 counts.z +
+             static_cast<std::size_t>(inside.z);
+    }
+    bool operator==(const Lattice&) const = default;
+  };
+
+  std::vector<Lattice> lattices_;
 };
 
 /// Where light paths are worth their time: the importance of flux for the picture (the adjoint of

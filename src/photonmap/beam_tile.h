@@ -45,10 +45,21 @@ struct BeamTile {
     int knots = 0;          ///< 0: this sub-tile sees nothing
     std::size_t offset = 0; ///< into `weights` of [(group * weight_channels + c)][knot][16]
   };
-  Profile profiles[subtile_count];
-  std::vector<float> weights;                         ///< 64-byte alignment not required
-  int weight_channels = 1;                            ///< 1, or 3 where extinction is chromatic
+  using Profiles = std::array<Profile, subtile_count>;
+  Profiles profiles;           ///< of the part of the medium that is asked for
+  std::vector<Profiles> parts; ///< of each part; empty where there is one only
+  std::vector<float> weights;  ///< 64-byte alignment not required
+  int weight_channels = 1;     ///< 1, or 3 where extinction is chromatic
   const std::vector<PhaseFunction>* phases = nullptr; ///< one per group
+
+  /// Rows of weights: groups of volumes times channels.
+  std::size_t rows() const { return phases->size() * static_cast<std::size_t>(weight_channels); }
+  std::size_t part_count() const { return parts.empty() ? 1 : parts.size(); }
+  /// Asks for the weights of a part of the medium.
+  void choose_part(std::size_t part) {
+    if (!parts.empty())
+      profiles = part < parts.size() ? parts[part] : Profiles();
+  }
 
   /// Out: per channel of the photons (1 or 3), per ray, sum over photons and groups of
   /// K(d, r) * W(t) * p(cos) * power. Channel-major: radiance[c * ray_count + ray]. Added to.
@@ -58,8 +69,8 @@ struct BeamTile {
   std::vector<float> first_flight;
   /// Whether the parts of groups of lights are asked for.
   bool by_group = false;
-  /// Out: those parts, as `radiance` for each group, one after the other. Empty where the map has
-  /// no groups.
+  /// Out: those parts, as `radiance` for each group, one after the other. Added to. Empty where the
+  /// map has no groups.
   std::vector<float> group_radiance;
 
 private:
@@ -79,6 +90,13 @@ struct QueryCounts {
   std::uint64_t contributions = 0; ///< (ray, photon) pairs within the kernel
   std::uint64_t candidates = 0;    ///< (ray, photon) pairs evaluated
   std::uint64_t blocks = 0;        ///< photon blocks visited
+
+  QueryCounts& operator+=(const QueryCounts& other) {
+    contributions += other.contributions;
+    candidates += other.candidates;
+    blocks += other.blocks;
+    return *this;
+  }
 };
 
 } // namespace vdbeam

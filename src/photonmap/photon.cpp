@@ -33,6 +33,7 @@ PhotonList join(const std::vector<const PhotonList*>& lists, int groups) {
   all.first_flight = join(lists, &PhotonList::first_flight);
   all.group = join(lists, &PhotonList::group);
   all.groups = groups;
+  all.part = join(lists, &PhotonList::part);
   all.path = join(lists, &PhotonList::path);
   return all;
 }

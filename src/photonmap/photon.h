@@ -11,6 +11,7 @@ namespace vdbeam {
 /// Photons as tracing leaves them, structure of arrays.
 /// With fluence storage `power` is flux / majorant at the collision [W m], so that sum_i K * power
 /// is the fluence along the ray, which supplies sigma_s; with scatter storage it is flux [W].
+/// Majorant and sigma_s are those of the photon's part of the medium (Medium::parts).
 struct PhotonList {
   UnfilledArray<Vec3f> position; ///< render space
   UnfilledArray<Vec3f>
@@ -25,13 +26,16 @@ struct PhotonList {
   UnfilledArray<std::uint16_t> group;
   int groups = 0;
 
+  /// Part of the medium in which the path collided; empty where there is one only.
+  UnfilledArray<std::uint8_t> part;
+
   /// Number of the light path within its pass; empty unless it was asked for. Photons of one path
   /// stand in the order in which it left them.
   UnfilledArray<std::uint32_t> path;
 
   std::size_t size() const { return position.size(); }
   static constexpr std::size_t bytes_per_photon(bool directions, bool groups) {
-    return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + sizeof(std::uint8_t) +
+    return (directions ? 2 : 1) * sizeof(Vec3f) + sizeof(Rgb) + 2 * sizeof(std::uint8_t) +
            (groups ? sizeof(std::uint16_t) : 0);
   }
 };

@@ -30,10 +30,10 @@ bool placeable(const Vec3f& p) {
   return std::abs(p.x) < farthest && std::abs(p.y) < farthest && std::abs(p.z) < farthest;
 }
 
-UnfilledArray<OrderedPhoton> finite_photons(const PhotonList& photons) {
+UnfilledArray<OrderedPhoton> finite_photons(const PhotonList& photons, std::size_t part) {
   const auto usable = [&](std::size_t i) {
-    return placeable(photons.position[i]) && finite(photons.power[i]) &&
-           (photons.direction.empty() || finite(photons.direction[i]));
+    return (photons.part.empty() ? 0 : photons.part[i]) == part && placeable(photons.position[i]) &&
+           finite(photons.power[i]) && (photons.direction.empty() || finite(photons.direction[i]));
   };
   UnfilledArray<OrderedPhoton> ordered(photons.size());
   const bool all = tbb::parallel_reduce(
@@ -104,27 +104,39 @@ void weigh_photon(PhotonBlocks& blocks, std::size_t photon, const Kernel& kernel
 } // namespace
 
 struct PhotonMap::Data {
-  PhotonBlocks blocks;
-  BlockTree tree;
+  /// The photons of a part of the medium.
+  struct Part {
+    PhotonBlocks blocks;
+    BlockTree tree;
+    float mean_radius = 0;
+
+    Part copy() const { return {blocks.copy(), tree, mean_radius}; }
+    /// After radii have changed.
+    void refit() {
+      tree = build_block_tree(blocks);
+      const double sum = tbb::parallel_deterministic_reduce(
+          tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once), 0.0,
+          [&](const tbb::blocked_range<std::size_t>& range, double so_far) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+              so_far += static_cast<double>(blocks.at(i, PhotonBlocks::radius));
+            return so_far;
+          },
+          std::plus<>());
+      mean_radius =
+          blocks.count() ? static_cast<float>(sum / static_cast<double>(blocks.count())) : 0;
+    }
+  };
+
+  std::vector<Part> parts{1};
   KernelShape shape = KernelShape::biweight;
   MapTimes times;
-  float mean_radius = 0;
 
-  /// After radii have changed.
-  void refit() {
-    tree = build_block_tree(blocks);
-    const double sum = tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once), 0.0,
-        [&](const tbb::blocked_range<std::size_t>& range, double so_far) {
-          for (std::size_t i = range.begin(); i < range.end(); ++i)
-            so_far += static_cast<double>(blocks.at(i, PhotonBlocks::radius));
-          return so_far;
-        },
-        std::plus<>());
-    mean_radius =
-        blocks.count() ? static_cast<float>(sum / static_cast<double>(blocks.count())) : 0;
+  MapView view(std::size_t part) const {
+    const Part& of = parts[part];
+    return {of.blocks, of.tree, shape, of.mean_radius};
   }
-  MapView view() const { return {blocks, tree, shape, mean_radius}; }
+  /// All parts hold the same fields.
+  const PhotonBlocks& blocks() const { return parts[0].blocks; }
 };
 
 PhotonMap::PhotonMap() : data_(std::make_unique<Data>()) {}
@@ -138,62 +150,81 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
   Data& data = *map.data_;
   data.shape = shape;
   Stopwatch watch;
-  UnfilledArray<OrderedPhoton> order = finite_photons(photons);
-  order_photons(order);
-  data.blocks = gather_blocks(photons, order, channels);
+  if (!photons.part.empty())
+    data.parts.resize(std::size_t{1} + *std::max_element(photons.part.begin(), photons.part.end()));
+  for (std::size_t i = 0; i < data.parts.size(); ++i) {
+    UnfilledArray<OrderedPhoton> order = finite_photons(photons, i);
+    order_photons(order);
+    data.parts[i].blocks = gather_blocks(photons, order, channels);
+  }
   photons = {}; // its memory is free for what follows
   data.times.order = watch.restart();
 
-  find_kernel_radii(data.blocks, radii);
+  for (Data::Part& part : data.parts)
+    find_kernel_radii(part.blocks, radii);
   data.times.radii = watch.restart();
 
-  data.refit();
+  for (Data::Part& part : data.parts)
+    part.refit();
   data.times.build = watch.seconds();
   return map;
 }
 
 PhotonMap PhotonMap::copy() const {
   PhotonMap map;
-  *map.data_ = {data_->blocks.copy(), data_->tree, data_->shape, data_->times, data_->mean_radius};
+  map.data_->parts.clear();
+  for (const Data::Part& part : data_->parts)
+    map.data_->parts.push_back(part.copy());
+  map.data_->shape = data_->shape;
+  map.data_->times = data_->times;
   return map;
 }
 
 void PhotonMap::fit(const KernelFit& fit) {
-  PhotonBlocks& blocks = data_->blocks;
-  std::atomic<bool> resized = false;
-  tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
-    float& radius = blocks.at(i, PhotonBlocks::radius);
-    const Kernel kernel = fit(blocks.position(i), radius);
-    if (kernel.radius != radius)
-      resized.store(true, std::memory_order_relaxed);
-    radius = kernel.radius;
-    weigh_photon(blocks, i, kernel);
-  });
-  if (resized)
-    data_->refit();
+  for (std::size_t part = 0; part < data_->parts.size(); ++part) {
+    PhotonBlocks& blocks = data_->parts[part].blocks;
+    std::atomic<bool> resized = false;
+    tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+      float& radius = blocks.at(i, PhotonBlocks::radius);
+      const Kernel kernel = fit(blocks.position(i), part, radius);
+      if (kernel.radius != radius)
+        resized.store(true, std::memory_order_relaxed);
+      radius = kernel.radius;
+      weigh_photon(blocks, i, kernel);
+    });
+    if (resized)
+      data_->parts[part].refit();
+  }
 }
 
 PhotonMap PhotonMap::resized(float factor) const {
   PhotonMap resized = copy();
-  PhotonBlocks& blocks = resized.data_->blocks;
-  tbb::parallel_for(std::size_t(0), blocks.count(),
-                    [&](std::size_t i) { blocks.at(i, PhotonBlocks::radius) *= factor; });
-  for (auto& level : resized.data_->tree.levels)
-    for (BoxGroup& group : level)
-      for (float& radius : group.radius)
-        radius *= factor;
-  const Boxf bounds = resized.data_->tree.bounds;
-  resized.data_->tree.bounds.lower -= bounds.size() * std::max(0.0f, factor - 1);
-  resized.data_->tree.bounds.upper += bounds.size() * std::max(0.0f, factor - 1);
-  resized.data_->mean_radius *= factor;
+  for (Data::Part& part : resized.data_->parts) {
+    tbb::parallel_for(std::size_t(0), part.blocks.count(),
+                      [&](std::size_t i) { part.blocks.at(i, PhotonBlocks::radius) *= factor; });
+    for (auto& level : part.tree.levels)
+      for (BoxGroup& group : level)
+        for (float& radius : group.radius)
+          radius *= factor;
+    const Boxf bounds = part.tree.bounds;
+    part.tree.bounds.lower -= bounds.size() * std::max(0.0f, factor - 1);
+    part.tree.bounds.upper += bounds.size() * std::max(0.0f, factor - 1);
+    part.mean_radius *= factor;
+  }
   return resized;
 }
 
 std::size_t PhotonMap::size() const {
-  return data_->blocks.count();
+  std::size_t sum = 0;
+  for (const Data::Part& part : data_->parts)
+    sum += part.blocks.count();
+  return sum;
 }
 std::size_t PhotonMap::bytes() const {
-  return data_->blocks.bytes() + data_->tree.bytes();
+  std::size_t sum = 0;
+  for (const Data::Part& part : data_->parts)
+    sum += part.blocks.bytes() + part.tree.bytes();
+  return sum;
 }
 std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions, bool groups) {
   // A group of boxes of the tree's lowest level has 8 blocks; higher levels add a seventh.
@@ -203,40 +234,70 @@ std::size_t PhotonMap::build_bytes_per_photon(int channels, bool directions, boo
          PhotonBlocks::bytes_per_photon(channels, directions, groups) + tree;
 }
 int PhotonMap::channels() const {
-  return data_->blocks.channels();
+  return data_->blocks().channels();
 }
 bool PhotonMap::has_first_flights() const {
-  return data_->blocks.has_first_flights();
+  return data_->blocks().has_first_flights();
 }
 int PhotonMap::groups() const {
-  return data_->blocks.groups();
+  return data_->blocks().groups();
 }
 bool PhotonMap::has_directions() const {
-  return data_->blocks.has_directions();
+  return data_->blocks().has_directions();
 }
 MapTimes PhotonMap::times() const {
   return data_->times;
 }
 Boxf PhotonMap::bounds() const {
-  return data_->tree.bounds;
+  if (data_->parts.size() == 1)
+    return data_->parts[0].tree.bounds;
+  Boxf all;
+  for (const Data::Part& part : data_->parts)
+    if (part.blocks.count() > 0)
+      all.extend(part.tree.bounds);
+  return all;
 }
 float PhotonMap::mean_radius() const {
-  return data_->mean_radius;
+  if (data_->parts.size() == 1)
+    return data_->parts[0].mean_radius;
+  double sum = 0;
+  for (const Data::Part& part : data_->parts)
+    sum += static_cast<double>(part.mean_radius) * static_cast<double>(part.blocks.count());
+  return size() > 0 ? static_cast<float>(sum / static_cast<double>(size())) : 0;
+}
+float PhotonMap::mean_radius(std::size_t part) const {
+  return part < data_->parts.size() ? data_->parts[part].mean_radius : 0;
 }
 
 QueryCounts PhotonMap::query(BeamTile& tile) const {
-  return query_tile(data_->view(), tile);
+  tile.group_radiance.clear();
+  QueryCounts counts;
+  for (std::size_t part = 0; part < data_->parts.size(); ++part) {
+    tile.choose_part(part);
+    counts += query_tile(data_->view(part), tile);
+  }
+  return counts;
 }
 
-QueryCounts PhotonMap::query_ray(const RayProfile& profile, Rgb& radiance,
+QueryCounts PhotonMap::query_ray(std::span<const RayProfile> by_part, Rgb& radiance,
                                  std::vector<Rgb>* groups) const {
-  return vdbeam::query_ray(data_->view(), profile, radiance, nullptr, groups);
+  QueryCounts counts;
+  std::vector<Rgb> of_part;
+  if (groups)
+    groups->assign(static_cast<std::size_t>(this->groups()), {});
+  for (std::size_t part = 0; part < std::min(by_part.size(), data_->parts.size()); ++part) {
+    counts += vdbeam::query_ray(data_->view(part), by_part[part], radiance, nullptr,
+                                groups ? &of_part : nullptr);
+    for (std::size_t g = 0; g < of_part.size(); ++g)
+      (*groups)[g] += of_part[g];
+  }
+  return counts;
 }
 
 void PhotonMap::find_on_disc(const Vec3f& point, std::vector<DiscPhoton>& found) const {
-  const PhotonBlocks& blocks = data_->blocks;
+  const PhotonBlocks& blocks = data_->blocks(); // those on surfaces are of one part
   std::vector<std::size_t> photons;
-  find_around(data_->view(), point, photons);
+  find_around(data_->view(0), point, photons);
   found.reserve(photons.size());
   const int from = blocks.direction_field(), step = blocks.channels() > 1 ? 1 : 0;
   for (const std::size_t i : photons) {
@@ -254,11 +315,18 @@ void PhotonMap::find_on_disc(const Vec3f& point, std::vector<DiscPhoton>& found)
   }
 }
 
-QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction,
+QueryCounts PhotonMap::query_point(const Vec3f& point, const Vec3f& direction, std::size_t part,
                                    const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                                    Rgb* first_flight, std::vector<Rgb>* groups) const {
-  return vdbeam::query_point(data_->view(), point, direction, phases, in_scattered, first_flight,
-                             groups);
+  if (part < data_->parts.size())
+    return vdbeam::query_point(data_->view(part), point, direction, phases, in_scattered,
+                               first_flight, groups);
+  std::fill_n(in_scattered, phases.size(), Rgb());
+  if (first_flight)
+    std::fill_n(first_flight, phases.size(), Rgb());
+  if (groups)
+    groups->assign(static_cast<std::size_t>(this->groups()) * phases.size(), {});
+  return {};
 }
 
 } // namespace vdbeam

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 
 namespace vdbeam {
 
@@ -16,8 +17,8 @@ struct Kernel {
   float radius, weight = 1, share = 1;
 };
 
-/// Changes a kernel, given the photon's position and the radius so far.
-using KernelFit = std::function<Kernel(const Vec3f& position, float radius)>;
+/// Changes a kernel, given the photon's position and part of the medium, and the radius so far.
+using KernelFit = std::function<Kernel(const Vec3f& position, std::size_t part, float radius)>;
 
 /// How kernel radii are chosen (render units).
 struct RadiusSettings {
@@ -45,7 +46,8 @@ struct MapTimes {
 
 /// The photon map of one pass: photons in kd-median order in full 16-photon blocks (structure of
 /// arrays, the last block padded with photons of radius 0 and power 0), an implicit 8-ary tree of
-/// boxes over the blocks, boxes around the photons' spheres.
+/// boxes over the blocks, boxes around the photons' spheres. Photons of each part of the medium
+/// have a tree and kernel radii of their own, and count with that part's sigma_s.
 ///
 /// Building is deterministic and parallel (oneTBB); the result does not depend on the number of
 /// threads. Queries are const and may run concurrently. Any input is legal: no photons, coincident,
@@ -79,6 +81,7 @@ public:
   MapTimes times() const;
   Boxf bounds() const; ///< of all spheres
   float mean_radius() const;
+  float mean_radius(std::size_t part) const; ///< 0 where that has no photons
 
   /// Beam radiance estimate for a tile: adds to tile.radiance (Jarosz et al. 2008, eq. 11, with the
   /// ray's own sigma_s: see BeamTile).
@@ -95,16 +98,21 @@ public:
     int weight_channels = 1;
     const std::vector<PhaseFunction>* phases = nullptr;
   };
-  /// Adds to `radiance`. `groups`, unless it is null: set to the part of each group of lights.
-  QueryCounts query_ray(const RayProfile& profile, Rgb& radiance,
+  /// Adds to `radiance`; `by_part`: for the photons of each part of the medium. `groups`, unless it
+  /// is null: set to the part of each group of lights.
+  QueryCounts query_ray(std::span<const RayProfile> by_part, Rgb& radiance,
                         std::vector<Rgb>* groups = nullptr) const;
+  QueryCounts query_ray(const RayProfile& profile, Rgb& radiance) const {
+    return query_ray({&profile, 1}, radiance);
+  }
 
   /// Conventional estimate at a point: sum over photons whose sphere contains `point` of
-  /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998).
+  /// K_3D(d, r) * p(cos) * power, one value per phase function (Jensen and Christensen 1998), of
+  /// the photons of one part of the medium.
   /// `direction` is the camera ray's, away from the camera. Sets in_scattered[0 .. phases.size())
   /// and, unless it is null, first_flight, its part that comes straight from lights.
   /// `groups`, unless it is null: set to the part of each group of lights, [group][phase function].
-  QueryCounts query_point(const Vec3f& point, const Vec3f& direction,
+  QueryCounts query_point(const Vec3f& point, const Vec3f& direction, std::size_t part,
                           const std::vector<PhaseFunction>& phases, Rgb* in_scattered,
                           Rgb* first_flight = nullptr, std::vector<Rgb>* groups = nullptr) const;
   int groups() const;             ///< number of light groups whose photons are marked; 0: none

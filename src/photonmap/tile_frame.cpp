@@ -176,7 +176,7 @@ void make_subtile(const BeamTile& tile, int index, float mean_radius, float reac
     return;
   s.weights = tile.weights.data() + profile.offset;
   s.knots = profile.knots;
-  if (!trim_knots(tile.phases->size() * static_cast<std::size_t>(tile.weight_channels), s))
+  if (!trim_knots(tile.rows(), s))
     return;
   if (!lie_in_cone(tile, index)) {
     s.single = true;

@@ -266,8 +266,7 @@ class TileRay {
 public:
   TileRay(const BeamTile& tile, int ray) : tile_(tile), ray_(ray), d_(ray_direction(tile, ray)) {
     const BeamTile::Profile& knots = tile.profiles[ray / BeamTile::rays_per_subtile];
-    const std::size_t rows = tile.phases->size() * static_cast<std::size_t>(tile.weight_channels);
-    weights_.resize(rows * static_cast<std::size_t>(knots.knots));
+    weights_.resize(tile.rows() * static_cast<std::size_t>(knots.knots));
     for (std::size_t k = 0; k < weights_.size(); ++k)
       weights_[k] = tile.weights[knots.offset + k * BeamTile::rays_per_subtile +
                                  static_cast<std::size_t>(ray % BeamTile::rays_per_subtile)];
@@ -315,11 +314,8 @@ void query_rays(const MapView& map, BeamTile& tile, int subtile, int channels,
     Rgb radiance, straight;
     const bool flights = map.blocks.has_first_flights();
     std::vector<Rgb> groups;
-    const QueryCounts found = query_ray(map, ray.profile(), radiance, flights ? &straight : nullptr,
-                                        tile.by_group ? &groups : nullptr);
-    counts.contributions += found.contributions;
-    counts.candidates += found.candidates;
-    counts.blocks += found.blocks;
+    counts += query_ray(map, ray.profile(), radiance, flights ? &straight : nullptr,
+                        tile.by_group ? &groups : nullptr);
     for (int c = 0; c < channels; ++c) {
       const auto at = static_cast<std::size_t>(c * BeamTile::ray_count + r);
       tile.radiance[at] += radiance[c];
@@ -342,7 +338,8 @@ QueryCounts query_tile(const MapView& map, BeamTile& tile) {
   if (map.blocks.has_first_flights() && tile.first_flight.size() < size)
     tile.first_flight.resize(size, 0.0f);
   const std::size_t groups = tile.by_group ? static_cast<std::size_t>(map.blocks.groups()) : 0;
-  tile.group_radiance.assign(groups * size, 0.0f);
+  if (tile.group_radiance.size() < groups * size)
+    tile.group_radiance.resize(groups * size, 0.0f);
   if (map.tree.levels.empty())
     return {};
   const Vec3f far_side =

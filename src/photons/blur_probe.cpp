@@ -17,28 +17,32 @@ PixelValue* BlurProbe::find(std::size_t pixel) {
   return found != values_.end() && found->pixel == pixel ? &*found : nullptr;
 }
 
-Rgb BlurProbe::compared(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const {
-  const BeamTile::Profile& knots = tile.profiles[index / BeamTile::rays_per_subtile];
-  if (knots.knots == 0 || ray.profile.empty())
+Rgb BlurProbe::compared(const TileRays::PixelRay& ray, BeamTile& tile, int index) const {
+  if (ray.profile.empty())
     return {};
-  // The ray's column of its sub-tile's table.
   const std::size_t lane = static_cast<std::size_t>(index % BeamTile::rays_per_subtile);
-  std::vector<float> weights(tile.phases->size() * static_cast<std::size_t>(tile.weight_channels) *
-                             static_cast<std::size_t>(knots.knots));
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    weights[k] = tile.weights[knots.offset + k * BeamTile::rays_per_subtile + lane];
-  PhotonMap::RayProfile profile;
-  profile.ray = ray.camera.ray();
   const double shift = tile.shift[static_cast<std::size_t>(index)];
-  profile.t_begin = static_cast<float>(knots.t_begin - shift);
-  profile.step = knots.step;
-  profile.knots = knots.knots;
-  profile.t_end = static_cast<float>(tile.end[static_cast<std::size_t>(index)] - shift);
-  profile.weights = weights.data();
-  profile.weight_channels = tile.weight_channels;
-  profile.phases = tile.phases;
+  std::vector<std::vector<float>> weights(tile.part_count());
+  std::vector<PhotonMap::RayProfile> by_part(tile.part_count());
+  for (std::size_t part = 0; part < by_part.size(); ++part) {
+    tile.choose_part(part);
+    const BeamTile::Profile& knots = tile.profiles[index / BeamTile::rays_per_subtile];
+    // The ray's column of its sub-tile's table.
+    weights[part].resize(tile.rows() * static_cast<std::size_t>(knots.knots));
+    for (std::size_t k = 0; k < weights[part].size(); ++k)
+      weights[part][k] = tile.weights[knots.offset + k * BeamTile::rays_per_subtile + lane];
+    PhotonMap::RayProfile& profile = by_part[part];
+    profile.ray = ray.camera.ray();
+    profile.t_begin = static_cast<float>(knots.t_begin - shift);
+    profile.step = knots.step;
+    profile.knots = knots.knots;
+    profile.t_end = static_cast<float>(tile.end[static_cast<std::size_t>(index)] - shift);
+    profile.weights = weights[part].data();
+    profile.weight_channels = tile.weight_channels;
+    profile.phases = tile.phases;
+  }
   Rgb radiance;
-  map_.query_ray(profile, radiance);
+  map_.query_ray(by_part, radiance);
   return map_.channels() == 1 && tile.weight_channels == 1 ? Rgb(radiance.x) : radiance;
 }
 

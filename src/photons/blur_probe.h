@@ -28,7 +28,7 @@ public:
   /// Fills in the pixels of a tile that has been gathered; tiles may come in any order and from any
   /// thread. gathered(i): what ray i of the tile gathered from the photons.
   template <class Gathered>
-  void probe(const TileRays& rays, const BeamTile& tile, const Gathered& gathered) {
+  void probe(const TileRays& rays, BeamTile& tile, const Gathered& gathered) {
     for (int i = 0; i < TileRays::count && !values_.empty(); ++i)
       if (PixelValue* value = rays[i].inside ? find(rays[i].pixel) : nullptr)
         value->radiance =
@@ -43,7 +43,7 @@ public:
 
 private:
   /// Light gathered by the ray in kernels of the other width.
-  Rgb compared(const TileRays::PixelRay& ray, const BeamTile& tile, int index) const;
+  Rgb compared(const TileRays::PixelRay& ray, BeamTile& tile, int index) const;
 
   const PhotonMap& map_;
   std::vector<PixelValue> values_;

@@ -37,7 +37,7 @@ struct DiscPlane {
 
 } // namespace
 
-Kernel KernelSupport::fit(const Vec3f& photon, float radius) const {
+Kernel KernelSupport::fit(const Vec3f& photon, std::size_t part, float radius) const {
   Kernel kernel{radius};
   bool cut = false;
   if (const Surfaces* surfaces = world_->surfaces.get()) {
@@ -51,23 +51,24 @@ Kernel KernelSupport::fit(const Vec3f& photon, float radius) const {
           kernel = {wide};
   }
   if (kernel.radius > 0 && (cut || by_medium_))
-    kernel.share = domain_ == KernelDomain::disc ? disc_share(photon, kernel.radius, cut)
-                                                 : ball_share(photon, kernel.radius);
+    kernel.share = domain_ == KernelDomain::disc ? disc_share(photon, part, kernel.radius, cut)
+                                                 : ball_share(photon, part, kernel.radius);
   return kernel;
 }
 
-float KernelSupport::disc_share(const Vec3f& photon, float radius, bool cut) const {
+float KernelSupport::disc_share(const Vec3f& photon, std::size_t part, float radius,
+                                bool cut) const {
   const DiscPlane plane(*camera_, photon);
   int hits = 0;
   // The outer ring is turned by a quarter of the plane's symmetry, so that twelve directions count.
   for (int i = 0; i < 12; ++i) {
     const Vec3f point = plane.point(i, radius * ring_radii[i % 2]);
-    hits += (!by_medium_ || in_medium(point)) && (!cut || unobstructed(photon, point));
+    hits += (!by_medium_ || in_medium(point, part)) && (!cut || unobstructed(photon, point));
   }
   return std::max(least_share, static_cast<float>(hits) / 12);
 }
 
-float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
+float KernelSupport::ball_share(const Vec3f& photon, std::size_t part, float radius) const {
   // Faces and corners of a cube, at the root mean square distance of the biweight ball, r /
   // sqrt(3).
   const float face = 0.577f * radius, corner = 0.333f * radius;
@@ -76,11 +77,12 @@ float KernelSupport::ball_share(const Vec3f& photon, float radius) const {
     for (const float sign : {-1.0f, 1.0f}) {
       Vec3f offset;
       offset[a] = sign * face;
-      hits += in_medium(photon + offset);
+      hits += in_medium(photon + offset, part);
     }
   for (int i = 0; i < 8; ++i)
     hits += in_medium(photon + Vec3f{i & 1 ? corner : -corner, i & 2 ? corner : -corner,
-                                     i & 4 ? corner : -corner});
+                                     i & 4 ? corner : -corner},
+                      part);
   return std::max(least_share, static_cast<float>(hits) / 14);
 }
 
@@ -132,11 +134,12 @@ std::optional<KernelSupport::SeenPoint> KernelSupport::point_on_ray(const Vec3f&
   return SeenPoint{point, view, from_camera};
 }
 
-bool KernelSupport::in_medium(const Vec3f& point) const {
+bool KernelSupport::in_medium(const Vec3f& point, std::size_t part) const {
   bool found = false;
   const Medium& medium = world_->medium;
-  medium.for_each_at(
-      point, [&](std::size_t v) { found = found || medium.volumes[v].majorant(point) > 0; });
+  medium.for_each_at(point, [&](std::size_t v) {
+    found = found || (medium.parts[v] == part && medium.volumes[v].majorant(point) > 0);
+  });
   return found;
 }
 
@@ -150,7 +153,9 @@ void fit_kernels(const EstimatorInput& input, KernelDomain domain, bool by_mediu
   if (!input.world.surfaces && !by_medium)
     return;
   const KernelSupport support(input, domain, by_medium);
-  map.fit([&](const Vec3f& photon, float radius) { return support.fit(photon, radius); });
+  map.fit([&](const Vec3f& photon, std::size_t part, float radius) {
+    return support.fit(photon, part, radius);
+  });
 }
 
 } // namespace vdbeam

@@ -27,7 +27,8 @@ public:
   KernelSupport(const EstimatorInput& input, KernelDomain domain, bool by_medium)
       : world_(&input.world), camera_(&input.camera), domain_(domain), by_medium_(by_medium) {}
 
-  Kernel fit(const Vec3f& photon, float radius) const;
+  /// `part`: of the medium, that of the photon (Medium::parts).
+  Kernel fit(const Vec3f& photon, std::size_t part, float radius) const;
 
   /// No photon is raised by more than 1 / least_share.
   static constexpr float least_share = 0.25f;
@@ -35,8 +36,8 @@ public:
 private:
   /// The disc is perpendicular to the ray of the image that comes nearest. (Beside the camera a
   /// photon is seen by rays that do not lead to it at all.)
-  float disc_share(const Vec3f& photon, float radius, bool cut) const;
-  float ball_share(const Vec3f& photon, float radius) const;
+  float disc_share(const Vec3f& photon, std::size_t part, float radius, bool cut) const;
+  float ball_share(const Vec3f& photon, std::size_t part, float radius) const;
   bool is_cut_without_leak(const Vec3f& photon, float radius) const;
   bool leaks_to(const Vec3f& photon, int i, float distance) const;
   /// A point at a distance from the camera, along a unit direction.
@@ -45,7 +46,7 @@ private:
     double distance;
   };
   std::optional<SeenPoint> point_on_ray(const Vec3f& photon, int i, float distance) const;
-  bool in_medium(const Vec3f& point) const;
+  bool in_medium(const Vec3f& point, std::size_t part) const;
   bool unobstructed(const Vec3f& photon, const Vec3f& point) const;
 
   const World* world_;

@@ -136,10 +136,7 @@ void spread(const Vec3<int>& counts, const Vec3f& falls, std::vector<float>& tab
 
 /// Remaining fraction per cell along each axis of a volume's grid, at 1 / e per `reach`.
 Vec3f falls_per_cell(const Volume& volume, float reach) {
-  Affine to_local;
-  for (std::size_t i = 0; i < 3; ++i)
-    to_local.rows[i] = Vec3d(volume.to_local.rows[i]);
-  const Affine to_render = to_local.inverse();
+  const Affine to_render = volume.to_render();
   Vec3f falls;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d edge;

@@ -9,6 +9,17 @@ namespace vdbeam {
 
 namespace {
 
+/// Calls visit(v) for the volumes to whose part of the medium photon i belongs.
+template <class Visit>
+void for_each_of_its_part(const Medium& medium, const PhotonList& photons, std::size_t i,
+                          const Visit& visit) {
+  const std::size_t part = photons.part.empty() ? 0 : photons.part[i];
+  medium.for_each_at(photons.position[i], [&](std::size_t v) {
+    if (medium.parts[v] == part)
+      visit(v);
+  });
+}
+
 /// Importance of a photon for the image: the importance of its place times what is scattered
 /// towards the camera, of the volume for which that is most.
 std::vector<float> worth_of(const World& world, const Camera& camera, const CellTables& importance,
@@ -17,7 +28,7 @@ std::vector<float> worth_of(const World& world, const Camera& camera, const Cell
     return view_importance_at(world, importance, photons);
   std::vector<float> values(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    world.medium.for_each_at(photons.position[i], [&](std::size_t v) {
+    for_each_of_its_part(world.medium, photons, i, [&](std::size_t v) {
       const Volume& volume = world.medium.volumes[v];
       const Vec3f& position = photons.position[i];
       values[i] = std::max(values[i], importance[v][volume.cell_at(position)] *
@@ -40,7 +51,7 @@ std::vector<float> view_importance_at(const World& world, const CellTables& impo
                                       const PhotonList& photons) {
   std::vector<float> values(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    world.medium.for_each_at(photons.position[i], [&](std::size_t v) {
+    for_each_of_its_part(world.medium, photons, i, [&](std::size_t v) {
       values[i] =
           std::max(values[i], importance[v][world.medium.volumes[v].cell_at(photons.position[i])]);
     });

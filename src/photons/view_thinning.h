@@ -14,7 +14,8 @@ struct ViewThinning {
   double stored_per_path = 0;
 };
 
-/// View importance at each photon: of the volume that is seen best, where several overlap.
+/// View importance at each photon: of the volume of its part of the medium that is seen best, where
+/// several overlap.
 std::vector<float> view_importance_at(const World& world, const CellTables& importance,
                                       const PhotonList& photons);
 

@@ -92,6 +92,28 @@ bool meets(const std::vector<Parallelepiped>& boxes, const Ray& ray) {
   return false;
 }
 
+/// Distance from a photon's origin back to its light, or, where that is far away, to before all.
+double distance_to_light(const World& world, const Light& light, const EmittedPhoton& photon) {
+  if (light.surface() >= 0)
+    return 0;
+  const Vec3d origin(photon.ray.origin);
+  const OccupiedRegion& all = world.targets.back();
+  return light.position()
+             ? length(origin - *light.position())
+             : 2 * (length(origin - Vec3d(all.center)) + static_cast<double>(all.radius));
+}
+
+/// Whether a line meets the sphere around a region, from a distance `back` before its origin on.
+/// Nests are met there, not at their cells: what the medium around them scatters into the sphere is
+/// aimed, too. A sphere may reach beyond the medium.
+bool meets_sphere(const OccupiedRegion& region, const Ray& ray, double back) {
+  const Vec3d to_center = Vec3d(region.center) - Vec3d(ray.origin);
+  const double along = dot(to_center, Vec3d(ray.direction));
+  const double radius = static_cast<double>(region.radius);
+  const double beside = dot(to_center, to_center) - along * along;
+  return beside < radius * radius && along > -std::sqrt(radius * radius - beside) - back;
+}
+
 /// Whether a line from its origin on meets a cell in which there may be medium.
 bool meets(const Medium& medium, const Ray& ray) {
   const Segment segment = medium.clip({ray});
@@ -108,46 +130,59 @@ bool meets(const Medium& medium, const Ray& ray) {
   return met;
 }
 
-bool meets_target(const World& world, std::size_t target, const Ray& ray) {
-  return target == 0 && !world.medium.empty() ? meets(world.medium, ray)
-                                              : meets(world.targets[target].boxes, ray);
+bool meets_target(const World& world, std::size_t target, const Ray& ray, double back) {
+  const Medium& medium = world.medium;
+  if (target >= world.medium_targets)
+    return meets(world.targets[target].boxes, ray);
+  return target == medium.nests.size() ? meets(medium, ray)
+                                       : meets_sphere(world.targets[target], ray, back);
 }
 
-/// Shares of the photons: each target after the medium gets half of the previous one, at most the
-/// flux that counts there in units of that to the medium.
-void share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
+/// Flux of an aim's photons that counts, in the strongest channel and up to a factor.
+double counted_flux(const World& world, const AimedLight::Aim& aim) {
+  double flux = 0;
+  for (std::uint64_t n = 0; n < trial_photons; ++n) {
+    Rng rng({}, RngStage::light, n);
+    EmittedPhoton photon = aim.light->emit((static_cast<double>(n) + 0.5) / trial_photons, rng);
+    photon.first_target = aim.first_target;
+    photon.last_target = aim.last_target;
+    if (counts_for_its_target(world, *aim.light, photon))
+      flux += static_cast<double>(max_component(photon.flux));
+  }
+  return flux;
+}
+
+/// Shares of the photons: each target gets half of the previous one, those after the medium at most
+/// the flux that counts there in units of that to the medium; next to none where the light does not
+/// shine. Returns the aim at the medium.
+std::size_t share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
+  const std::size_t medium = std::max<std::size_t>(world.medium_targets, 1) - 1;
   std::vector<double> weights;
   double sum = 0, to_medium = 0;
   for (std::size_t i = 0; i < aims.size(); ++i) {
-    double flux = 0;
-    for (std::uint64_t n = 0; n < trial_photons; ++n) {
-      Rng rng({}, RngStage::light, n);
-      EmittedPhoton photon =
-          aims[i].light->emit((static_cast<double>(n) + 0.5) / trial_photons, rng);
-      photon.first_target = aims[i].first_target;
-      photon.last_target = aims[i].last_target;
-      if (counts_for_its_target(world, photon))
-        flux += static_cast<double>(max_component(photon.flux));
-    }
-    if (i == 0)
-      to_medium = flux;
-    const double relative = to_medium > 0 ? std::min(1.0, flux / to_medium) : 1;
+    const double flux = counted_flux(world, aims[i]);
+    if (i <= medium)
+      to_medium += flux;
+    double relative = flux > 0;
+    if (i == medium)
+      relative = 1;
+    else if (i > medium)
+      relative = to_medium > 0 ? std::min(1.0, flux / to_medium) : 1;
     constexpr double least = 1e-3;
-    weights.push_back(i == 0 ? 1 : std::max(least, relative) * std::exp2(-static_cast<double>(i)));
+    weights.push_back(std::max(least, relative) * std::exp2(-static_cast<double>(i)));
     sum += weights.back();
   }
   for (std::size_t i = 0; i < aims.size(); ++i)
     aims[i].share = weights[i] / sum;
+  return medium;
 }
 
 } // namespace
 
-std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,
-                                           const SurfaceSet& surfaces) {
-  std::vector<OccupiedRegion> targets;
+void add_surface_targets(const OccupiedRegion& medium, const SurfaceSet& surfaces,
+                         std::vector<OccupiedRegion>& targets) {
   const Boxd everywhere{Vec3d(-1e300), Vec3d(1e300)};
   if (!medium.boxes.empty()) {
-    targets.push_back(medium);
     double half = first_box * static_cast<double>(medium.radius);
     const Vec3d center(medium.center);
     while (static_cast<int>(targets.size()) + 1 < most_targets) {
@@ -161,19 +196,19 @@ std::vector<OccupiedRegion> photon_targets(const OccupiedRegion& medium,
     }
   }
   targets.push_back(region_within(everywhere, medium, surfaces));
-  return targets;
 }
 
-bool counts_for_its_target(const World& world, const EmittedPhoton& photon) {
+bool counts_for_its_target(const World& world, const Light& light, const EmittedPhoton& photon) {
   const auto first = static_cast<std::size_t>(photon.first_target);
   const auto last = static_cast<std::size_t>(photon.last_target);
+  const double back = distance_to_light(world, light, photon);
   for (std::size_t target = 0; target < first; ++target)
-    if (meets_target(world, target, photon.ray))
+    if (meets_target(world, target, photon.ray, back))
       return false;
   if (last + 1 >= world.targets.size()) // beyond the last there is nothing to be met
     return true;
   for (std::size_t target = first; target <= last; ++target)
-    if (meets_target(world, target, photon.ray))
+    if (meets_target(world, target, photon.ray, back))
       return true;
   return false;
 }
@@ -200,18 +235,20 @@ bool may_hold_photons(const World& world, const SurfaceHit& hit) {
 
 Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedPhoton& photon) {
   const Vec3d origin(photon.ray.origin), direction(photon.ray.direction);
-  if (!(photon.flux_to_medium > 0) || light.surface() >= 0)
+  if (photon.fluxes_to_medium.empty())
     return origin;
-  const OccupiedRegion& all = world.targets.back();
-  const double back =
-      light.position() ? length(origin - *light.position())
-                       : 2 * (length(origin - Vec3d(all.center)) + static_cast<double>(all.radius));
-  return world.surfaces->set->occluded(origin, -direction, 0, back) ? origin - direction * back
-                                                                    : origin;
+  const double back = distance_to_light(world, light, photon);
+  const bool at_nest =
+      photon.first_target < static_cast<int>(world.medium.nests.size()); // within the medium
+  return back > 0 && (at_nest || (world.surfaces &&
+                                  world.surfaces->set->occluded(origin, -direction, 0, back)))
+             ? origin - direction * back
+             : origin;
 }
 
-TargetCones::TargetCones(const World& world, const Vec3d& point) {
-  for (const OccupiedRegion& target : world.targets) {
+TargetCones::TargetCones(const World& world, const Vec3d& point, std::size_t most) {
+  for (std::size_t i = 0; i < std::min(most, world.targets.size()); ++i) {
+    const OccupiedRegion& target = world.targets[i];
     const Vec3d way = Vec3d(target.center) - point;
     const double distance = length(way), sine = static_cast<double>(target.radius) / distance;
     if (!(sine < 1))
@@ -227,14 +264,11 @@ std::size_t TargetCones::first_of(const Vec3f& direction) const {
   return i;
 }
 
-Copies copies_into(const Cone& cone, const SurfaceVertex& vertex, float flux, Rng& rng) {
-  // About what goes that way, whatever the directions that are drawn: in a direction in which the
-  // material sends nothing there may be parts of the cone in which it does.
+Copies copies_into(const Cone& cone, float value, float flux, Rng& rng) {
+  // Where nothing goes along the cone's axis, something may still go into parts of the cone.
   constexpr float least_value = 0.01f;
   const auto solid_angle = static_cast<float>(cone.solid_angle());
-  const float value =
-      std::max(max_component(vertex.evaluate(Vec3f(cone.axis), Carried::power)), least_value);
-  const float wanted = flux * value * solid_angle;
+  const float wanted = flux * std::max(value, least_value) * solid_angle;
   if (wanted < 1)
     return {rng.uniform() < wanted ? 1 : 0, solid_angle / wanted};
   const float copies = std::min(std::floor(wanted + 0.5f), static_cast<float>(Copies::most));
@@ -253,8 +287,8 @@ void add_aimed_lights(const std::vector<LightSettings>& settings, const Vec3d& u
                                  target == 0 ? nullptr : aims[0].light.get()};
       aims.push_back({make_light(light, context), target, target, 1});
     }
-    share_out(world, aims);
-    world.lights.add(std::make_unique<AimedLight>(std::move(aims)),
+    const std::size_t medium = share_out(world, aims);
+    world.lights.add(std::make_unique<AimedLight>(std::move(aims), medium),
                      {light.visible, kind.surrounds, kind.wants_shadow_rays(light)});
   }
 }
@@ -263,13 +297,16 @@ std::unique_ptr<Light>
 aim_surface_light(const World& world,
                   const std::function<std::unique_ptr<Light>(const OccupiedRegion*)>& make) {
   const auto count = static_cast<int>(world.targets.size());
+  const auto of_medium = static_cast<int>(world.medium_targets);
   if (world.medium.empty() || count < 2)
     return make(nullptr);
   std::vector<AimedLight::Aim> aims;
-  aims.push_back({make(&world.targets[0]), 0, 0, 1});
-  aims.push_back({make(nullptr), 1, count - 1, 1});
-  share_out(world, aims);
-  return std::make_unique<AimedLight>(std::move(aims));
+  aims.reserve(world.medium_targets + 1);
+  for (int target = 0; target < of_medium; ++target)
+    aims.push_back({make(&world.targets[static_cast<std::size_t>(target)]), target, target, 1});
+  aims.push_back({make(nullptr), of_medium, count - 1, 1});
+  const std::size_t medium = share_out(world, aims);
+  return std::make_unique<AimedLight>(std::move(aims), medium);
 }
 
 } // namespace vdbeam

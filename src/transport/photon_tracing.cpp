@@ -1,7 +1,7 @@
 #include "transport/photon_tracing.h"
 
 #include "camera/towards_camera.h"
-#include "medium/flight.h"
+#include "transport/light_path.h"
 #include "transport/photon_targets.h"
 #include "tuning/constants.h"
 
@@ -18,33 +18,6 @@ namespace {
 constexpr std::uint64_t paths_per_chunk = 512;
 /// Collisions of every path under way between two looks at the clock.
 constexpr std::uint32_t rounds_per_check = 128;
-/// A light path under way. Its throughput is flux.
-struct LightPath : Flight {
-  using Flight::Flight;
-
-  std::size_t light = 0;
-  std::uint32_t number = 0; ///< within the pass
-  // Among surfaces:
-  std::optional<SurfaceHit> end; ///< of the present flight
-  bool met_surface = false;
-  bool by_mirrors = true;    ///< surfaces that it met were specular
-  bool for_surfaces = false; ///< stored at surfaces: of surface_photon_lights
-  /// Flux, in the strongest channel, with which such paths go to the medium straight from their
-  /// light; 0: surfaces do not aim it.
-  float fair_flux = 0;
-  SurfaceRoulette surfaces;
-};
-
-/// Rate of tentative collisions: the majorants of overlapping volumes add.
-float total_majorant(const Medium& medium, const Ray& ray, const Collision& hit) {
-  float sum = hit.majorant;
-  const Vec3f point = ray.at(hit.t);
-  medium.for_each_at(point, [&](std::size_t v) {
-    if (&medium.volumes[v] != hit.volume)
-      sum += medium.volumes[v].majorant(point);
-  });
-  return sum;
-}
 
 /// Traces one chunk of paths into one list.
 class PathTracer {
@@ -91,7 +64,7 @@ public:
   static constexpr bool bounds_null_collisions = false;
   void meet(LightPath& path, const Collision& hit) {
     if (may_store(path) && settings_.store == PhotonStore::fluence)
-      store(path, hit, path.throughput / total_majorant(world_.medium, path.segment.ray, hit));
+      store(path, hit, path.throughput / majorant_of_part(world_.medium, path.segment.ray, hit));
   }
   bool pass(LightPath& path) const { return path.length.survive(path.throughput, path.rng); }
   bool collide(LightPath& path, const Collision& hit) {
@@ -110,10 +83,11 @@ public:
         path.bounces >= *settings_.max_bounces + (path.for_surfaces ? 1 : 0))
       return false;
     const PhaseFunction& phase = world_.medium.phases[hit.volume->phase_index];
+    const std::optional<TargetCones> aimed = send_to_nests(path, phase, point);
     const int paths = settings_.guide ? hold_in_window(path, point) : 1;
     if (paths == 2)
-      split(path, phase, point);
-    return paths > 0 && scatter(path, phase, point);
+      split(path, phase, point, aimed);
+    return paths > 0 && scatter(path, phase, point, aimed);
   }
   /// A path that leaves the scene ends. At a surface it continues by the material.
   bool leave(LightPath& path) { return path.end && reflect(path); }
@@ -139,15 +113,19 @@ private:
   }
 
   /// Sends a copy of the path on its own way; it is traced when one of those under way has ended.
-  void split(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
+  void split(LightPath& path, const PhaseFunction& phase, const Vec3f& point,
+             const std::optional<TargetCones>& aimed) {
     LightPath copy = copy_of(path);
-    if (scatter(copy, phase, point))
+    if (scatter(copy, phase, point, aimed))
       split_.push_back(std::move(copy));
   }
 
-  /// False where the path leaves the medium without another collision.
-  bool scatter(LightPath& path, const PhaseFunction& phase, const Vec3f& point) {
+  /// False where the path leaves the medium without another collision, or goes where it is `aimed`.
+  bool scatter(LightPath& path, const PhaseFunction& phase, const Vec3f& point,
+               const std::optional<TargetCones>& aimed) {
     const Vec3f direction = path.sample_direction(phase);
+    if (aimed && aimed->first_of(direction) < aimed->size())
+      return false;
     begin_flight(path, Vec3d(point), direction);
     return advance_flight(path, *this);
   }
@@ -184,34 +162,71 @@ private:
   /// directions, in which the path itself does not go on. Within the medium's sphere it is shared.
   std::optional<TargetCones> send_to_targets(LightPath& path, const SurfaceVertex& vertex) {
     const Material& material = vertex.material();
-    if (!(path.fair_flux > 0) || material.is_specular() || material.refracts() ||
-        world_.medium.empty())
+    if (path.fair_fluxes.empty() || !(path.fair_fluxes.back() > 0) || material.is_specular() ||
+        material.refracts() || world_.medium.empty())
       return std::nullopt;
     TargetCones cones(world_, vertex.hit().position);
-    const float flux = max_component(path.throughput) / path.fair_flux;
     for (std::size_t target = 0; target < cones.size(); ++target) {
-      const Copies copies = copies_into(cones[target], vertex, flux, path.rng);
-      for (int i = 0; i < copies.count; ++i) {
-        const float u = path.rng.uniform(), v = path.rng.uniform();
-        const Vec3f wi(cones[target].sample(static_cast<double>(u), static_cast<double>(v)));
-        if (cones.first_of(wi) == target)
-          send_copy(path, vertex, wi, vertex.evaluate(wi, Carried::power) * copies.solid_angle);
-      }
+      const Vec3f axis(cones[target].axis);
+      send_into(cones, target, max_component(vertex.evaluate(axis, Carried::power)), path,
+                [&](const Vec3f& wi, float solid_angle) {
+                  send_copy(path, vertex, wi, vertex.evaluate(wi, Carried::power) * solid_angle);
+                });
     }
-    if (cones.size() == 0)
-      share_flux(path, vertex);
+    if (cones.size() < world_.medium_targets)
+      share_flux(path, vertex, cones);
     return cones;
   }
 
-  /// The path goes on as one of several of equal flux.
-  void share_flux(LightPath& path, const SurfaceVertex& vertex) {
+  /// Draws the directions of the path's copies into the cone of a target, beside those of smaller
+  /// ones. `value` [1 / sr]: the part of its flux that goes along the cone's axis.
+  template <class Send>
+  void send_into(const TargetCones& cones, std::size_t target, float value, LightPath& path,
+                 const Send& send) const {
+    const Copies copies = copies_into(cones[target], value, path.relative_flux(target), path.rng);
+    for (int i = 0; i < copies.count; ++i) {
+      const float u = path.rng.uniform(), v = path.rng.uniform();
+      const Vec3f wi(cones[target].sample(static_cast<double>(u), static_cast<double>(v)));
+      if (cones.first_of(wi) == target)
+        send(wi, copies.solid_angle);
+    }
+  }
+
+  /// Sends copies of the path, which the medium scatters, to the nests around which it is. As
+  /// send_to_targets does: few paths would find a small cloud in a wide fog, and those that do
+  /// would be far brighter than others.
+  std::optional<TargetCones> send_to_nests(LightPath& path, const PhaseFunction& phase,
+                                           const Vec3f& point) {
+    const std::size_t nests = world_.medium.nests.size();
+    if (nests == 0 || path.fair_fluxes.size() <= nests || !(path.fair_fluxes.back() > 0))
+      return std::nullopt;
+    TargetCones cones(world_, Vec3d(point), nests);
+    const Vec3f& travel = path.segment.ray.direction;
+    for (std::size_t nest = 0; nest < cones.size(); ++nest) {
+      const float value = phase.evaluate(dot(travel, Vec3f(cones[nest].axis)));
+      send_into(cones, nest, value, path, [&](const Vec3f& wi, float solid_angle) {
+        LightPath copy = copy_of(path);
+        copy.throughput *= phase.evaluate(dot(travel, wi)) * solid_angle;
+        if (!(max_component(copy.throughput) > 0))
+          return;
+        begin_flight(copy, Vec3d(point), wi);
+        if (advance_flight(copy, *this))
+          split_.push_back(std::move(copy));
+      });
+    }
+    return cones;
+  }
+
+  /// The path goes on as one of several of equal flux, outside of the cones.
+  void share_flux(LightPath& path, const SurfaceVertex& vertex, const TargetCones& cones) {
     constexpr auto most = static_cast<float>(Copies::most);
     const int paths =
-        static_cast<int>(std::clamp(max_component(path.throughput) / path.fair_flux, 1.0f, most));
+        static_cast<int>(std::clamp(path.relative_flux(world_.medium_targets - 1), 1.0f, most));
     path.throughput *= 1 / static_cast<float>(paths);
     for (int i = 1; i < paths; ++i) {
       const MaterialSample next = vertex.sample(Carried::power, path.rng);
-      send_copy(path, vertex, next.wi, next.weight);
+      if (cones.first_of(next.wi) == cones.size())
+        send_copy(path, vertex, next.wi, next.weight);
     }
   }
 
@@ -253,7 +268,8 @@ private:
     const PathGuide::Emission start =
         settings_.guide ? settings_.guide->emission(light, place) : PathGuide::Emission{place, 1};
     const EmittedPhoton photon = world_.lights[light].emit(start.place, rng);
-    if (photon.flux_to_medium > 0 && !counts_for_its_target(world_, photon))
+    if (!photon.fluxes_to_medium.empty() &&
+        !counts_for_its_target(world_, world_.lights[light], photon))
       return;
     const Rgb flux =
         photon.flux / static_cast<float>(static_cast<double>(light_paths) * start.density);
@@ -263,7 +279,8 @@ private:
     path.emplace(rng, flux);
     path->light = light;
     path->number = static_cast<std::uint32_t>(number);
-    path->fair_flux = photon.flux_to_medium / static_cast<float>(light_paths);
+    path->fair_fluxes = photon.fluxes_to_medium;
+    path->flux_unit = static_cast<float>(light_paths);
     begin_flight(*path, beginning_of_flight(world_, world_.lights[light], photon),
                  photon.ray.direction);
     if (!advance_flight(*path, *this))
@@ -304,17 +321,21 @@ private:
     if (probability < 1 && path.rng.uniform() >= probability)
       return;
     const Rgb stored = power * settings_.albedo / probability;
-    append(photons, path, point, stored);
+    const std::size_t part = part_of(world_.medium, hit);
+    append(photons, path, point, part, stored);
     if (settings_.path_numbers)
       photons.path.push_back(path.number);
     if (single_scattering_)
       photons.first_flight.push_back(path.bounces == 0);
     if (is_caustic(path))
-      append(caustics, path, point, stored);
+      append(caustics, path, point, part, stored);
   }
 
-  void append(PhotonList& list, const LightPath& path, const Vec3f& point, const Rgb& power) const {
+  void append(PhotonList& list, const LightPath& path, const Vec3f& point, std::size_t part,
+              const Rgb& power) const {
     list.position.push_back(point);
+    if (!world_.medium.parts.single())
+      list.part.push_back(static_cast<std::uint8_t>(part));
     if (settings_.directions)
       list.direction.push_back(path.segment.ray.direction);
     list.power.push_back(power);

@@ -1,5 +1,7 @@
 #include "transport/similar_medium.h"
 
+#include "medium/nest_bounds.h"
+
 #include "math/sampling.h"
 #include "medium/optical_depth.h"
 #include "phase/truncated_phase.h"
@@ -24,6 +26,31 @@ Volume similar_volume(const Volume& volume, float f, PeakTakenOut& peak) {
   peak.extinction_factor.push_back(1 / strongest);
   peak.excess.push_back(volume.channel_scale / strongest - similar.channel_scale);
   return similar;
+}
+
+/// The same of lines through the sphere around a box.
+double typical_depth(const Medium& medium, const Boxf& box) {
+  constexpr std::uint64_t lines = 512;
+  const Vec3f centre = box.center();
+  const float radius = length(box.upper - centre);
+  double sum = 0, squares = 0;
+  for (std::uint64_t line = 0; line < lines; ++line) {
+    Rng rng({}, RngStage::line, line);
+    const float u = rng.uniform(), v = rng.uniform();
+    const Vec3f direction = sample_sphere(u, v);
+    Vec3f across, up;
+    orthonormal_frame(direction, across, up);
+    const float r = radius * std::sqrt(rng.uniform()), phi = 2 * pi * rng.uniform();
+    const Vec3f origin =
+        centre + across * (r * std::cos(phi)) + up * (r * std::sin(phi)) - direction * radius;
+    const double through =
+        max_component(exact_transmittance(medium, {{origin, direction}, 0, 2 * radius}));
+    const double depth =
+        std::min<double>(opaque_optical_depth, -std::log(std::max(1e-30, through)));
+    sum += depth;
+    squares += depth * depth;
+  }
+  return sum > 0 ? squares / sum : 0;
 }
 
 } // namespace
@@ -69,29 +96,12 @@ float truncation(const Medium& medium) {
 }
 
 double typical_depth(const Medium& medium) {
-  constexpr std::uint64_t lines = 512;
   if (medium.empty())
     return 0;
-  const Vec3f centre = medium.bounds.center();
-  const float radius = length(medium.bounds.upper - centre);
-  double sum = 0, squares = 0;
-  for (std::uint64_t line = 0; line < lines; ++line) {
-    Rng rng({}, RngStage::line, line);
-    const float u = rng.uniform(), v = rng.uniform();
-    const Vec3f direction = sample_sphere(u, v);
-    Vec3f across, up;
-    orthonormal_frame(direction, across, up);
-    const float r = radius * std::sqrt(rng.uniform()), phi = 2 * pi * rng.uniform();
-    const Vec3f origin =
-        centre + across * (r * std::cos(phi)) + up * (r * std::sin(phi)) - direction * radius;
-    const double through =
-        max_component(exact_transmittance(medium, {{origin, direction}, 0, 2 * radius}));
-    const double depth =
-        std::min<double>(opaque_optical_depth, -std::log(std::max(1e-30, through)));
-    sum += depth;
-    squares += depth * depth;
-  }
-  return sum > 0 ? squares / sum : 0;
+  double depth = typical_depth(medium, medium.bounds);
+  for (const std::vector<std::size_t>& nest : medium.nests) // next to no line would meet it
+    depth = std::max(depth, typical_depth(medium, nest_bounds(medium, nest)));
+  return depth;
 }
 
 const World& PassWorlds::of(int order) {

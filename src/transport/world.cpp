@@ -253,6 +253,47 @@ void bound_region(World& world, const Boxd& bounds) {
 
 namespace {
 
+/// Sorts the volumes by extinction and by size. The world's region has their boxes in their order.
+void sort_volumes(World& world) {
+  std::vector<float> peaks;
+  for (const Volume& volume : world.medium.volumes)
+    peaks.push_back(volume.extinction * volume.field.maximum());
+  world.medium.parts = MediumParts(peaks);
+  std::vector<double> areas;
+  for (const Parallelepiped& box : world.region.boxes)
+    areas.push_back(box.surface_area());
+  world.medium.nests = find_nests(areas);
+}
+
+/// The region of a nest: the sphere around it, and a cube around that.
+OccupiedRegion region_of(const World& world, const std::vector<std::size_t>& nest) {
+  Boxd bounds;
+  for (const std::size_t v : nest)
+    bounds.extend(world.region.boxes[v].bounds());
+  const double radius = 0.5 * length(bounds.size()) * 1.01;
+  OccupiedRegion region;
+  region.center = Vec3f(bounds.center());
+  region.radius = static_cast<float>(radius);
+  const Vec3d half(radius * 1.001);
+  region.boxes.push_back(
+      parallelepiped(Affine(), {bounds.center() - half, bounds.center() + half}));
+  region.cells = region.boxes;
+  return region;
+}
+
+/// What photons are aimed at where they would hardly find it: nests, and what surfaces stand about.
+void choose_targets(World& world) {
+  if (!world.surfaces && world.medium.nests.empty())
+    return;
+  for (const std::vector<std::size_t>& nest : world.medium.nests)
+    world.targets.push_back(region_of(world, nest));
+  if (!world.region.boxes.empty())
+    world.targets.push_back(world.region);
+  world.medium_targets = world.targets.size();
+  if (world.surfaces)
+    add_surface_targets(world.region, *world.surfaces->set, world.targets);
+}
+
 /// The transform of each volume to the world, and the bounds of their contents [world].
 std::vector<Affine> place_volumes(const Scene& scene, const std::vector<DensityGrid>& grids,
                                   const std::vector<EmissionGrid>& emissions, Boxd& bounds) {
@@ -294,6 +335,7 @@ void add_medium(const Scene& scene, std::vector<DensityGrid>& grids,
     world.medium.volumes.push_back(std::move(volume));
   }
   world.medium.grow_tree();
+  sort_volumes(world);
   if (!world.medium.isotropic())
     world.medium.angles = std::make_shared<const ScatteringAngles>(world.medium.phases);
 }
@@ -325,8 +367,8 @@ World build_world(const Scene& scene, std::vector<DensityGrid> grids,
                       world.surfaces->set->trees_built()};
   const std::vector<LightSettings> lights = lights_at_camera(scene);
   add_air(lights, scene.camera.up, world);
-  if (world.surfaces) { // what stands about the medium throws light into it
-    world.targets = photon_targets(world.region, *world.surfaces->set);
+  choose_targets(world);
+  if (!world.targets.empty()) {
     add_aimed_lights(lights, scene.camera.up, found.notes, world);
   } else {
     world.lights = LightSet(lights, scene.camera.up, world.space, world.region, &found.notes);

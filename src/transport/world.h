@@ -20,7 +20,9 @@ struct World {
   LightSet lights;
   OccupiedRegion region;                    ///< of the medium
   std::shared_ptr<const Surfaces> surfaces; ///< null: there are none
-  std::vector<OccupiedRegion> targets;      ///< of photons, in a scene with surfaces
+  /// Targets of photons, in a scene with surfaces or nests: nests, the medium, what is around it.
+  std::vector<OccupiedRegion> targets;
+  std::size_t medium_targets = 0; ///< the first of these: nests and, last, the medium
   /// Towards what glows in the medium, where surfaces may see it; else null.
   std::shared_ptr<const EmissionDirections> emission;
   /// The air between the camera and what it sees first; null: none.

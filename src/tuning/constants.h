@@ -52,6 +52,11 @@ VDBEAM_TUNED(float, least_importance, 1.0f / 64);
 VDBEAM_TUNED(double, most_view_factor, 4);
 /// Camera rays along the picture's longer side that find the importance of cells.
 VDBEAM_TUNED(int, importance_rays_across, 96);
+/// Area of a volume over that of all smaller ones together from which on these are a nest, at which
+/// photons are aimed; and the factor by which extinctions within a part of the medium may differ:
+/// photons of thin fog are bright in a cloud, those of many parts are few.
+VDBEAM_TUNED(double, nest_area, 16);
+VDBEAM_TUNED(float, widest_part, 8);
 /// Weight windows (Booth and Hendricks 1984): a path that is worth less than the lowest value of
 /// the mean is ended with a chance that brings survivors to the mean, but is no less than the least
 /// one; a path that is worth more than the highest value is split in two.

@@ -29,7 +29,7 @@ double gathered_share(double depth_per_voxel) {
   DepthProfile profile;
   profile.build(world.medium, ray.segment, 1e-6f);
   std::vector<float> weights;
-  const PhotonMap::RayProfile table = ray_weights(world, ray, profile, {}, weights);
+  const PhotonMap::RayProfile table = ray_weights(world, ray, profile, {}, weights)[0];
   ProfileCursor cursor(profile);
   double gathered = 0, truth = 0;
   constexpr int steps = 4000;

@@ -36,7 +36,7 @@ protected:
     const EstimatorInput input = frame.input();
     const Vec3f position(space.point(photon));
     Kernel fitted =
-        KernelSupport(input, domain, true).fit(position, static_cast<float>(space.scale));
+        KernelSupport(input, domain, true).fit(position, 0, static_cast<float>(space.scale));
     fitted.radius /= static_cast<float>(space.scale);
     return fitted;
   }

@@ -171,14 +171,35 @@ TEST(MediumBlocks, CoverTheMedium) {
   scene.add_light(LightType::environment);
   const World world = scene.world();
   const MediumBlocks blocks(world.medium);
-  ASSERT_EQ(blocks.counts(), (Vec3<int>{64, 1, 1})); // a block is 150 / 64 cells wide
+  ASSERT_EQ(blocks.counts(0), (Vec3<int>{64, 1, 1})); // a block is 150 / 64 cells wide
   for (int x = 0; x < 64; ++x)
-    EXPECT_EQ(blocks.at(blocks.point({x, 0, 0}, Vec3f(0.5f))), static_cast<std::size_t>(x));
+    EXPECT_EQ(blocks.at(blocks.point(0, {x, 0, 0}, Vec3f(0.5f))), static_cast<std::size_t>(x));
   EXPECT_EQ(blocks.at(Vec3f(-1e3f)), 0u);
   EXPECT_EQ(blocks.at(Vec3f(1e3f)), 63u);
   // No finer than the cells.
   const World coarse = lit_from_behind().world();
-  EXPECT_EQ(MediumBlocks(coarse.medium).counts(), (Vec3<int>{8, 8, 8}));
+  EXPECT_EQ(MediumBlocks(coarse.medium).counts(0), (Vec3<int>{8, 8, 8}));
+}
+
+/// A small box in a wide one has a lattice of its own; a point belongs to one block of one lattice.
+TEST(MediumBlocks, ResolveNests) {
+  MemoryScene scene;
+  scene.add(uniform_field({16, 16, 16}, 1), box_map({16, 16, 16}, Vec3d(-20), Vec3d(20)));
+  scene.add(uniform_field({8, 8, 8}, 1), box_map({8, 8, 8}, Vec3d(-1), Vec3d(1)));
+  scene.add_light(LightType::environment);
+  const World world = scene.world();
+  ASSERT_EQ(world.medium.nests.size(), 1u);
+  const MediumBlocks blocks(world.medium);
+  ASSERT_EQ(blocks.lattices(), 2u);
+  EXPECT_EQ(blocks.counts(0), (Vec3<int>{8, 8, 8}));
+  EXPECT_EQ(blocks.size(), blocks.first(1) + 64 * 64 * 64);
+  const auto at = [&](const Vec3d& p) { return blocks.at(Vec3f(world.space.point(p))); };
+  EXPECT_EQ(at(Vec3d(-0.99)), 0u);
+  EXPECT_EQ(at(Vec3d(0.99)), blocks.first(1) - 1);
+  EXPECT_GE(at(Vec3d(1.01)), blocks.first(1));
+  EXPECT_EQ(at(Vec3d(100)), blocks.size() - 1);
+  EXPECT_EQ(blocks.at(blocks.point(1, {3, 5, 7}, Vec3f(0.5f))),
+            blocks.first(1) + (3 * 64 + 5) * 64 + 7);
 }
 
 } // namespace

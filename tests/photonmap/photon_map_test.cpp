@@ -63,14 +63,14 @@ TEST(PhotonMap, UniformPhotonsGiveTheirDensity) {
                   5 * std::sqrt(3.2 / static_cast<double>(counts.contributions)));
     }
     Rgb scattered;
-    map.query_point({0, 0, 0}, {0, 0, 1}, isotropic(), &scattered);
+    map.query_point({0, 0, 0}, {0, 0, 1}, 0, isotropic(), &scattered);
     EXPECT_NEAR(scattered.x * 4 * pi, 1, 5 * std::sqrt(4.0 / 200));
   }
 }
 
 /// Every other photon keeps half of its kernel, the rest all of it.
 void check_resized(const PhotonList& photons, float factor) {
-  const auto share = [](const Vec3f& photon, float radius) {
+  const auto share = [](const Vec3f& photon, std::size_t, float radius) {
     return Kernel{radius, 1, photon.x > 0 ? 1 : 1 - radius};
   };
   const auto build = [&](float radius) {
@@ -200,7 +200,7 @@ void expect_finite(const PhotonMap& map) {
   profile.phases = &isotropic();
   Rgb radiance(0), scattered(0);
   map.query_ray(profile, radiance);
-  map.query_point({0, 0, 0}, {0, 0, 1}, isotropic(), &scattered);
+  map.query_point({0, 0, 0}, {0, 0, 1}, 0, isotropic(), &scattered);
   for (int c = 0; c < 3; ++c)
     ASSERT_TRUE(std::isfinite(radiance[c]) && std::isfinite(scattered[c]));
 }
@@ -306,14 +306,14 @@ TEST(PhotonMap, KernelsKeepClearOfSurfaces) {
   radii.mode = KernelRadius::fixed;
   radii.fixed_radius = 0.1f;
   PhotonMap map = PhotonMap::build(cube_photons(20000), 1, radii, KernelShape::biweight);
-  const auto before_wall = [](const Vec3f& p, float radius) {
+  const auto before_wall = [](const Vec3f& p, std::size_t, float radius) {
     return clear_kernel(radius, std::abs(p.z - 0.5f));
   };
   const auto gathered = [&](float z, float cosine) {
     Rgb sum;
     const Vec3f direction{std::sqrt(1 - cosine * cosine), 0, cosine};
     std::vector<PhaseFunction> phases(1);
-    map.query_point({0.5f, 0.5f, z}, direction, phases, &sum);
+    map.query_point({0.5f, 0.5f, z}, direction, 0, phases, &sum);
     return sum.x;
   };
   const float far = gathered(0.1f, 1), near = gathered(0.45f, 1);

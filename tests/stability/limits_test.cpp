@@ -34,7 +34,7 @@ TEST(Memory, ABillionPhotonsAreRefused) {
   add_sky(scene);
   scene.scene.render.photons = 1000000000;
   EXPECT_EQ(complaint(scene.scene, 16 * gigabyte),
-            "scene: render.photons: a map of 1000000000 photons would take 63.0 GB of the 16.0 GB "
+            "scene: render.photons: a map of 1000000000 photons would take 64.0 GB of the 16.0 GB "
             "that this machine grants: use fewer photons and more passes, which give the same "
             "image");
   EXPECT_EQ(complaint(scene.scene, 128 * gigabyte), "");

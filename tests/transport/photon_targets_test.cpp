@@ -33,8 +33,8 @@ MemoryScene scene_of(LightType type, double ground) {
   return scene;
 }
 
-/// The sum of all stored powers, pass by pass.
-Samples power_of(const World& world, int passes) {
+/// The sum of all stored powers, of one part of the medium, pass by pass.
+Samples power_of(const World& world, int passes, int part = 0) {
   PhotonPassSettings settings;
   settings.paths = 4000;
   settings.skip_first_flight.assign(world.lights.size(), false);
@@ -42,8 +42,10 @@ Samples power_of(const World& world, int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     settings.key = {1, 1, static_cast<std::uint64_t>(pass)};
     double sum = 0;
-    for (const Rgb& power : trace_photons(world, settings).photons.power)
-      sum += static_cast<double>(mean_component(power));
+    const PhotonList photons = trace_photons(world, settings).photons;
+    for (std::size_t i = 0; i < photons.size(); ++i)
+      if (photons.part.empty() || photons.part[i] == part)
+        sum += static_cast<double>(mean_component(photons.power[i]));
     samples.add(sum);
   }
   return samples;
@@ -99,6 +101,59 @@ TEST(AimedLamp, BringsWhatItBringsWithoutAims) {
   expect_same_mean(aimed, without);
   EXPECT_LT(aimed.error() * 1.5, without.error());
 }
+
+/// A dense ball-sized box in a layer of fog that is forty times as wide.
+MemoryScene cloud_in_fog(LightType type, bool surfaces) {
+  MemoryScene scene;
+  VolumeSettings& cloud = scene.add_box({-0.5, -0.5, 0.5}, {0.5, 0.5, 1.5});
+  cloud.extinction = 5;
+  cloud.albedo = Rgb(0.9f);
+  cloud.phase = henyey_greenstein(0.5);
+  VolumeSettings& fog = scene.add_box({-20, -20, 0.1}, {20, 20, 1.2}); // the cloud looks out of it
+  fog.extinction = 0.1;
+  fog.albedo = Rgb(0.9f);
+  fog.phase = henyey_greenstein(0.7);
+  LightSettings& light = scene.add_light(type);
+  light.direction = {0.3, 0.2, -1};
+  light.position = {1.5, 1, 3};
+  light.angular_radius = 2;
+  if (surfaces)
+    surfaces::add_surface(scene, SurfaceShape::quad, surfaces::scaled(25), surfaces::diffuse(0.6));
+  return scene;
+}
+
+class AimedAtNests : public ::testing::TestWithParam<std::tuple<LightType, bool>> {};
+
+/// Fluence in the cloud and in the fog: whatever the aims, and whatever the fog and the ground
+/// send on, the same arrives.
+TEST_P(AimedAtNests, BringWhatTheyBringWithoutAims) {
+  const MemoryScene scene = cloud_in_fog(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  const World world = scene.world(), plain = without_aims(scene);
+  ASSERT_EQ(world.medium.nests.size(), 1u);
+  for (const int part : {0, 1}) {
+    SCOPED_TRACE(part);
+    const Samples aimed = power_of(world, 100, part), without = power_of(plain, 400, part);
+    expect_same_mean(aimed, without);
+    expect_power(aimed, 0.02 * aimed.mean());
+    expect_power(without, 0.1 * without.mean());
+  }
+}
+
+/// At equal numbers of paths the cloud gets at least four times the light paths' worth.
+TEST_P(AimedAtNests, FindTheCloud) {
+  const MemoryScene scene = cloud_in_fog(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  EXPECT_LT(2 * power_of(scene.world(), 100, 0).error(),
+            power_of(without_aims(scene), 100, 0).error());
+}
+
+INSTANTIATE_TEST_SUITE_P(Lights, AimedAtNests,
+                         ::testing::Combine(::testing::Values(LightType::distant, LightType::point,
+                                                              LightType::environment),
+                                            ::testing::Bool()),
+                         [](const auto& light) {
+                           return std::string(std::get<0>(light.param).name) +
+                                  (std::get<1>(light.param) ? "_over_ground" : "");
+                         });
 
 TEST(PhotonTargets, LieOneWithinTheOther) {
   const World world = scene_of(LightType::distant, 1000).world();

@@ -12,7 +12,7 @@ namespace vdbeam {
 
 namespace {
 
-/// Sums over the blocks of a volume: of what is measured, and of what it is measured by.
+/// Sums over the blocks of a lattice: of what is measured, and of what it is measured by.
 struct BlockSums {
   Vec3<int> counts;
   std::vector<double> value, measure, visits;
@@ -29,11 +29,11 @@ struct BlockSums {
 };
 
 /// The ratio of value to measure, block by block. Where visits are few it leans on the ratio over
-/// the 2 x 2 x 2 blocks around, and so on upwards.
-std::vector<double> ratios(const BlockSums& sums) {
+/// the 2 x 2 x 2 blocks around, and so on upwards; where there are none at all it is `unknown`.
+std::vector<double> ratios(const BlockSums& sums, double unknown) {
   const Vec3<int>& n = sums.counts;
   if (sums.value.size() == 1)
-    return {sums.measure[0] > 0 ? sums.value[0] / sums.measure[0] : 0};
+    return {sums.measure[0] > 0 ? sums.value[0] / sums.measure[0] : unknown};
   BlockSums coarse({(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2});
   const auto for_each_block = [&](const auto& visit) {
     std::size_t block = 0;
@@ -53,7 +53,7 @@ std::vector<double> ratios(const BlockSums& sums) {
     visits += sums.visits[block];
   });
   const double prior = visits > 0 ? tuning::guide_prior_visits * measure / visits : 0;
-  const std::vector<double> around = ratios(coarse);
+  const std::vector<double> around = ratios(coarse, unknown);
   std::vector<double> result(sums.value.size());
   for_each_block([&](std::size_t block, std::size_t parent) {
     const double m = sums.measure[block] + prior;
@@ -61,6 +61,42 @@ std::vector<double> ratios(const BlockSums& sums) {
   });
   return result;
 }
+
+/// The same over the blocks of all lattices.
+class MediumSums {
+public:
+  explicit MediumSums(const MediumBlocks& blocks) : blocks_(blocks) {
+    for (std::size_t i = 0; i < blocks.lattices(); ++i)
+      sums_.emplace_back(blocks.counts(i));
+  }
+
+  void add(std::size_t block, double value, double measure) {
+    std::size_t lattice = blocks_.lattices() - 1;
+    while (block < blocks_.first(lattice))
+      --lattice;
+    sums_[lattice].add(block - blocks_.first(lattice), value, measure);
+  }
+  BlockSums& operator[](std::size_t lattice) { return sums_[lattice]; }
+
+  /// Nests that were not visited have the mean of the medium around them.
+  std::vector<double> ratios() const {
+    double value = 0, measure = 0;
+    for (const double v : sums_.back().value)
+      value += v;
+    for (const double m : sums_.back().measure)
+      measure += m;
+    std::vector<double> result;
+    for (const BlockSums& lattice : sums_) {
+      const std::vector<double> part = vdbeam::ratios(lattice, measure > 0 ? value / measure : 0);
+      result.insert(result.end(), part.begin(), part.end());
+    }
+    return result;
+  }
+
+private:
+  const MediumBlocks& blocks_;
+  std::vector<BlockSums> sums_;
+};
 
 /// The pilot's photons, and where they lie.
 class Pilot {
@@ -78,58 +114,100 @@ public:
   /// Contribution of paths after they met a block, per unit of flux. Leaves in `brought`, by path
   /// and 0 at first, what all of its photons bring.
   std::vector<double> importance(const Rgb& albedo, std::vector<double>& brought) const {
-    BlockSums sums(blocks_.counts());
+    MediumSums sums(blocks_);
     const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not
     for (std::size_t i = photons_.size(); i-- > 0;) {
       double& later = brought[photons_.path[i]];
       sums.add(block_of_[i], later,
-               unit * max_component(Vec3d(photons_.power[i])) * majorant(photons_.position[i]));
+               unit * max_component(Vec3d(photons_.power[i])) *
+                   majorant(photons_.position[i], part(i)));
       later += values_[i];
     }
-    return ratios(sums);
+    return sums.ratios();
   }
 
 private:
   double power(std::size_t photon) const { return mean_component(Vec3d(photons_.power[photon])); }
-  double majorant(const Vec3f& point) const {
+  std::size_t part(std::size_t photon) const {
+    return photons_.part.empty() ? 0 : photons_.part[photon];
+  }
+  /// Sum of the majorants of a part's volumes.
+  double majorant(const Vec3f& point, std::size_t part) const {
     double sum = 0;
     medium_.for_each_at(point, [&](std::size_t v) {
-      sum += static_cast<double>(medium_.volumes[v].majorant(point));
+      if (medium_.parts[v] == part)
+        sum += static_cast<double>(medium_.volumes[v].majorant(point));
     });
     return sum;
+  }
+  bool has_medium(const Vec3f& point) const {
+    bool found = false;
+    medium_.for_each_at(
+        point, [&](std::size_t v) { found = found || medium_.volumes[v].majorant(point) > 0; });
+    return found;
   }
 
   /// Mean fluence where there is medium, by block and up to a factor.
   std::vector<double> fluence() const {
-    BlockSums sums(blocks_.counts());
+    MediumSums sums(blocks_);
     for (std::size_t i = 0; i < photons_.size(); ++i)
       sums.add(block_of_[i], power(i), 0);
-    const Vec3<int>& n = blocks_.counts();
-    tbb::parallel_for(0, n.x, [&](int x) {
-      for (int y = 0; y < n.y; ++y)
-        for (int z = 0; z < n.z; ++z)
-          sums.measure[(static_cast<std::size_t>(x) * n.y + y) * n.z + z] = filled({x, y, z});
-    });
-    return ratios(sums);
+    for (std::size_t lattice = 0; lattice < blocks_.lattices(); ++lattice) {
+      const Vec3<int>& n = blocks_.counts(lattice);
+      const double volume = volume_of_block(lattice);
+      tbb::parallel_for(0, n.x, [&](int x) {
+        for (int y = 0; y < n.y; ++y)
+          for (int z = 0; z < n.z; ++z) {
+            const std::size_t block = (static_cast<std::size_t>(x) * n.y + y) * n.z + z;
+            sums[lattice].measure[block] = volume * filled(lattice, {x, y, z}, block);
+          }
+      });
+    }
+    return sums.ratios();
   }
 
-  /// Part of a block in which there is medium, by its cells.
-  double filled(const Vec3<int>& block) const {
+  /// Mean extinction of each part of the medium where light is, up to a factor.
+  std::vector<double> mean_extinctions() const {
+    std::vector<double> flux(medium_.parts.count), powers(flux.size());
+    for (std::size_t i = 0; i < photons_.size(); ++i) {
+      flux[part(i)] += power(i) * majorant(photons_.position[i], part(i));
+      powers[part(i)] += power(i);
+    }
+    for (std::size_t p = 0; p < flux.size(); ++p)
+      flux[p] = medium_.parts.single() || !(powers[p] > 0) ? 1 : flux[p] / powers[p];
+    return flux;
+  }
+
+  /// Volume of a lattice's block over that of the medium's lattice.
+  double volume_of_block(std::size_t lattice) const {
+    const auto volume = [&](std::size_t of) {
+      const Vec3f edges =
+          blocks_.point(of, {1, 1, 1}, Vec3f(0)) - blocks_.point(of, {0, 0, 0}, Vec3f(0));
+      return static_cast<double>(edges.x) * static_cast<double>(edges.y) *
+             static_cast<double>(edges.z);
+    };
+    const double whole = volume(blocks_.lattices() - 1);
+    return whole > 0 ? volume(lattice) / whole : 1;
+  }
+
+  /// Part of a block in which there is medium, by its cells, and no smaller lattice.
+  double filled(std::size_t lattice, const Vec3<int>& at, std::size_t block) const {
     constexpr int across = 3;
     int count = 0;
     for (int i = 0; i < across * across * across; ++i) {
-      const Vec3<int> at{i / (across * across), i / across % across, i % across};
-      count += majorant(blocks_.point(block, (Vec3f(at) + Vec3f(0.5f)) / across)) > 0;
+      const Vec3<int> part{i / (across * across), i / across % across, i % across};
+      const Vec3f point = blocks_.point(lattice, at, (Vec3f(part) + Vec3f(0.5f)) / across);
+      count += blocks_.at(point) == blocks_.first(lattice) + block && has_medium(point);
     }
     return static_cast<double>(count) / (across * across * across);
   }
 
   void weigh(const std::vector<float>& view) {
-    const std::vector<double> around = fluence();
+    const std::vector<double> around = fluence(), extinction = mean_extinctions();
     double light = 0, space = 0;
     values_.resize(photons_.size());
     for (std::size_t i = 0; i < photons_.size(); ++i) {
-      values_[i] = power(i) * static_cast<double>(view[i]);
+      values_[i] = power(i) * extinction[part(i)] * static_cast<double>(view[i]);
       light += values_[i];
       space += around[block_of_[i]] > 0 ? values_[i] / around[block_of_[i]] : 0;
     }

@@ -2,6 +2,8 @@
 
 #include "math/sampling.h"
 
+#include <optional>
+
 namespace vdbeam {
 
 namespace {
@@ -61,12 +63,29 @@ public:
   double begin = infinity, end = -infinity;
   int intervals = 0;
 
-  void add(const DepthProfile& profile, double shift) {
+  /// The piece of a ray in which it crosses a part of the medium.
+  void add(const Medium& medium, std::size_t part, const DepthProfile& profile, double shift) {
     if (profile.empty())
       return;
-    begin = std::min(begin, profile.front() + shift);
-    end = std::max(end, profile.back() + shift);
-    pieces_ = std::max(pieces_, profile.knots());
+    std::size_t first = 0, last = profile.knots() - 1;
+    if (!medium.parts.single()) {
+      const auto crosses = [&](std::size_t piece) {
+        for (std::size_t v = 0; v < profile.volume_count(); ++v)
+          if (medium.parts[profile.volume(v)] == part &&
+              profile.tau(piece + 1, v) > profile.tau(piece, v))
+            return true;
+        return false;
+      };
+      while (first < last && !crosses(first))
+        ++first;
+      while (last > first && !crosses(last - 1))
+        --last;
+      if (first == last)
+        return;
+    }
+    begin = std::min(begin, profile.t(first) + shift);
+    end = std::max(end, profile.t(last) + shift);
+    pieces_ = std::max(pieces_, last - first + 1);
     sharpest_ = std::max(sharpest_, profile.sharpest_piece());
     deepest_ = std::max(deepest_, std::min(profile.total(profile.knots() - 1), 14.0f));
   }
@@ -115,8 +134,9 @@ int count_channels(const World& world, const WeightSettings& settings) {
 
 class WeightWriter {
 public:
-  WeightWriter(const World& world, const WeightSettings& settings)
-      : world_(world), settings_(settings), channels_(count_channels(world, settings)),
+  /// `part`: of the medium, whose photons are weighed.
+  WeightWriter(const World& world, std::size_t part, const WeightSettings& settings)
+      : world_(world), part_(part), settings_(settings), channels_(count_channels(world, settings)),
         colored_(world.medium.colored()) {}
 
   int channels() const { return channels_; }
@@ -152,6 +172,9 @@ public:
     air_ = Rgb(1);
     before_.assign(volumes, 0);
     after_.assign(volumes, 0);
+    cursor.move_to(begin);
+    for (std::size_t v = 0; v < volumes; ++v)
+      before_[v] = cursor.tau(v);
     albedos_.clear();
     for (std::size_t v = 0; v < volumes; ++v)
       albedos_.push_back(volume(v).albedo);
@@ -178,8 +201,10 @@ public:
   }
 
 private:
-  float* weight(const WeightTable& table, int group, int channel, int knot, int ray) {
-    const std::size_t row = static_cast<std::size_t>(group * channels_ + channel);
+  /// A weight of the group to which volume v of the profile belongs.
+  float* weight(const WeightTable& table, std::size_t v, int channel, int knot, int ray) {
+    const int of_group = volume(v).phase_index * channels_ + channel;
+    const auto row = static_cast<std::size_t>(of_group);
     const std::size_t at =
         row * static_cast<std::size_t>(table.knots) + static_cast<std::size_t>(knot);
     return table.weights + at * static_cast<std::size_t>(table.rays) + ray;
@@ -195,15 +220,16 @@ private:
   /// Volume v of the profile at hand.
   const Volume& volume(std::size_t v) const { return world_.medium.volumes[profile_->volume(v)]; }
   bool counts(std::size_t v) const {
-    return !settings_.only || (*settings_.only)[profile_->volume(v)];
+    const std::size_t number = profile_->volume(v);
+    return world_.medium.parts[number] == part_ && (!settings_.only || (*settings_.only)[number]);
   }
 
   /// Gives half of an interval's mean weight to the knot at either end. The knots at the ends of
   /// the table, or of the ray, which weigh over half an interval, get all of theirs: photons lie
   /// right up to the medium's border, so a ramp there would lose light.
-  void deposit(const WeightTable& table, int group, int channel, int interval, int ray,
+  void deposit(const WeightTable& table, std::size_t v, int channel, int interval, int ray,
                float mean) {
-    float* knot = weight(table, group, channel, interval, ray);
+    float* knot = weight(table, v, channel, interval, ray);
     knot[0] += interval == 0 ? mean : 0.5f * mean;
     knot[table.rays] += last_ ? mean : 0.5f * mean;
   }
@@ -231,35 +257,38 @@ private:
           continue;
         const float share = volume(v).channel_scale[c] * (after_[v] - before_[v]) / piece;
         const float albedo = settings_.albedo_in_power ? 1 : albedos_[v][c];
-        deposit(table, volume(v).phase_index, c, interval, ray, scattered * share * albedo);
+        deposit(table, v, c, interval, ray, scattered * share * albedo);
       }
     }
   }
 
   /// Scatter storage: the photon brings the scattered flux, the ray its transmittance; several
-  /// phase functions share by their volumes' part in the interval.
+  /// phase functions share by their volumes' part in the interval. Photons beside the medium count
+  /// as if they were in its first volume.
   void write_transmittance(const WeightTable& table, int knot, int ray) {
     const std::size_t volumes = profile_->volume_count();
-    const bool first = !settings_.only || (*settings_.only)[0];
     for (int c = 0; c < channels_; ++c) {
       float tau = 0, piece = 0;
+      std::optional<std::size_t> first;
       for (std::size_t v = 0; v < volumes; ++v) {
         tau += volume(v).channel_scale[c] * 0.5f * (before_[v] + after_[v]);
+        if (world_.medium.parts[profile_->volume(v)] != part_)
+          continue;
+        first = first.value_or(v);
         piece += albedos_[v][c] * volume(v).channel_scale[c] * (after_[v] - before_[v]);
       }
       const float tr = air_[c] * std::exp(-tau);
-      if (!(piece > 0)) {
-        *weight(table, world_.medium.volumes[0].phase_index, c, knot, ray) += first ? tr : 0;
-        continue;
-      }
       for (std::size_t v = 0; v < volumes; ++v)
-        if (counts(v))
-          *weight(table, volume(v).phase_index, c, knot, ray) +=
-              tr * albedos_[v][c] * volume(v).channel_scale[c] * (after_[v] - before_[v]) / piece;
+        if (counts(v) && (piece > 0 || v == first))
+          *weight(table, v, c, knot, ray) += piece > 0 ? tr * albedos_[v][c] *
+                                                             volume(v).channel_scale[c] *
+                                                             (after_[v] - before_[v]) / piece
+                                                       : tr;
     }
   }
 
   const World& world_;
+  std::size_t part_;
   const WeightSettings& settings_;
   const DepthProfile* profile_ = nullptr; ///< of the ray at hand
   int channels_;
@@ -271,23 +300,17 @@ private:
   float length_ = 1;
 };
 
-} // namespace
-
-void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
-                    const WeightSettings& settings, BeamTile& tile) {
-  fill_frame(world, camera, rays, tile);
-  tile.phases = &world.medium.gathered_phases();
-  WeightWriter writer(world, settings);
-  tile.weight_channels = writer.channels();
-  tile.weights.clear();
+/// The tables of one part of the medium, for each sub-tile.
+void fill_part(const World& world, std::size_t part, const TileRays& rays,
+               const WeightSettings& settings, BeamTile& tile) {
+  WeightWriter writer(world, part, settings);
   for (int subtile = 0; subtile < BeamTile::subtile_count; ++subtile) {
-    BeamTile::Profile& profile = tile.profiles[subtile];
+    const auto shift = [&](int i) { return tile.shift[static_cast<std::size_t>(i)]; };
+    BeamTile::Profile& profile = tile.profiles[static_cast<std::size_t>(subtile)];
     profile = {};
-    if (tile.own_origins && !lie_in_cone(tile, subtile))
-      align_starts(tile, subtile);
     KnotRange range;
     for (int i = 16 * subtile; i < 16 * (subtile + 1); ++i)
-      range.add(rays[i].profile, tile.shift[static_cast<std::size_t>(i)]);
+      range.add(world.medium, part, rays[i].profile, shift(i));
     if (range.empty())
       continue;
     range.choose(settings);
@@ -299,31 +322,58 @@ void fill_beam_tile(const World& world, const Camera& camera, const TileRays& ra
     for (int ray = 0; ray < 16; ++ray) {
       const int i = 16 * subtile + ray;
       if (!rays[i].profile.empty())
-        writer.write_ray(rays[i].camera, rays[i].profile, tile.shift[static_cast<std::size_t>(i)],
-                         range, table, ray);
+        writer.write_ray(rays[i].camera, rays[i].profile, shift(i), range, table, ray);
     }
   }
 }
 
-PhotonMap::RayProfile ray_weights(const World& world, const CameraRay& camera,
-                                  const DepthProfile& profile, const WeightSettings& settings,
-                                  std::vector<float>& weights) {
-  KnotRange range;
-  range.add(profile, camera.shift);
-  range.choose(settings);
-  WeightWriter writer(world, settings);
+} // namespace
+
+void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
+                    const WeightSettings& settings, BeamTile& tile) {
+  fill_frame(world, camera, rays, tile);
+  tile.phases = &world.medium.gathered_phases();
+  tile.weight_channels = count_channels(world, settings);
+  tile.weights.clear();
+  tile.parts.clear();
+  for (int subtile = 0; subtile < BeamTile::subtile_count && tile.own_origins; ++subtile)
+    if (!lie_in_cone(tile, subtile))
+      align_starts(tile, subtile);
+  for (std::size_t part = 0; part < world.medium.parts.count; ++part) {
+    fill_part(world, part, rays, settings, tile);
+    if (!world.medium.parts.single())
+      tile.parts.push_back(tile.profiles);
+  }
+}
+
+std::vector<PhotonMap::RayProfile> ray_weights(const World& world, const CameraRay& camera,
+                                               const DepthProfile& profile,
+                                               const WeightSettings& settings,
+                                               std::vector<float>& weights) {
   weights.clear();
-  const WeightTable table = writer.make_table(range, 1, weights);
-  writer.write_ray(camera, profile, camera.shift, range, table, 0);
-  PhotonMap::RayProfile result;
-  result.ray = camera.ray();
-  result.t_begin = static_cast<float>(table.t_begin - camera.shift);
-  result.step = table.step;
-  result.knots = table.knots;
-  result.t_end = camera.hit ? camera.segment.t_end : infinity;
-  result.weights = table.weights;
-  result.weight_channels = writer.channels();
-  result.phases = &world.medium.gathered_phases();
+  std::vector<PhotonMap::RayProfile> result(world.medium.parts.count);
+  std::vector<std::size_t> first;
+  for (std::size_t part = 0; part < result.size(); ++part) {
+    PhotonMap::RayProfile& of_part = result[part];
+    KnotRange range;
+    range.add(world.medium, part, profile, camera.shift);
+    first.push_back(weights.size());
+    if (range.empty())
+      continue;
+    range.choose(settings);
+    WeightWriter writer(world, part, settings);
+    const WeightTable table = writer.make_table(range, 1, weights);
+    writer.write_ray(camera, profile, camera.shift, range, table, 0);
+    of_part.ray = camera.ray();
+    of_part.t_begin = static_cast<float>(table.t_begin - camera.shift);
+    of_part.step = table.step;
+    of_part.knots = table.knots;
+    of_part.t_end = camera.hit ? camera.segment.t_end : infinity;
+    of_part.weight_channels = writer.channels();
+    of_part.phases = &world.medium.gathered_phases();
+  }
+  for (std::size_t part = 0; part < result.size(); ++part)
+    result[part].weights = weights.data() + first[part];
   return result;
 }
 

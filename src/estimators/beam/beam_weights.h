@@ -27,10 +27,11 @@ struct WeightSettings {
 void fill_beam_tile(const World& world, const Camera& camera, const TileRays& rays,
                     const WeightSettings& settings, BeamTile& tile);
 
-/// The same for a single ray, whose profile is not empty, as PhotonMap::query_ray takes it. The
-/// result points into `weights`.
-PhotonMap::RayProfile ray_weights(const World& world, const CameraRay& camera,
-                                  const DepthProfile& profile, const WeightSettings& settings,
-                                  std::vector<float>& weights);
+/// The same for a single ray, whose profile is not empty, as PhotonMap::query_ray takes it: by part
+/// of the medium. The result points into `weights`.
+std::vector<PhotonMap::RayProfile> ray_weights(const World& world, const CameraRay& camera,
+                                               const DepthProfile& profile,
+                                               const WeightSettings& settings,
+                                               std::vector<float>& weights);
 
 } // namespace vdbeam

@@ -67,16 +67,18 @@ void gather_pieces(const World& world, const PhotonMap& map, const TileRays& ray
     pieces = std::max(pieces, cut[i].deep ? cut[i].deep.count() : 0);
   }
   const std::vector<float> whole = tile.weights;
-  const std::size_t rows = tile.phases->size() * static_cast<std::size_t>(tile.weight_channels);
   const int channels = map.channels();
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     std::fill(tile.weights.begin(), tile.weights.end(), 0.0f);
     std::fill(tile.radiance.begin(), tile.radiance.end(), 0.0f);
-    for (std::size_t i = 0; i < cut.size(); ++i) {
-      const BeamTile::Profile& profile = tile.profiles[i / BeamTile::rays_per_subtile];
-      if (cut[i].deep && piece < cut[i].deep.count() && profile.knots > 0)
-        copy_weights(cut[i], piece, profile, rows, whole,
-                     static_cast<int>(i % BeamTile::rays_per_subtile), tile.weights);
+    for (std::size_t part = 0; part < tile.part_count(); ++part) {
+      tile.choose_part(part);
+      for (std::size_t i = 0; i < cut.size(); ++i) {
+        const BeamTile::Profile& profile = tile.profiles[i / BeamTile::rays_per_subtile];
+        if (cut[i].deep && piece < cut[i].deep.count() && profile.knots > 0)
+          copy_weights(cut[i], piece, profile, tile.rows(), whole,
+                       static_cast<int>(i % BeamTile::rays_per_subtile), tile.weights);
+      }
     }
     map.query(tile);
     for (std::size_t i = 0; i < cut.size(); ++i) {

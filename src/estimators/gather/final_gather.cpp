@@ -36,7 +36,6 @@ FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Maps&
                          const SurfaceLighting& surfaces)
     : world_(world), plan_(plan), maps_(maps), surfaces_(surfaces),
       shells_(world, plan.sampled_lights), lamps_(world, shells_),
-      far_enough_(maps.photons.mean_radius()),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
@@ -139,7 +138,7 @@ bool FinalGather::collide(Walk& walk, const Collision& hit) const {
   walk.segment.ray.origin = point;
   ++walk.scatterings;
   const bool last = walk.scatterings > tuning::most_scatterings_of_walk ||
-                    length(point - walk.beginning) >= far_enough_;
+                    length(point - walk.beginning) >= far_enough(volume);
   if (last)
     gather_photons(walk, volume, maps_.photons);
   else if (maps_.caustics)
@@ -227,11 +226,13 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
 void FinalGather::gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
   const auto phase = static_cast<std::size_t>(volume.phase_index);
+  const std::size_t part = part_of(volume);
   std::vector<Rgb> gathered(phases.size()), groups;
   const Ray& at = walk.segment.ray;
   const auto query = [&](const PhotonMap& photons, std::vector<Rgb>* of_groups) {
     walk.counts.contributions +=
-        photons.query_point(at.origin, at.direction, phases, gathered.data(), nullptr, of_groups)
+        photons
+            .query_point(at.origin, at.direction, part, phases, gathered.data(), nullptr, of_groups)
             .contributions;
   };
   const Rgb albedo = plan_.albedo_in_power ? Rgb(1) : volume.albedo_at(at.origin);

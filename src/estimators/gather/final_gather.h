@@ -62,6 +62,13 @@ private:
   bool meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const;
+  std::size_t part_of(const Volume& volume) const {
+    return world_.medium.parts[static_cast<std::size_t>(&volume - world_.medium.volumes.data())];
+  }
+  /// Distance from its beginning at which a walk that collides in a volume gathers and ends.
+  float far_enough(const Volume& volume) const {
+    return maps_.photons.mean_radius(part_of(volume));
+  }
 
   const World& world_;
   const PhotonPlan& plan_;
@@ -69,7 +76,6 @@ private:
   const SurfaceLighting& surfaces_;
   const LampShells shells_; ///< flights find the light of lamps near by, shadow rays that of others
   const LampDirections lamps_;
-  float far_enough_; ///< distance from its beginning at which a walk ends
   bool meets_light_; ///< flights may meet light before they end
 };
 

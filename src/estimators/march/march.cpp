@@ -34,8 +34,8 @@ public:
     ProfileCursor cursor(profile);
     profile_ = &profile;
     std::vector<float> before(profile.volume_count()), after(profile.volume_count());
-    gathered_.resize(medium.phases.size());
-    straight_.resize(medium.phases.size());
+    gathered_.resize(medium.parts.count * medium.phases.size());
+    straight_.resize(gathered_.size());
     straight = {};
     groups_.clear();
     GroupedLight sum;
@@ -46,11 +46,8 @@ public:
         after[v] = cursor.tau(v);
       if (reach_ > 0 || before != after) {
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
-        const QueryCounts c = photons_.map().query_point(
-            camera.ray().at(t), camera.ray().direction, medium.gathered_phases(), gathered_.data(),
-            straight_.data(), photons_.map().groups() > 0 ? &groups_ : nullptr);
+        counts.contributions += query(camera.ray().at(t), camera.ray().direction);
         ++counts.lookups;
-        counts.contributions += c.contributions;
         find_albedos(camera.ray().at(t));
         air_ = profile.air().left(t);
         const Rgb light = weigh(before, after, step, gathered_.data(), sink.volumes);
@@ -70,6 +67,30 @@ public:
 private:
   /// Volume v of the profile at hand.
   const Volume& volume(std::size_t v) const { return world_.medium.volumes[profile_->volume(v)]; }
+  std::size_t group(std::size_t v) const {
+    return world_.medium.parts[profile_->volume(v)] * world_.medium.phases.size() +
+           static_cast<std::size_t>(volume(v).phase_index);
+  }
+
+  /// Fills what is gathered by [part][phase function], and by [group] before that. Returns the
+  /// number of contributions.
+  std::uint64_t query(const Vec3f& point, const Vec3f& direction) {
+    const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
+    const PhotonMap& map = photons_.map();
+    const auto groups = static_cast<std::size_t>(map.groups());
+    groups_.assign(groups * gathered_.size(), {});
+    std::vector<Rgb> of_part;
+    QueryCounts counts;
+    for (std::size_t part = 0; part < world_.medium.parts.count; ++part) {
+      const std::size_t first = part * phases.size();
+      counts += map.query_point(point, direction, part, phases, gathered_.data() + first,
+                                straight_.data() + first, groups > 0 ? &of_part : nullptr);
+      for (std::size_t g = 0; g < groups; ++g)
+        std::copy_n(of_part.begin() + static_cast<std::ptrdiff_t>(g * phases.size()), phases.size(),
+                    groups_.begin() + static_cast<std::ptrdiff_t>(g * gathered_.size() + first));
+    }
+    return counts.contributions;
+  }
 
   /// Scattering coefficient at a point, where photons do not contain it.
   void find_albedos(const Vec3f& point) {
@@ -95,7 +116,7 @@ private:
         const float share = piece[c] > 0
                                 ? volume(v).channel_scale[c] * (after[v] - before[v]) / piece[c]
                                 : 1 / static_cast<float>(volumes);
-        const float light = whole * share * albedos_[v][c] * gathered[volume(v).phase_index][c];
+        const float light = whole * share * albedos_[v][c] * gathered[group(v)][c];
         sum[c] += light;
         if (of_volumes) {
           Rgb of_channel;
