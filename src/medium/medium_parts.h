@@ -8,9 +8,8 @@
 namespace vdbeam {
 
 /// Sorts volumes into parts of like extinction: a cloud and the thin fog around it. Photons of each
-/// part are kept apart and count with its sigma_s alone. A photon of thin fog stands for so much
-/// more space than one of a cloud that within the cloud, with the cloud's sigma_s, it would be a
-/// bright disc.
+/// part are kept apart and count with its sigma_s alone. A photon of thin fog stands for far more
+/// space than one of a cloud; with the cloud's sigma_s it would be a bright disc.
 struct MediumParts {
   std::vector<std::uint8_t> of; ///< part of each volume
   std::size_t count = 1;

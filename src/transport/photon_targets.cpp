@@ -104,8 +104,8 @@ double distance_to_light(const World& world, const Light& light, const EmittedPh
 }
 
 /// Whether a line meets the sphere around a region, from a distance `back` before its origin on.
-/// Nests are met there, not at their cells: what the medium around them scatters into the sphere is
-/// aimed, too. A sphere may reach beyond the medium.
+/// Nests are met there, not at their cells: light that the medium around them scatters into the
+/// sphere is aimed, too. A sphere may reach beyond the medium.
 bool meets_sphere(const OccupiedRegion& region, const Ray& ray, double back) {
   const Vec3d to_center = Vec3d(region.center) - Vec3d(ray.origin);
   const double along = dot(to_center, Vec3d(ray.direction));

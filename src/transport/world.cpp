@@ -281,7 +281,7 @@ OccupiedRegion region_of(const World& world, const std::vector<std::size_t>& nes
   return region;
 }
 
-/// What photons are aimed at where they would hardly find it: nests, and what surfaces stand about.
+/// Chooses the targets of photons where they need any: nests, the medium and surfaces.
 void choose_targets(World& world) {
   if (!world.surfaces && world.medium.nests.empty())
     return;

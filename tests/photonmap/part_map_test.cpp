@@ -114,13 +114,7 @@ TEST_F(PartsOfMap, RaysHaveWeightsForEach) {
 }
 
 TEST_F(PartsOfMap, TilesHaveWeightsForEach) {
-  oracle::TileOptions options;
-  options.reference = {0, 0, 0};
-  options.distance = 3;
-  options.pixel = 0.004;
-  options.t_begin = -1;
-  options.t_end = 1;
-  const BeamTile one = oracle::make_tile(options, phases_);
+  const BeamTile one = oracle::cube_tile(phases_);
   // The same knots for each part, with weights multiplied by its number.
   BeamTile all = one;
   all.weights.clear();

@@ -26,16 +26,6 @@ const std::vector<PhaseFunction>& isotropic() {
   return phases;
 }
 
-BeamTile cube_tile(const std::vector<PhaseFunction>& phases) {
-  oracle::TileOptions options;
-  options.reference = {0, 0, 0};
-  options.distance = 3;
-  options.pixel = 0.004;
-  options.t_begin = -1;
-  options.t_end = 1;
-  return oracle::make_tile(options, phases);
-}
-
 /// A ray through the middle of the cube sees 1 photon per unit area and length, so its estimate is
 /// the integral of the weights, 1, over 4 pi. With n kernel-weighted photons the relative standard
 /// error is sqrt(pi integral k^2 / n): 1 for the constant kernel, 9/5 the variance for the
@@ -151,7 +141,7 @@ TEST(PhotonMap, ThreadsDoNotChangeABit) {
     radii.neighbours = 150;
     const PhotonMap map =
         PhotonMap::build(cube_photons(60000, true), 3, radii, KernelShape::biweight);
-    BeamTile tile = cube_tile(phases);
+    BeamTile tile = oracle::cube_tile(phases);
     map.query(tile);
     if (first.empty())
       first = tile.radiance;
@@ -164,10 +154,10 @@ TEST(PhotonMap, TargetsAgree) {
   RadiusSettings radii;
   const PhotonMap map =
       PhotonMap::build(cube_photons(20000, true), 1, radii, KernelShape::biweight);
-  BeamTile first = cube_tile(phases);
+  BeamTile first = oracle::cube_tile(phases);
   map.query(first);
   oracle::on_every_target([&] {
-    BeamTile tile = cube_tile(phases);
+    BeamTile tile = oracle::cube_tile(phases);
     map.query(tile);
     for (std::size_t r = 0; r < BeamTile::ray_count; ++r)
       EXPECT_NEAR(tile.radiance[r], first.radiance[r], 2e-5 * first.radiance[r]);
@@ -177,7 +167,7 @@ TEST(PhotonMap, TargetsAgree) {
 /// The query adds; it does not replace.
 TEST(PhotonMap, QueriesAdd) {
   const PhotonMap map = PhotonMap::build(cube_photons(3000), 1, {}, KernelShape::biweight);
-  BeamTile once = cube_tile(isotropic()), twice = cube_tile(isotropic());
+  BeamTile once = oracle::cube_tile(isotropic()), twice = oracle::cube_tile(isotropic());
   map.query(once);
   map.query(twice);
   map.query(twice);
@@ -187,7 +177,7 @@ TEST(PhotonMap, QueriesAdd) {
 
 /// All kinds of query on a map; every result finite, contributions or not.
 void expect_finite(const PhotonMap& map) {
-  BeamTile tile = cube_tile(isotropic());
+  BeamTile tile = oracle::cube_tile(isotropic());
   map.query(tile);
   for (const float value : tile.radiance)
     ASSERT_TRUE(std::isfinite(value));
@@ -254,7 +244,7 @@ TEST(PhotonMapLimits, KernelLargerThanTheVolume) {
   radii.mode = KernelRadius::fixed;
   radii.fixed_radius = 100;
   const PhotonMap map = PhotonMap::build(cube_photons(500), 1, radii, KernelShape::constant);
-  BeamTile tile = cube_tile(isotropic());
+  BeamTile tile = oracle::cube_tile(isotropic());
   for (float& w : tile.weights)
     w = 1;
   const QueryCounts counts = map.query(tile);
@@ -277,7 +267,7 @@ TEST(PhotonMapLimits, NonFinitePhotonsAreDropped) {
 /// Weights that are zero, denormal, or missing; rays without direction; a step of zero.
 TEST(PhotonMapLimits, OddTiles) {
   const PhotonMap map = PhotonMap::build(cube_photons(3000), 1, {}, KernelShape::biweight);
-  BeamTile tile = cube_tile(isotropic());
+  BeamTile tile = oracle::cube_tile(isotropic());
   for (float& w : tile.weights)
     w = 1e-42f;
   tile.profiles[3].knots = 0;
@@ -294,7 +284,7 @@ TEST(PhotonMapLimits, OddTiles) {
     else
       EXPECT_GT(tile.radiance[r], 0);
   }
-  BeamTile dark = cube_tile(isotropic());
+  BeamTile dark = oracle::cube_tile(isotropic());
   std::fill(dark.weights.begin(), dark.weights.end(), 0.0f);
   EXPECT_EQ(map.query(dark).candidates, 0u);
 }

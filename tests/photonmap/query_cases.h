@@ -30,6 +30,17 @@ inline PhaseFunction rayleigh() {
   return PhaseFunction(settings);
 }
 
+/// Rays through the cube about the origin.
+inline BeamTile cube_tile(const std::vector<PhaseFunction>& phases) {
+  TileOptions options;
+  options.reference = {0, 0, 0};
+  options.distance = 3;
+  options.pixel = 0.004;
+  options.t_begin = -1;
+  options.t_end = 1;
+  return make_tile(options, phases);
+}
+
 /// Runs `check` on every SIMD target that this machine has.
 inline void on_every_target(const std::function<void()>& check) {
   for (const std::int64_t target : simd_targets()) {
