@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Checks the sources: tools/lint.sh [--format | --tidy] [FILE...]; both and all files by default.
 # --format checks layout, the style of the text and the format of C++ files.
-# Needs clang-format and clang-tidy 14 (apt-get install clang-format clang-tidy); --tidy also needs a
-# configured release build (tools/test.sh). Changes nothing.
+# Needs clang-format and clang-tidy 14 (apt-get install clang-format clang-tidy); --tidy also needs what
+# tools/setup.sh installs. Changes no source.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,9 +26,8 @@ fi
 if ((tidy)); then
   mapfile -t sources < <(printf '%s\n' "${files[@]}" | grep '^src/.*\.cpp$')
   # g++ alone can read the header that it precompiled, and knows some of the flags that the build uses.
-  mkdir -p build/tidy
-  sed -E 's/-Winvalid-pch -include [^ ]*cmake_pch\.hxx//g' build/release/compile_commands.json \
-    > build/tidy/compile_commands.json
+  cmake --preset release -B build/tidy -DCMAKE_UNITY_BUILD=OFF --log-level=WARNING
+  sed -E -i 's/-Winvalid-pch -include [^ ]*cmake_pch\.hxx//g' build/tidy/compile_commands.json
   printf '%s\0' "${sources[@]}" | xargs -0 -n 1 -P "$(nproc)" \
     "$(command -v clang-tidy-14 || echo clang-tidy)" -p build/tidy --quiet \
     --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument || status=1

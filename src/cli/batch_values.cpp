@@ -15,8 +15,8 @@
 namespace vdbeam::cli {
 namespace {
 
-[[noreturn]] void fail(const std::string& option, const std::string& text,
-                       const std::string& right) {
+[[noreturn]] void reject(const std::string& option, const std::string& text,
+                         const std::string& right) {
   throw InputError(one_line(fmt::format("{} {}: must {}", option, text, right)));
 }
 
@@ -46,7 +46,7 @@ std::pair<double, int> parse_interval(const std::string& option, const std::stri
     return {0, passes->front()};
   const double seconds = passes ? 0 : parse_duration(text).value_or(0);
   if (!(seconds > 0))
-    fail(
+    reject(
         option, text,
         fmt::format("be a time like {}, or a number of passes{}", examples, duration_remedy(text)));
   return {seconds, 0};
@@ -58,8 +58,8 @@ PassRange parse_pass_range(const std::string& text) {
   const auto numbers = parse_numbers(text, '-');
   if (!numbers || numbers->empty() || numbers->size() > 2 || numbers->back() < numbers->front() ||
       numbers->back() >= most_passes)
-    fail("--pass-range", text,
-         fmt::format("look like 0-63: passes from 0, both ends included, below {}", most_passes));
+    reject("--pass-range", text,
+           fmt::format("look like 0-63: passes from 0, both ends included, below {}", most_passes));
   return {numbers->front(), numbers->back()};
 }
 
@@ -67,7 +67,7 @@ PixelRegion parse_region(const std::string& text) {
   const auto numbers = parse_numbers(text, ',', -16384);
   if (!numbers || numbers->size() != 4 || (*numbers)[2] <= (*numbers)[0] ||
       (*numbers)[3] <= (*numbers)[1])
-    fail("--region", text, "look like x0,y0,x1,y1 with x0 < x1 and y0 < y1, in pixels");
+    reject("--region", text, "look like x0,y0,x1,y1 with x0 < x1 and y0 < y1, in pixels");
   return {(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
 }
 

@@ -1,6 +1,7 @@
 #include "vdbeam/metrics.h"
 
 #include "compare/flip.h"
+#include "errors/history_means.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr double mrse_offset = 0.01;
 /// Noise of the mean of two references (as MRSE) above which pixels are weighted by a local mean.
 constexpr double noise_that_weighs = 0.003;
 constexpr double worst_fraction = 0.001; ///< of the pixels, left out of relMSE

@@ -14,15 +14,17 @@ namespace {
 
 /// Line that the signal handler writes. Whoever finds it held does without: the handler skips a
 /// beat, the program a change.
-std::array<char, 512> text;
-std::size_t length = 0;
-std::atomic_flag held = ATOMIC_FLAG_INIT;
+struct Line {
+  std::array<char, 512> text;
+  std::size_t length = 0;
+  std::atomic_flag held = ATOMIC_FLAG_INIT;
+} beat_line;
 
 extern "C" void beat(int) {
   const int error = errno;
-  if (!held.test_and_set()) {
-    log_from_signal({text.data(), length});
-    held.clear();
+  if (!beat_line.held.test_and_set()) {
+    log_from_signal({beat_line.text.data(), beat_line.length});
+    beat_line.held.clear();
   }
   errno = error;
 }
@@ -50,13 +52,13 @@ Heartbeat::~Heartbeat() {
 }
 
 void Heartbeat::set(const std::string& line) {
-  if (held.test_and_set())
+  if (beat_line.held.test_and_set())
     return;
-  length = std::min(line.size(), text.size() - 1);
-  std::transform(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(length), text.begin(),
-                 [](char c) { return c == '\n' || c == '\r' ? ' ' : c; });
-  text[length++] = '\n';
-  held.clear();
+  beat_line.length = std::min(line.size(), beat_line.text.size() - 1);
+  std::transform(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(beat_line.length),
+                 beat_line.text.begin(), [](char c) { return c == '\n' || c == '\r' ? ' ' : c; });
+  beat_line.text[beat_line.length++] = '\n';
+  beat_line.held.clear();
 }
 
 void Heartbeat::begin_anew() {

@@ -14,8 +14,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
 /// Value and standard error by leaving out each batch in turn (jackknife).
 template <class Value>
 std::pair<double, double> jackknife(std::size_t count, const Value& without) {
@@ -153,7 +151,7 @@ std::pair<double, double> common_square(const std::vector<Batch>& batches,
           weight += all.weights[i * count + j];
         }
     all_weights = std::max(all_weights, weight);
-    return weight > 0 ? sum / weight : unknown;
+    return weight > 0 ? sum / weight : BiasStatistics::unknown;
   });
   return {value, std::max(error, std::sqrt(all.squares) / all_weights)};
 }
@@ -165,7 +163,7 @@ std::pair<double, double> truncation_square(const PassHistory& passes) {
   const std::size_t count = history.batches();
   const double truncation = mean_truncation(history);
   if (count < fewest_batches || !(truncation > 0))
-    return {unknown, unknown};
+    return {BiasStatistics::unknown, BiasStatistics::unknown};
   std::vector<Differences> kernels(count), both(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t batch) {
     kernels[batch] = compare_kernels(history, batch);
@@ -197,7 +195,8 @@ BiasStatistics bias_statistics(const PassHistory& history) {
         difference += probes[i].difference;
         brightness += probes[i].brightness;
       }
-    return brightness != difference ? difference / (brightness - difference) : unknown;
+    return brightness != difference ? difference / (brightness - difference)
+                                    : BiasStatistics::unknown;
   });
   const auto [mrse, mrse_error] = common_square(probes, pair_weight);
   const auto [blur, blur_error] = common_square(kernels, pair_weight);

@@ -13,7 +13,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t batches_of_interval = fewest_batches;
 
 /// 97.5 % quantile of the normal distribution.
@@ -219,7 +218,8 @@ ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
   estimate.noise = noise * statistics.correction;
   const double batches = statistics.batches;
   const double t = student(std::max(1.0, batches - 1));
-  estimate.bias_mrse = estimate.bias = estimate.bias_margin = unbiased ? 0 : unknown;
+  estimate.bias_mrse = estimate.bias = estimate.bias_margin =
+      unbiased ? 0 : BiasStatistics::unknown;
   SquaredBias part;
   if (!unbiased) {
     part = squared_bias(bias, estimate.noise, t);
@@ -228,7 +228,7 @@ ErrorEstimate combine_errors(double noise, const NoiseStatistics& statistics,
     estimate.bias_margin = t * bias.bias_error;
   }
   estimate.mrse = estimate.noise + part.value;
-  estimate.low = estimate.high = unknown;
+  estimate.low = estimate.high = BiasStatistics::unknown;
   if (statistics.batches < static_cast<int>(batches_of_interval))
     return estimate;
   const double factor = std::exp(student(2 * (batches - 1)) * statistics.spread);

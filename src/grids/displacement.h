@@ -36,7 +36,7 @@ public:
       step = std::max(step, length(to_velocity_.vector(along)));
     }
     int stride = 1;
-    while (stride < DensityField::cell_width && 2 * stride * step < 1 + 1e-6)
+    while (stride < cell_width && 2 * stride * step < 1 + 1e-6)
       stride *= 2;
     return stride;
   }

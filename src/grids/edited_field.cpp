@@ -8,8 +8,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int brick_width = DensityField::brick_width;
 constexpr int brick_size = DensityField::brick_size;
 
 class Editor {

@@ -8,9 +8,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int brick_width = DensityField::brick_width;
-
 /// Calls visit(cell, offset in the table) for all cells.
 template <class Visit>
 void for_each_cell(const Vec3<int>& cells, const Visit& visit) {

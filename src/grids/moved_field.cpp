@@ -12,8 +12,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int brick_width = DensityField::brick_width;
 constexpr double most_cells = 1 << 28;
 
 /// Where the values of a cell go; a box that is empty where it has none.
@@ -45,7 +43,7 @@ CellRange cells_around(const Boxd& box) {
 }
 
 template <class Visit>
-void for_each_cell(const Vec3<int>& n, const Visit& visit) {
+void for_each_cell_in_parallel(const Vec3<int>& n, const Visit& visit) {
   tbb::parallel_for(0, n.x * n.y, [&](int column) {
     for (int k = 0; k < n.z; ++k)
       visit(column / n.y, column % n.y, k);
@@ -94,7 +92,7 @@ public:
     if (bricks_ * DensityField::brick_size * sizeof(float) > limits.bytes)
       throw FrameError(label + ": moved by its velocity it needs more memory than there may be");
     std::vector<float> values(bricks_ * DensityField::brick_size);
-    for_each_cell(range_.counts(), [&](int i, int j, int k) {
+    for_each_cell_in_parallel(range_.counts(), [&](int i, int j, int k) {
       const std::int32_t brick = table_[offset(i, j, k)];
       if (brick < 0)
         return;
@@ -125,7 +123,7 @@ private:
   void find_targets(const std::string& label) {
     const Vec3<int>& n = field_.cell_counts();
     std::vector<Boxd> boxes(static_cast<std::size_t>(n.x) * n.y * n.z);
-    for_each_cell(n, [&](int i, int j, int k) {
+    for_each_cell_in_parallel(n, [&](int i, int j, int k) {
       boxes[field_.cell_offset(i, j, k)] = destination(field_, motion_, i, j, k);
     });
     Boxd all;
@@ -155,7 +153,7 @@ private:
   void drop_targets_of_nothing() {
     constexpr double far = 1e15, slack = 2 * Displacement::near_enough;
     const Boxd anywhere = motion_.bounds({Vec3d(-far), Vec3d(far)});
-    for_each_cell(range_.counts(), [&](int i, int j, int k) {
+    for_each_cell_in_parallel(range_.counts(), [&](int i, int j, int k) {
       std::int32_t& cell = table_[offset(i, j, k)];
       if (cell == DensityField::empty_cell)
         return;

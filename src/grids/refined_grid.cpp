@@ -12,9 +12,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int brick_width = DensityField::brick_width;
-
 /// Old lattice points that a new brick needs along an axis: half of its own number, plus the
 /// support of the spline.
 constexpr int block_width = brick_width / 2 + 4;

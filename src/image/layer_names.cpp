@@ -12,16 +12,16 @@ namespace {
 struct LayerName {
   std::string_view ours, arnold, cycles;
 };
-constexpr LayerName names[] = {{"volume_direct", "volume_direct", "VolumeDir"},
-                               {"volume_indirect", "volume_indirect", "VolumeInd"},
-                               {"volume_emission", "emission", "Emit"},
-                               {"background", "background", "Env"},
-                               {"depth", "", "Depth"}, // Arnold's is the channel Z itself
-                               {"depth_near", "volume_Z", ""},
-                               {"denoising_albedo", "albedo", "Denoising Albedo"},
-                               {"denoising_normal", "N", "Denoising Normal"},
-                               {"position", "P", "Position"},
-                               {"motion", "motionvector", "Vector"}};
+constexpr LayerName layer_names[] = {{"volume_direct", "volume_direct", "VolumeDir"},
+                                     {"volume_indirect", "volume_indirect", "VolumeInd"},
+                                     {"volume_emission", "emission", "Emit"},
+                                     {"background", "background", "Env"},
+                                     {"depth", "", "Depth"}, // Arnold's is the channel Z itself
+                                     {"depth_near", "volume_Z", ""},
+                                     {"denoising_albedo", "albedo", "Denoising Albedo"},
+                                     {"denoising_normal", "N", "Denoising Normal"},
+                                     {"position", "P", "Position"},
+                                     {"motion", "motionvector", "Vector"}};
 constexpr std::string_view view_layer = "ViewLayer.";
 
 /// The layer that Arnold or Cycles would write.
@@ -29,7 +29,7 @@ std::string renamed(const std::string& layer, bool arnold) {
   if (layer.starts_with("CryptoObject")) // which its attributes name
     return layer;
   std::string name = layer;
-  for (const LayerName& row : names)
+  for (const LayerName& row : layer_names)
     if (row.ours == layer && !(arnold ? row.arnold : row.cycles).empty())
       name = arnold ? row.arnold : row.cycles;
   if (layer.starts_with("light_"))

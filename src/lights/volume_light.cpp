@@ -8,12 +8,11 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int width = DensityField::brick_width;
-
 /// Sum over the corners of a cube: 8 times the mean of the trilinear field in it.
 Rgb corner_sum(const Rgb* p) {
-  return p[0] + p[1] + p[width] + p[width + 1] + p[width * width] + p[width * width + 1] +
-         p[width * width + width] + p[width * width + width + 1];
+  return p[0] + p[1] + p[brick_width] + p[brick_width + 1] + p[brick_width * brick_width] +
+         p[brick_width * brick_width + 1] + p[brick_width * brick_width + brick_width] +
+         p[brick_width * brick_width + brick_width + 1];
 }
 
 } // namespace
@@ -41,8 +40,9 @@ VolumeLight::VolumeLight(const Emitter& emitter)
         }
         Vec3d sum;
         for (int c = 0; c < cube_count; ++c)
-          sum += Vec3d(corner_sum(field.brick(entry) + ((c >> 6) * width + ((c >> 3) & 7)) * width +
-                                  (c & 7)));
+          sum +=
+              Vec3d(corner_sum(field.brick(entry) +
+                               ((c >> 6) * brick_width + ((c >> 3) & 7)) * brick_width + (c & 7)));
         total += sum / 8.0;
       }
   power_ = Rgb(total * Vec3d(emitter_.strength) * (4 * static_cast<double>(pi) * cube_volume_));
@@ -53,7 +53,8 @@ void VolumeLight::sum_brick(std::int32_t brick) {
   float* sums = brick_sums_.data() + static_cast<std::size_t>(brick) * cube_count;
   double sum = 0;
   for (int c = 0; c < cube_count; ++c) {
-    const Rgb corners = corner_sum(values + ((c >> 6) * width + ((c >> 3) & 7)) * width + (c & 7));
+    const Rgb corners =
+        corner_sum(values + ((c >> 6) * brick_width + ((c >> 3) & 7)) * brick_width + (c & 7));
     sum += static_cast<double>(mean_component(corners * emitter_.strength)) / 8;
     sums[c] = static_cast<float>(sum);
   }

@@ -30,7 +30,7 @@ private:
     Vec3<int> place;
     double end = 0;
   };
-  static constexpr int cubes = DensityField::cell_width;
+  static constexpr int cubes = cell_width;
   static constexpr int cube_count = cubes * cubes * cubes;
 
   void sum_brick(std::int32_t brick);

@@ -50,9 +50,9 @@ private:
   bool narrow_;
 };
 
-constexpr std::string_view keys[] = {"reflectance",     "roughness",      "roughness_texture",
-                                     "texture_wrap",    "opacity",        "opacity_cutoff",
-                                     "opacity_texture", "normal_texture", "normal_scale"};
+constexpr std::string_view conductor_keys[] = {
+    "reflectance",    "roughness",       "roughness_texture", "texture_wrap", "opacity",
+    "opacity_cutoff", "opacity_texture", "normal_texture",    "normal_scale"};
 /// Where the scene gives none: metal is a little rough.
 constexpr double default_roughness = 0.2;
 
@@ -61,7 +61,7 @@ constexpr double default_roughness = 0.2;
 const MaterialKind conductor_material{
     .name = "conductor",
     .help = "metal, smooth or rough (GGX)",
-    .keys = keys,
+    .keys = conductor_keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
     .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {
       const double roughness = settings.roughness.value_or(default_roughness);

@@ -59,15 +59,15 @@ private:
   bool solid_;
 };
 
-constexpr std::string_view keys[] = {"roughness",      "ior",          "absorption",  "solid",
-                                     "normal_texture", "normal_scale", "texture_wrap"};
+constexpr std::string_view dielectric_keys[] = {
+    "roughness", "ior", "absorption", "solid", "normal_texture", "normal_scale", "texture_wrap"};
 
 } // namespace
 
 const MaterialKind dielectric_material{
     .name = "dielectric",
     .help = "glass or water, smooth or rough (GGX): reflects and refracts",
-    .keys = keys,
+    .keys = dielectric_keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.absorption); },
     .make = [](const MaterialSettings& settings, double scale) -> std::unique_ptr<Material> {
       const double roughness = settings.roughness.value_or(0); // glass is smooth

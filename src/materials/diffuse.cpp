@@ -6,9 +6,9 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"albedo",         "texture",         "texture_wrap",
-                                     "opacity",        "opacity_texture", "opacity_cutoff",
-                                     "normal_texture", "normal_scale"};
+constexpr std::string_view diffuse_keys[] = {"albedo",         "texture",         "texture_wrap",
+                                             "opacity",        "opacity_texture", "opacity_cutoff",
+                                             "normal_texture", "normal_scale"};
 
 } // namespace
 
@@ -19,7 +19,7 @@ bool has_colored_albedo(const MaterialSettings& settings) {
 const MaterialKind diffuse_material{
     .name = "diffuse",
     .help = "Lambertian reflection",
-    .keys = keys,
+    .keys = diffuse_keys,
     .colored = has_colored_albedo,
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
       return std::make_unique<Diffuse>(settings);

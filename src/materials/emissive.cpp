@@ -23,15 +23,15 @@ private:
   bool two_sided_;
 };
 
-constexpr std::string_view keys[] = {"radiance",  "power",   "kelvin",      "exposure",
-                                     "two_sided", "texture", "texture_wrap"};
+constexpr std::string_view emissive_keys[] = {"radiance",  "power",   "kelvin",      "exposure",
+                                              "two_sided", "texture", "texture_wrap"};
 
 } // namespace
 
 const MaterialKind emissive_material{
     .name = "emissive",
     .help = "an area light of constant radiance; reflects nothing",
-    .keys = keys,
+    .keys = emissive_keys,
     .colored =
         [](const MaterialSettings& settings) {
           return !is_grey(settings.radiance) || !is_grey(settings.power.value_or(Rgb(1))) ||

@@ -11,15 +11,15 @@ public:
   bool is_holdout() const override { return true; }
 };
 
-constexpr std::string_view keys[] = {"opacity", "opacity_texture", "opacity_cutoff",
-                                     "texture_wrap"};
+constexpr std::string_view holdout_keys[] = {"opacity", "opacity_texture", "opacity_cutoff",
+                                             "texture_wrap"};
 
 } // namespace
 
 const MaterialKind holdout_material{
     .name = "holdout",
     .help = "black with alpha 0, for an object that is composited later",
-    .keys = keys,
+    .keys = holdout_keys,
     .make = [](const MaterialSettings&, double) -> std::unique_ptr<Material> {
       return std::make_unique<Holdout>();
     }};

@@ -24,14 +24,14 @@ private:
   Rgb reflectance_;
 };
 
-constexpr std::string_view keys[] = {"reflectance"};
+constexpr std::string_view mirror_keys[] = {"reflectance"};
 
 } // namespace
 
 const MaterialKind mirror_material{
     .name = "mirror",
     .help = "perfect mirror, on both sides",
-    .keys = keys,
+    .keys = mirror_keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
       return std::make_unique<Mirror>(settings);

@@ -12,14 +12,14 @@ public:
   bool is_shadow_catcher() const override { return true; }
 };
 
-constexpr std::string_view keys[] = {"albedo", "texture", "texture_wrap"};
+constexpr std::string_view shadow_catcher_keys[] = {"albedo", "texture", "texture_wrap"};
 
 } // namespace
 
 const MaterialKind shadow_catcher_material{
     .name = "shadow_catcher",
     .help = "diffuse for light; the camera sees only the shadows on it, as alpha",
-    .keys = keys,
+    .keys = shadow_catcher_keys,
     .colored = has_colored_albedo,
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
       return std::make_unique<ShadowCatcher>(settings);

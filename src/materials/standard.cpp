@@ -207,21 +207,21 @@ private:
   CosineTable glossy_; ///< that all layers over a diffuse base do
 };
 
-constexpr std::string_view keys[] = {"albedo",
-                                     "texture",
-                                     "texture_wrap",
-                                     "roughness",
-                                     "roughness_texture",
-                                     "metal",
-                                     "ior",
-                                     "coat",
-                                     "coat_roughness",
-                                     "metal_texture",
-                                     "opacity",
-                                     "opacity_texture",
-                                     "opacity_cutoff",
-                                     "normal_texture",
-                                     "normal_scale"};
+constexpr std::string_view standard_keys[] = {"albedo",
+                                              "texture",
+                                              "texture_wrap",
+                                              "roughness",
+                                              "roughness_texture",
+                                              "metal",
+                                              "ior",
+                                              "coat",
+                                              "coat_roughness",
+                                              "metal_texture",
+                                              "opacity",
+                                              "opacity_texture",
+                                              "opacity_cutoff",
+                                              "normal_texture",
+                                              "normal_scale"};
 constexpr double default_roughness = 0.5;
 
 } // namespace
@@ -229,7 +229,7 @@ constexpr double default_roughness = 0.5;
 const MaterialKind standard_material{
     .name = "standard",
     .help = "plastic, paint or metal: a diffuse base under a glossy layer, a metal, and a coat",
-    .keys = keys,
+    .keys = standard_keys,
     .colored = has_colored_albedo,
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
       return std::make_unique<Standard>(settings, settings.roughness.value_or(default_roughness));

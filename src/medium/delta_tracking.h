@@ -73,7 +73,7 @@ private:
       uniform_density_ = volume_->field.uniform_value(entry);
       return;
     }
-    constexpr int width = DensityField::brick_width;
+    constexpr int width = brick_width;
     cube_ = volume_->field.brick(entry);
     constexpr int strides[3] = {width * width, width, 1};
     for (int a = 0; a < 3; ++a) {

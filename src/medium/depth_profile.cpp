@@ -29,7 +29,7 @@ float weakest_channel(const Volume& volume) {
 }
 
 /// Parts of a piece at most: more than can be seen of it, unless a channel sees far.
-constexpr float most_parts = 1024;
+constexpr float most_pieces = 1024;
 
 } // namespace
 
@@ -44,7 +44,7 @@ void DepthProfile::build_single(const Volume& volume, const Segment& segment, fl
     if (t_.empty())
       return true;
     // Within an optically thick piece a straight line is far from the truth, so it is cut up.
-    const int parts = static_cast<int>(std::min(most_parts, std::ceil(piece)));
+    const int parts = static_cast<int>(std::min(most_pieces, std::ceil(piece)));
     float t = t_a;
     for (int i = 1; i < parts && sum * weakest < limit; ++i) {
       const float t_next = t_a + (t_b - t_a) * static_cast<float>(i) / static_cast<float>(parts);

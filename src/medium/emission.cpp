@@ -6,15 +6,13 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int width = DensityField::cell_width;
-
 /// Calls visit(cell, entry, t_a, t_b) for the pieces of the ray in the emitter's cells that are not
 /// empty, in order, until it returns false. `o` and `d` are the ray in local coordinates.
 template <class Visit>
 void walk_emitter(const Emitter& emitter, const Vec3f& o, const Vec3f& d, float t_begin,
                   float t_end, const Visit& visit) {
   const EmissionField& field = *emitter.field;
-  constexpr float inverse = 1.0f / width;
+  constexpr float inverse = 1.0f / cell_width;
   for (GridTraversal cells(o * inverse, d * inverse, field.cell_counts(), t_begin, t_end);
        !cells.done(); cells.advance()) {
     const Vec3<int>& c = cells.cell();
@@ -171,14 +169,14 @@ Rgb emission_along(const Medium& medium, const Segment& segment, const DepthProf
     EmissionIntegral integral(medium, ray, profile, limit);
     walk_emitter(emitter, o, d, segment.t_begin, segment.t_end,
                  [&](const Vec3<int>& cell, std::int32_t entry, float t_a, float t_b) {
-                   const Vec3f corner(cell * width);
+                   const Vec3f corner(cell * cell_width);
                    const auto value = [&](float t) {
-                     const Vec3f p = min(max(o + d * t - corner, Vec3f(0)), Vec3f(width));
+                     const Vec3f p = min(max(o + d * t - corner, Vec3f(0)), Vec3f(cell_width));
                      return field.sample_cell(entry, p);
                    };
                    if (entry < 0)
                      return integral.add(t_a, t_b, value);
-                   for (GridTraversal cubes(o - corner, d, Vec3<int>(width), t_a, t_b);
+                   for (GridTraversal cubes(o - corner, d, Vec3<int>(cell_width), t_a, t_b);
                         !cubes.done(); cubes.advance())
                      if (!integral.add(cubes.t(), cubes.t_exit(), value))
                        return false;
@@ -204,9 +202,9 @@ Rgb sample_emission(const Medium& medium, const Segment& segment, Rng& rng) {
                    Rgb values;
                    for (int i = 0; i < samples; ++i) {
                      const Vec3f p =
-                         o + d * (start + static_cast<float>(i) * step) - Vec3f(cell * width);
-                     values +=
-                         emitter.field->sample_cell(entry, min(max(p, Vec3f(0)), Vec3f(width)));
+                         o + d * (start + static_cast<float>(i) * step) - Vec3f(cell * cell_width);
+                     values += emitter.field->sample_cell(entry,
+                                                          min(max(p, Vec3f(0)), Vec3f(cell_width)));
                    }
                    sum += values * emitter.strength * step;
                    return true;

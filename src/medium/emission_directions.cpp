@@ -9,8 +9,6 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int width = DensityField::cell_width;
-
 /// Mean of what a cell sends out, over the field's points in it and over the channels.
 double brightness(const Emitter& emitter, std::int32_t entry) {
   const EmissionField& field = *emitter.field;
@@ -45,7 +43,8 @@ EmissionDirections::EmissionDirections(const std::vector<Emitter>& emitters) {
 void EmissionDirections::add_cells(std::size_t grid) {
   const Emitter& emitter = grids_[grid].emitter;
   const EmissionField& field = *emitter.field;
-  const double volume = width * width * width * std::abs(emitter.to_render.determinant());
+  const double volume =
+      cell_width * cell_width * cell_width * std::abs(emitter.to_render.determinant());
   const Vec3<int>& n = field.cell_counts();
   for (int i = 0; i < n.x; ++i)
     for (int j = 0; j < n.y; ++j)
@@ -68,7 +67,8 @@ std::optional<EmissionDirections::Sample> EmissionDirections::sample(const Vec3f
     return std::nullopt;
   const auto found = std::upper_bound(cells_.begin(), cells_.end() - 1, place,
                                       [](double x, const Cell& cell) { return x < cell.end; });
-  const Vec3d local = (Vec3d(found->place) + Vec3d(Vec3f(u, v, w))) * static_cast<double>(width);
+  const Vec3d local =
+      (Vec3d(found->place) + Vec3d(Vec3f(u, v, w))) * static_cast<double>(cell_width);
   const Vec3d way = grids_[found->grid].emitter.to_render.point(local) - Vec3d(point);
   const double distance = length(way);
   if (!(distance > 0))
@@ -84,7 +84,7 @@ float EmissionDirections::pdf(const Vec3f& point, const Vec3f& wi) const {
   float sum = 0;
   for (const Grid& grid : grids_) {
     const EmissionField& field = *grid.emitter.field;
-    constexpr float inverse = 1.0f / width;
+    constexpr float inverse = 1.0f / cell_width;
     GridTraversal cells(grid.emitter.local_point(point) * inverse,
                         grid.emitter.local_vector(wi) * inverse, field.cell_counts(), 0, infinity);
     for (; !cells.done(); cells.advance()) {

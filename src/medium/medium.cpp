@@ -13,7 +13,7 @@ Affine Volume::to_render() const {
 }
 
 Boxd Volume::bounds() const {
-  const Vec3d cells = Vec3d(field.cell_counts()) * double{DensityField::cell_width};
+  const Vec3d cells = Vec3d(field.cell_counts()) * double{cell_width};
   return to_render().bounds({Vec3d(0), cells});
 }
 

@@ -9,7 +9,7 @@ LayeredSegment::LayeredSegment(const Volume& volume, const Segment& segment)
   const Vec3f d = volume.local_vector(segment.ray.direction);
   origin_ = o.y;
   slope_ = d.y;
-  const Vec3f size = Vec3f(volume.field.cell_counts()) * float{DensityField::cell_width};
+  const Vec3f size = Vec3f(volume.field.cell_counts()) * float{cell_width};
   const GridTraversal box(o / size, d / size, Vec3<int>(1), segment.t_begin, segment.t_end);
   if (box.done())
     return;

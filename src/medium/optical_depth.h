@@ -16,10 +16,9 @@ public:
   /// o + t d runs in brick coordinates, from t_begin to t_end inside the brick.
   BrickWalk(const float* brick, const Vec3f& o, const Vec3f& d, float t_begin, float t_end)
       : d_(d), t_(t_begin), t_end_(t_end), p_(brick) {
-    constexpr int strides[3] = {DensityField::brick_width * DensityField::brick_width,
-                                DensityField::brick_width, 1};
+    constexpr int strides[3] = {brick_width * brick_width, brick_width, 1};
     for (int a = 0; a < 3; ++a) {
-      const int last = DensityField::cell_width - 1;
+      const int last = cell_width - 1;
       const int cell = std::clamp(static_cast<int>(o[a] + t_begin * d[a]), 0, last);
       const bool up = d[a] > 0;
       p_ += cell * strides[a];
@@ -55,7 +54,7 @@ public:
 
 private:
   float integrate(float t_b) const {
-    constexpr int width = DensityField::brick_width;
+    constexpr int width = brick_width;
     const float* p = p_;
     const float* q = p + width * width;
     const float middle = 0.5f * (t_ + t_b), half = 0.5f * (t_b - t_);
@@ -142,7 +141,7 @@ void for_each_piece(const Volume& volume, const Segment& segment, const Visit& v
     return LayeredSegment(volume, segment).for_each_piece(visit);
   const Vec3f o = volume.local_point(segment.ray.origin);
   const Vec3f d = volume.local_vector(segment.ray.direction);
-  constexpr int width = DensityField::cell_width;
+  constexpr int width = cell_width;
   for (GridTraversal cells(o * (1.0f / width), d * (1.0f / width), volume.field.cell_counts(),
                            segment.t_begin, segment.t_end);
        !cells.done(); cells.advance()) {

@@ -28,18 +28,16 @@ MediumBlocks::MediumBlocks(const Medium& medium) {
   const auto add = [&](const Boxf& box, float finest) {
     lattices_.emplace_back(box, finest, lattices_.empty() ? 0 : size());
   };
-  const auto cell_width = [](const Volume& volume) {
-    return DensityField::cell_width * volume.voxel_size;
-  };
+  const auto width_of_cell = [](const Volume& volume) { return cell_width * volume.voxel_size; };
   for (const std::vector<std::size_t>& nest : medium.nests) {
     float finest = infinity;
     for (const std::size_t v : nest)
-      finest = std::min(finest, cell_width(medium.volumes[v]));
+      finest = std::min(finest, width_of_cell(medium.volumes[v]));
     add(nest_bounds(medium, nest), finest);
   }
   float finest = infinity;
   for (const Volume& volume : medium.volumes)
-    finest = std::min(finest, cell_width(volume));
+    finest = std::min(finest, width_of_cell(volume));
   add(medium.bounds, finest);
 }
 

@@ -3,7 +3,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"g"};
+constexpr std::string_view henyey_greenstein_keys[] = {"g"};
 
 } // namespace
 
@@ -13,7 +13,7 @@ constexpr std::string_view keys[] = {"g"};
 const PhaseKind henyey_greenstein_phase{
     .name = "henyey_greenstein",
     .help = "one forward or backward lobe",
-    .keys = keys,
+    .keys = henyey_greenstein_keys,
     .complaint = [](const PhaseSettings& phase) { return mean_cosine_complaint("g", phase.g); },
     .lobes = [](const PhaseSettings& phase) -> PhaseLobes {
       return {DraineLobe{.g = static_cast<float>(phase.g)}};

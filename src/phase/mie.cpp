@@ -5,7 +5,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"droplet_diameter"};
+constexpr std::string_view mie_keys[] = {"droplet_diameter"};
 
 PhaseLobes lobes(const PhaseSettings& phase) {
   const double diameter = phase.droplet_diameter;
@@ -24,7 +24,7 @@ PhaseLobes lobes(const PhaseSettings& phase) {
 /// Henyey-Greenstein lobe with the weight 1 - w_d and Draine's with the weight w_d.
 const PhaseKind mie_phase{.name = "mie",
                           .help = "water droplets, as in fog and clouds",
-                          .keys = keys,
+                          .keys = mie_keys,
                           .complaint =
                               [](const PhaseSettings& phase) {
                                 return range_complaint("droplet_diameter", phase.droplet_diameter,

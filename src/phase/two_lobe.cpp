@@ -3,7 +3,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"g", "g2", "blend"};
+constexpr std::string_view two_lobe_keys[] = {"g", "g2", "blend"};
 
 std::optional<KeyComplaint> complaint(const PhaseSettings& phase) {
   if (auto blend = range_complaint("blend", phase.blend, 0, 1))
@@ -18,7 +18,7 @@ std::optional<KeyComplaint> complaint(const PhaseSettings& phase) {
 /// A blend of two Henyey-Greenstein lobes: (1 - blend) of the mean cosine g, blend of g2.
 const PhaseKind two_lobe_phase{.name = "two_lobe",
                                .help = "a blend of two Henyey-Greenstein lobes",
-                               .keys = keys,
+                               .keys = two_lobe_keys,
                                .complaint = complaint,
                                .lobes = [](const PhaseSettings& phase) -> PhaseLobes {
                                  return {DraineLobe{.g = static_cast<float>(phase.g),

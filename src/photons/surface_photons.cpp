@@ -15,7 +15,7 @@ constexpr float least_cosine = 1e-5f;
 /// need, and little of a wall that stands on this one.
 constexpr float flatness = 0.1f;
 /// Three rings of six, at the sixths of the biweight disc's weight: 1 - (1 - s)^3 = 1/6, 3/6, 5/6.
-constexpr float ring_radii[3] = {0.243f, 0.454f, 0.671f};
+constexpr float disc_rings[3] = {0.243f, 0.454f, 0.671f};
 constexpr int ring_points = 6;
 constexpr int points = 3 * ring_points;
 /// Cosine between the normals of parts of one surface, at least.
@@ -62,7 +62,7 @@ float SurfacePhotons::share(Disc& disc, Rng& rng) const {
     const int ring = i / ring_points;
     // Each ring is turned by a third of a step against the last.
     const float step = static_cast<float>(i % ring_points) + turned + static_cast<float>(ring) / 3;
-    const float angle = 2 * pi * step / ring_points, r = disc.radius * ring_radii[ring];
+    const float angle = 2 * pi * step / ring_points, r = disc.radius * disc_rings[ring];
     const Vec3d point = disc.center + Vec3d(u * (r * std::cos(angle)) + v * (r * std::sin(angle)));
     const bool seen = sees(disc, point);
     disc.hidden = disc.hidden || !seen;

@@ -140,7 +140,7 @@ Vec3f falls_per_cell(const Volume& volume, float reach) {
   Vec3f falls;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d edge;
-    edge[axis] = DensityField::cell_width;
+    edge[axis] = cell_width;
     falls[axis] = std::exp(-static_cast<float>(length(to_render.vector(edge))) / reach);
   }
   return falls;

@@ -42,10 +42,6 @@ constexpr double stored_per_depth = 0.9, fewest_stored = 0.01;
 /// preview.
 constexpr std::uint64_t written_bytes_per_pixel = 24;
 
-std::uint64_t times(double factor, std::uint64_t bytes) {
-  return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
-}
-
 /// Whether a ray meets a cell of the set.
 bool meets(const CellSet& set, const Affine& from_world, const EyeRay& ray) {
   const Vec3d origin = from_world.point(ray.origin), along = from_world.vector(ray.direction);
@@ -60,7 +56,7 @@ bool meets(const CellSet& set, const Affine& from_world, const EyeRay& ray) {
     end = std::fmin(end, far);
   }
   constexpr int most_steps = 4096;
-  constexpr double voxel = 1.0 / DensityField::cell_width;
+  constexpr double voxel = 1.0 / cell_width;
   const double step = std::max(voxel / length(along), (end - begin) / most_steps);
   for (double t = begin; t <= end; t += step)
     if (set.may_hold(origin + along * t))

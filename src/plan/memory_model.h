@@ -5,6 +5,10 @@
 
 namespace vdbeam {
 
+inline std::uint64_t times(double factor, std::uint64_t bytes) {
+  return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
+}
+
 /// Where a volume is that the camera may see.
 struct SeenCells {
   CellSet cells;

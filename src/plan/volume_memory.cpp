@@ -42,10 +42,6 @@ struct FieldMemory {
   Affine grid_to_world;
 };
 
-std::uint64_t times(double factor, std::uint64_t bytes) {
-  return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
-}
-
 std::uint64_t field_bytes(const CellSet& set) {
   return set.count() * brick_bytes + set.cells() * table_bytes;
 }
@@ -53,7 +49,7 @@ std::uint64_t field_bytes(const CellSet& set) {
 Affine cells_to_world(const Affine& index_to_world, double scale) {
   Affine cells = index_to_world;
   for (Vec3d& row : cells.rows)
-    row = row * (scale * DensityField::cell_width);
+    row = row * (scale * cell_width);
   return cells;
 }
 
@@ -178,7 +174,7 @@ public:
       area_ += columns[a] / 3 * length(cross(edge((a + 1) % 3), edge((a + 2) % 3)));
     const Rgb& by_channel = volume.extinction_scale;
     const double scale = static_cast<double>(by_channel.x + by_channel.y + by_channel.z) / 3;
-    constexpr double width = DensityField::cell_width;
+    constexpr double width = cell_width;
     const double voxel = std::abs(dot(edge(0), cross(edge(1), edge(2)))) / (width * width * width);
     opacity_ += volume.extinction * scale * shape.value_sum * voxel;
   }

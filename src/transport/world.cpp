@@ -79,10 +79,9 @@ void add_region(OccupiedRegion& region, const DensityField& field, const Affine&
       for (int k = 0; k < n.z; ++k) {
         if (field.cell_maximum(field.cell_offset(i, j, k)) == 0)
           continue;
-        const Vec3d cell = Vec3d(Vec3<int>{i, j, k}) * double{DensityField::cell_width};
+        const Vec3d cell = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
         const Vec3d lower = max(cell, Vec3d(occupied.lower));
-        const Vec3d upper =
-            min(cell + Vec3d(double{DensityField::cell_width}), Vec3d(occupied.upper));
+        const Vec3d upper = min(cell + Vec3d(double{cell_width}), Vec3d(occupied.upper));
         if (lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)
           region.cells.push_back(parallelepiped(local_to_render, {lower, upper}));
       }

@@ -15,7 +15,6 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int brick_width = DensityField::brick_width;
 constexpr std::int64_t maximum_cells = std::int64_t(1) << 28;
 constexpr std::int32_t no_source = -1;
 constexpr std::int32_t tile_base = -2; ///< source table: -2 - n is tile n

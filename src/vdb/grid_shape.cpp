@@ -88,7 +88,7 @@ struct BoxCells {
 
 CellSet::CellSet(const GridShape& shape, int scale, int reach,
                  const std::optional<WantedBox::Voxels>& wanted) {
-  int width = DensityField::cell_width; // of a mark, in voxels
+  int width = cell_width; // of a mark, in voxels
   const auto for_each = [&](const auto& visit) {
     for (const auto* boxes : {&shape.leaves, &shape.tiles})
       for (const ActiveBox& whole : *boxes)
@@ -156,12 +156,12 @@ bool CellSet::may_hold(const Vec3d& cell) const {
     std::size_t block = 0;
     Vec3<int> at;
     for (int a = 0; a < 3; ++a) {
-      const auto voxel = static_cast<std::int64_t>(std::floor(cell[a] * DensityField::cell_width)) +
-                         (corner >> a & 1) - lower_[a] * DensityField::cell_width;
-      if (voxel < 0 || voxel >= std::int64_t{counts_[a]} * DensityField::cell_width)
+      const auto voxel = static_cast<std::int64_t>(std::floor(cell[a] * cell_width)) +
+                         (corner >> a & 1) - lower_[a] * cell_width;
+      if (voxel < 0 || voxel >= std::int64_t{counts_[a]} * cell_width)
         return holds(cell); // beside the table
-      at[a] = static_cast<int>(voxel / DensityField::cell_width);
-      block = 4 * block + static_cast<std::size_t>(voxel % DensityField::cell_width / 2);
+      at[a] = static_cast<int>(voxel / cell_width);
+      block = 4 * block + static_cast<std::size_t>(voxel % cell_width / 2);
     }
     if ((blocks_[offset(at.x, at.y, at.z)] >> block & 1) != 0)
       return true;

@@ -9,14 +9,13 @@
 namespace vdbeam {
 namespace {
 
-constexpr int width = VectorField::cell_width;
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 bool is_missing(const Vec3f& v) {
   return std::isnan(v.x);
 }
 
-constexpr std::size_t cell_size = std::size_t{width} * width * width;
+constexpr std::size_t cell_size = std::size_t{cell_width} * cell_width * cell_width;
 
 std::size_t cell_offset(const Vec3<int>& n, const Vec3<int>& cell) {
   return (static_cast<std::size_t>(cell.x) * n.y + cell.y) * n.z + cell.z;
@@ -76,10 +75,12 @@ void fill_cells_without(VectorField::Values& values) {
 /// The value of a voxel, or what stands for it; beyond the cells that of the nearest.
 const Vec3f& voxel_value(const VectorField::Values& values, Vec3<int> p) {
   for (int a = 0; a < 3; ++a)
-    p[a] = std::clamp(p[a], 0, width * values.cells[a] - 1);
-  const std::size_t cell = cell_offset(values.cells, {p.x / width, p.y / width, p.z / width});
+    p[a] = std::clamp(p[a], 0, cell_width * values.cells[a] - 1);
+  const std::size_t cell =
+      cell_offset(values.cells, {p.x / cell_width, p.y / cell_width, p.z / cell_width});
   if (const std::int32_t brick = values.table[cell]; brick >= 0) {
-    const int voxel = ((p.x % width) * width + p.y % width) * width + p.z % width;
+    const int voxel =
+        ((p.x % cell_width) * cell_width + p.y % cell_width) * cell_width + p.z % cell_width;
     const Vec3f& value =
         values
             .bricks[static_cast<std::size_t>(brick) * cell_size + static_cast<std::size_t>(voxel)];
@@ -171,7 +172,7 @@ void VectorField::build_bricks(const Values& values) {
   tbb::parallel_for(std::size_t{0}, table_.size(), [&](std::size_t cell) {
     if (table_[cell] < 0)
       return;
-    const Vec3<int> c = cell_at(n, cell) * width;
+    const Vec3<int> c = cell_at(n, cell) * cell_width;
     Vec3f* out = bricks_.data() + static_cast<std::size_t>(table_[cell]) * brick_size;
     for (int i = 0; i < brick_width; ++i)
       for (int j = 0; j < brick_width; ++j)
@@ -199,7 +200,7 @@ Boxf VectorField::bounds(const Boxd& index) const {
   Vec3<int> first, last;
   for (int a = 0; a < 3; ++a) {
     const auto cell_at_index = [&](double x) { // beyond the cells those at the border
-      const double cell = std::floor((x - static_cast<double>(origin_[a])) / width);
+      const double cell = std::floor((x - static_cast<double>(origin_[a])) / cell_width);
       return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(cells_[a] - 1)));
     };
     first[a] = cell_at_index(index.lower[a]);
@@ -219,10 +220,10 @@ Vec3d VectorField::sample(const Vec3d& index) const {
   Vec3d f;
   for (int a = 0; a < 3; ++a) {
     // Beyond the cells the values at their border hold.
-    const double x = std::clamp(local[a], 0.0, double{width} * cells_[a]);
-    const int below = std::min(static_cast<int>(x), width * cells_[a] - 1);
-    cell[a] = below / width;
-    voxel[a] = below % width;
+    const double x = std::clamp(local[a], 0.0, double{cell_width} * cells_[a]);
+    const int below = std::min(static_cast<int>(x), cell_width * cells_[a] - 1);
+    cell[a] = below / cell_width;
+    voxel[a] = below % cell_width;
     f[a] = x - below;
   }
   const std::size_t offset = cell_offset(cells_, cell);

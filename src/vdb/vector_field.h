@@ -3,6 +3,7 @@
 #include "math/affine.h"
 #include "vdb/vdb_reader.h"
 #include "vdbeam/volume_edits.h"
+#include "volume/density_field.h"
 
 #include <cstdint>
 #include <memory>
@@ -17,8 +18,6 @@ namespace vdbeam {
 /// mean of the cells that are nearest: what moves must be able to leave the place where it was.
 class VectorField {
 public:
-  static constexpr int cell_width = 8;
-
   struct Values {
     Affine index_to_world;
     bool staggered = false; ///< component c lies half a voxel before its voxel along axis c
@@ -43,8 +42,6 @@ public:
   bool empty() const { return table_.empty(); }
 
 private:
-  static constexpr int brick_width = cell_width + 1; ///< with the first layer of the next cells
-
   void find_means(Values& values, double longest);
   void build_bricks(const Values& values);
   void find_bounds();

@@ -13,8 +13,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr int width = VectorField::cell_width;
-constexpr std::size_t brick_size = static_cast<std::size_t>(width) * width * width;
+constexpr std::size_t brick_size = static_cast<std::size_t>(cell_width) * cell_width * cell_width;
 constexpr double most_cells = 1 << 28;
 
 std::vector<std::string> lines_of(const MappedFile& file) {
@@ -43,7 +42,7 @@ public:
       return {};
     double cells = 1;
     for (int a = 0; a < 3; ++a) {
-      values_.cells[a] = static_cast<int>((upper_[a] - lower_[a]) / width);
+      values_.cells[a] = static_cast<int>((upper_[a] - lower_[a]) / cell_width);
       cells *= values_.cells[a];
     }
     if (cells > most_cells)
@@ -69,7 +68,7 @@ private:
     };
     for (const Component& component : components_) {
       for (std::size_t leaf = 0; leaf < component.grid.leaf_count; ++leaf)
-        extend(component.grid.leaf_origins + 3 * leaf, width);
+        extend(component.grid.leaf_origins + 3 * leaf, cell_width);
       for (const RawTile& tile : component.grid.tiles)
         extend(tile.origin.data(), tile.width);
     }
@@ -79,14 +78,14 @@ private:
     std::size_t offset = 0;
     for (int a = 0; a < 3; ++a)
       offset = offset * static_cast<std::size_t>(values_.cells[a]) +
-               static_cast<std::size_t>((origin[a] - lower_[a]) / width);
+               static_cast<std::size_t>((origin[a] - lower_[a]) / cell_width);
     return offset;
   }
   void add_tiles(int c) {
     for (const RawTile& tile : components_[static_cast<std::size_t>(c)].grid.tiles)
-      for (std::int32_t i = 0; i < tile.width; i += width)
-        for (std::int32_t j = 0; j < tile.width; j += width)
-          for (std::int32_t k = 0; k < tile.width; k += width) {
+      for (std::int32_t i = 0; i < tile.width; i += cell_width)
+        for (std::int32_t j = 0; j < tile.width; j += cell_width)
+          for (std::int32_t k = 0; k < tile.width; k += cell_width) {
             const std::int32_t origin[3] = {tile.origin[0] + i, tile.origin[1] + j,
                                             tile.origin[2] + k};
             values_.means[cell_of(origin)][c] = tile.value;
@@ -116,7 +115,7 @@ private:
 
 /// The longest velocity that does not cross the whole lattice within a frame.
 double longest_velocity(const VectorField::Values& values, const VelocitySettings& settings) {
-  const Vec3d size = Vec3d(values.cells) * double{width};
+  const Vec3d size = Vec3d(values.cells) * double{cell_width};
   const VelocityScale meaning = scale_of(settings, values.from_mantaflow);
   const double diagonal = meaning.index ? length(size) : length(values.index_to_world.vector(size));
   const double scale = std::abs(meaning.factor);

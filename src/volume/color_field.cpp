@@ -7,8 +7,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int width = DensityField::brick_width;
 constexpr std::size_t brick_size = DensityField::brick_size;
 
 } // namespace
@@ -33,9 +31,9 @@ ColorField::ColorField(const DensityField& shape,
         stop->check();
       const Vec3d corner = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
       Rgb* out = bricks_.data() + static_cast<std::size_t>(brick) * brick_size;
-      for (int x = 0; x < width; ++x)
-        for (int y = 0; y < width; ++y)
-          for (int z = 0; z < width; ++z)
+      for (int x = 0; x < brick_width; ++x)
+        for (int y = 0; y < brick_width; ++y)
+          for (int z = 0; z < brick_width; ++z)
             *out++ = color(corner + Vec3d(Vec3<int>{x, y, z}));
     }
   });
@@ -57,14 +55,14 @@ Rgb ColorField::sample(const Vec3f& local) const {
   if (cells_[offset] < 0)
     return Rgb(1);
   const Rgb* p = bricks_.data() + static_cast<std::size_t>(cells_[offset]) * brick_size +
-                 (voxel.x * width + voxel.y) * width + voxel.z;
+                 (voxel.x * brick_width + voxel.y) * brick_width + voxel.z;
   const auto along_z = [&](int at) { return p[at] + (p[at + 1] - p[at]) * f.z; };
   const auto along_y = [&](int at) {
     const Rgb low = along_z(at);
-    return low + (along_z(at + width) - low) * f.y;
+    return low + (along_z(at + brick_width) - low) * f.y;
   };
   const Rgb low = along_y(0);
-  return low + (along_y(width * width) - low) * f.x;
+  return low + (along_y(brick_width * brick_width) - low) * f.x;
 }
 
 std::size_t ColorField::bytes() const {

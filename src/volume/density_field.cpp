@@ -9,12 +9,10 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int width = DensityField::brick_width;
-
 /// Result of one pass over a cell's values: the largest, and the lattice points that are not 0.
 struct CellExtent {
   float maximum = 0;
-  Vec3<int> first{width, width, width}, last{-1, -1, -1};
+  Vec3<int> first{brick_width, brick_width, brick_width}, last{-1, -1, -1};
 
   void include(int axis, int position) {
     first[axis] = std::min(first[axis], position);
@@ -24,13 +22,13 @@ struct CellExtent {
 
 CellExtent measure_brick(const float* brick) {
   CellExtent extent;
-  float along_z[width] = {};
-  for (int x = 0; x < width; ++x) {
+  float along_z[brick_width] = {};
+  for (int x = 0; x < brick_width; ++x) {
     float slice_maximum = 0;
-    for (int y = 0; y < width; ++y) {
-      const float* row = brick + (x * width + y) * width;
+    for (int y = 0; y < brick_width; ++y) {
+      const float* row = brick + (x * brick_width + y) * brick_width;
       float row_maximum = 0;
-      for (int z = 0; z < width; ++z) {
+      for (int z = 0; z < brick_width; ++z) {
         along_z[z] = std::max(along_z[z], row[z]);
         row_maximum = std::max(row_maximum, row[z]);
       }
@@ -42,7 +40,7 @@ CellExtent measure_brick(const float* brick) {
       extent.include(0, x);
     extent.maximum = std::max(extent.maximum, slice_maximum);
   }
-  for (int z = 0; z < width; ++z)
+  for (int z = 0; z < brick_width; ++z)
     if (along_z[z] > 0)
       extent.include(2, z);
   return extent;
@@ -63,10 +61,9 @@ struct Summary {
     maximum = std::max(maximum, extent.maximum);
     Boxf box;
     for (int axis = 0; axis < 3; ++axis) {
-      const int base = DensityField::cell_width * cell[axis];
+      const int base = cell_width * cell[axis];
       box.lower[axis] = static_cast<float>(base + std::max(extent.first[axis] - 1, 0));
-      box.upper[axis] =
-          static_cast<float>(base + std::min(extent.last[axis] + 1, DensityField::cell_width));
+      box.upper[axis] = static_cast<float>(base + std::min(extent.last[axis] + 1, cell_width));
     }
     occupied.extend(box);
   }

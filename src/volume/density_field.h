@@ -10,6 +10,9 @@
 
 namespace vdbeam {
 
+/// Voxels of a cell, and lattice points of its brick, along an axis.
+inline constexpr int cell_width = 8, brick_width = cell_width + 1;
+
 /// A scalar field on an integer lattice with OpenVDB's convention: voxel i sits at index i, values
 /// in between are trilinear, and outside the stored voxels the field is 0 (so a border voxel ramps
 /// to 0 over one voxel).
@@ -24,8 +27,6 @@ namespace vdbeam {
 /// small enough for single precision; cell (i, j, k) covers local [8i, 8i + 8) etc.
 class DensityField {
 public:
-  static constexpr int cell_width = 8;
-  static constexpr int brick_width = 9;
   static constexpr int brick_size = brick_width * brick_width * brick_width;
   static constexpr std::int32_t empty_cell = -1;   ///< index table: the whole cell is 0
   static constexpr std::int32_t uniform_base = -2; ///< index table: -2 - n is uniform value n
@@ -87,7 +88,7 @@ private:
 
 /// The trilinear value between the lattice points at `p` and one further along each axis.
 inline float sample_cube(const float* p, float fx, float fy, float fz) {
-  constexpr int width = DensityField::brick_width;
+  constexpr int width = brick_width;
   const auto along_z = [fz](const float* q) { return q[0] + fz * (q[1] - q[0]); };
   const float c00 = along_z(p), c01 = along_z(p + width), c10 = along_z(p + width * width),
               c11 = along_z(p + width * width + width);

@@ -8,13 +8,11 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int cell_width = DensityField::cell_width, width = DensityField::brick_width;
-
 bool is_layered(const float* brick) {
-  for (int x = 0; x < width; ++x)
-    for (int y = 0; y < width; ++y)
-      for (int z = 0; z < width; ++z)
-        if (brick[(x * width + y) * width + z] != brick[y * width])
+  for (int x = 0; x < brick_width; ++x)
+    for (int y = 0; y < brick_width; ++y)
+      for (int z = 0; z < brick_width; ++z)
+        if (brick[(x * brick_width + y) * brick_width + z] != brick[y * brick_width])
           return false;
   return true;
 }
@@ -43,7 +41,7 @@ std::shared_ptr<const DensityLayers> DensityLayers::find(const DensityField& fie
       return nullptr;
     const float uniform =
         entry >= 0 || entry == DensityField::empty_cell ? 0.0f : field.uniform_value(entry);
-    const auto value = [&](int y) { return double{brick ? brick[y * width] : uniform}; };
+    const auto value = [&](int y) { return double{brick ? brick[y * brick_width] : uniform}; };
     if (cell == 0) {
       layers->lower_.push_back(0);
       layers->density_.push_back(value(0));

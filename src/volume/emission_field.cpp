@@ -6,7 +6,6 @@ namespace vdbeam {
 
 namespace {
 
-constexpr int width = DensityField::brick_width;
 /// Share of the brightest value below which emission is invisible beside it.
 constexpr float darkest_share = 1e-8f;
 
@@ -40,10 +39,10 @@ EmissionField::EmissionField(const DensityField& shape, const Law& law, bool uni
         if (stop)
           stop->check();
         Rgb* brick = bricks_.data() + static_cast<std::size_t>(entry) * DensityField::brick_size;
-        for (int x = 0; x < width; ++x)
-          for (int y = 0; y < width; ++y)
-            for (int z = 0; z < width; ++z) {
-              const int at = (x * width + y) * width + z;
+        for (int x = 0; x < brick_width; ++x)
+          for (int y = 0; y < brick_width; ++y)
+            for (int z = 0; z < brick_width; ++z) {
+              const int at = (x * brick_width + y) * brick_width + z;
               const float value =
                   source >= 0 ? shape.brick(source)[at] : shape.uniform_value(source);
               const Vec3<int> place{8 * i + x, 8 * j + y, 8 * k + z};

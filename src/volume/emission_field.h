@@ -59,7 +59,7 @@ private:
 inline Rgb EmissionField::sample_cell(std::int32_t entry, const Vec3f& p) const {
   if (entry < 0)
     return uniform_value(entry);
-  constexpr int width = DensityField::brick_width;
+  constexpr int width = brick_width;
   const int i = std::min(static_cast<int>(p.x), 7), j = std::min(static_cast<int>(p.y), 7),
             k = std::min(static_cast<int>(p.z), 7);
   const float fx = p.x - static_cast<float>(i), fy = p.y - static_cast<float>(j),

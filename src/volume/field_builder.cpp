@@ -10,8 +10,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
-constexpr int brick_width = DensityField::brick_width;
 constexpr double most_cells = 1 << 28;
 
 std::int64_t cell_of(double local) {

@@ -10,7 +10,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int cell_width = DensityField::cell_width;
 /// Cells along the longest side of a shape: enough for what is decided cell by cell, as where
 /// photons are stored.
 constexpr int cells_along_box = 16, cells_along_sphere = 32;

@@ -12,7 +12,7 @@ namespace {
 using test::MemoryScene;
 using test::PassMeans;
 
-double blobs(int i, int j, int k, double phase) {
+double moving_blobs(int i, int j, int k, double phase) {
   const double x = i / 24.0, y = j / 24.0, z = k / 24.0;
   const double border = 64 * x * (1 - x) * y * (1 - y) * z * (1 - z);
   return border * (1 + std::sin(9 * x + phase) * std::cos(7 * y + 1) * std::sin(8 * z + 2));
@@ -21,14 +21,14 @@ double blobs(int i, int j, int k, double phase) {
 MemoryScene fire() {
   MemoryScene scene;
   const Vec3<int> cells{3, 3, 3};
-  VolumeSettings& volume =
-      scene.add(test::closed_field(cells, [](int i, int j, int k) { return blobs(i, j, k, 0); }),
-                test::box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
+  VolumeSettings& volume = scene.add(
+      test::closed_field(cells, [](int i, int j, int k) { return moving_blobs(i, j, k, 0); }),
+      test::box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
   volume.extinction = 6;
   volume.albedo = {0.9f, 0.8f, 0.6f};
   volume.phase = test::henyey_greenstein(0.5);
   EmissionSettings& emission = scene.glow(
-      test::closed_field(cells, [](int i, int j, int k) { return blobs(i, j, k, 2); }),
+      test::closed_field(cells, [](int i, int j, int k) { return moving_blobs(i, j, k, 2); }),
       test::turn({1, 0, 1}, 25).after(test::box_map(cells, {-0.3, -0.2, -0.4}, {0.3, 0.7, 0.3})));
   emission.color = {1, 0.4f, 0.1f};
   emission.scale = 5;

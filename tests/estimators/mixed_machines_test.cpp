@@ -14,7 +14,7 @@ namespace {
 
 using test::MemoryScene;
 
-double blobs(int i, int j, int k) {
+double plain_blobs(int i, int j, int k) {
   const double x = i / 24.0, y = j / 24.0, z = k / 24.0;
   return 64 * x * (1 - x) * y * (1 - y) * z * (1 - z) *
          (1 + std::sin(9 * x) * std::cos(7 * y + 1) * std::sin(8 * z + 2));
@@ -24,8 +24,8 @@ double blobs(int i, int j, int k) {
 MemoryScene cloud() {
   MemoryScene scene;
   const Vec3<int> cells{3, 3, 3};
-  VolumeSettings& volume =
-      scene.add(test::closed_field(cells, blobs), test::box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
+  VolumeSettings& volume = scene.add(test::closed_field(cells, plain_blobs),
+                                     test::box_map(cells, Vec3d(-0.5), Vec3d(0.5)));
   volume.extinction = 8;
   volume.albedo = Rgb(0.9f);
   scene.look({0.5, 0.6, 2.5}, {0, 0, 0}, 24, 32, 32);

@@ -20,8 +20,8 @@ MemoryScene fog_scene(VolumeShape shape, double extinction, bool noisy = false) 
   return scene;
 }
 
-const std::vector<EstimatorType> estimators{EstimatorType::path, EstimatorType::beam,
-                                            EstimatorType::march, EstimatorType::gather};
+const std::vector<EstimatorType> estimators_in_fog{EstimatorType::path, EstimatorType::beam,
+                                                   EstimatorType::march, EstimatorType::gather};
 
 class FogLaws : public ::testing::TestWithParam<VolumeShape> {};
 
@@ -29,7 +29,7 @@ TEST_P(FogLaws, WhiteFurnace) {
   for (const bool noisy : {false, true}) {
     MemoryScene scene = fog_scene(GetParam(), 3, noisy);
     scene.add_light(LightType::environment);
-    for (const EstimatorType& estimator : estimators) {
+    for (const EstimatorType& estimator : estimators_in_fog) {
       SCOPED_TRACE(estimator.name);
       const PassMeans means = render_passes(scene, estimator, 16);
       expect_mean(means.total[0], 1, estimator == EstimatorType::path ? 0 : 0.02);
@@ -72,7 +72,7 @@ TEST(FogLaws, WhatAbsorbsShowsItsTransmittance) {
   scene.scene.volumes[0].albedo = Rgb(0);
   scene.add_light(LightType::environment);
   scene.look({0.3, 0.2, 100}, {0.3, 0.2, 0}, 0.001, 1, 1);
-  for (const EstimatorType& estimator : estimators) {
+  for (const EstimatorType& estimator : estimators_in_fog) {
     const PassMeans means = render_passes(scene, estimator, 2);
     EXPECT_NEAR(means.total[0].mean(), std::exp(-0.8), 1e-5) << estimator.name;
     EXPECT_NEAR(means.opacity.mean(), 1 - std::exp(-0.8), 1e-5) << estimator.name;

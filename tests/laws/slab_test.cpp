@@ -157,12 +157,12 @@ TEST(Slab, AddingDoublingOfOtherSlabs) {
 
 // What a camera sees of a slab under the sun at the zenith, at some angles, from above and from
 // below.
-struct View {
+struct SlabView {
   double mu;
   bool below;
 };
 
-MemoryScene seen_slab(const SlabSpec& spec, const View& view, double least_half_width = 100) {
+MemoryScene seen_slab(const SlabSpec& spec, const SlabView& view, double least_half_width = 100) {
   MemoryScene scene = slab_scene(spec, least_half_width);
   LightSettings& sun = scene.add_light(LightType::distant);
   sun.direction = {0, 0, -1};

@@ -1,5 +1,6 @@
 // The air between camera and scene: against closed forms, an integral of its own, and the sky.
 #include "lights/sky/aerial_perspective.h"
+#include "support/degrees.h"
 
 #include "lights/environment_image.h"
 #include "lights/light_test_scene.h"
@@ -8,8 +9,6 @@
 
 namespace vdbeam {
 namespace {
-
-constexpr double degrees = std::numbers::pi / 180;
 
 Atmosphere air_at(double altitude, double aerosol, double sun = 40, double ground_albedo = 0) {
   return Atmosphere({.sun_elevation = sun * degrees,

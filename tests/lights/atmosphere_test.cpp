@@ -1,5 +1,6 @@
 // The clear sky against what is published and against an independent solution.
 #include "lights/sky/atmosphere.h"
+#include "support/degrees.h"
 
 #include "laws/adding_doubling.h"
 #include "lights/light_test_scene.h"
@@ -10,7 +11,6 @@ namespace {
 
 using namespace test;
 
-constexpr double degrees = std::numbers::pi / 180;
 /// Illuminance of the sun above the air [lx], by which the model's units are those of photometry.
 constexpr double solar_constant = 133100;
 

@@ -1,4 +1,5 @@
 #include "lights/lamps/ies_profile.h"
+#include "support/degrees.h"
 #include "support/ies_text.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
@@ -14,8 +15,6 @@ namespace {
 
 using test::angles;
 using test::ies_text;
-
-constexpr double degrees = std::numbers::pi / 180;
 
 /// The integral over all directions by the midpoint rule.
 double by_midpoints(const IesProfile& profile) {

@@ -1,5 +1,6 @@
 #include "image/output_formats.h"
 #include "lights/light_test_scene.h"
+#include "support/degrees.h"
 #include "support/ies_text.h"
 #include "support/temp_folder.h"
 
@@ -9,8 +10,6 @@ namespace vdbeam {
 namespace {
 
 using namespace test;
-
-constexpr double degrees = std::numbers::pi / 180;
 
 /// Point and spot lights with files of the test's own.
 class ShapedLamp : public ::testing::Test {
@@ -63,7 +62,7 @@ private:
 };
 
 /// By a fine grid of points: mean over a box of intensity / distance^2 times the lamp's shape.
-Vec3d mean_fluence(const MadeLight& made, const Parallelepiped& box) {
+Vec3d mean_fluence_by_grid(const MadeLight& made, const Parallelepiped& box) {
   constexpr int n = 60;
   Vec3d sum;
   for (int i = 0; i < n * n * n; ++i) {
@@ -105,7 +104,7 @@ TEST_F(ShapedLamp, PhotonsGiveTheFluenceThatShadowRaysFind) {
   const Parallelepiped probe = cube({0.1f, -0.1f, 0.15f}, 0.5f);
   for (const LightSettings& settings : lamps) {
     const MadeLight made(settings, region_of({cube({}, 1), skew_box()}));
-    const Vec3d expected = mean_fluence(made, probe);
+    const Vec3d expected = mean_fluence_by_grid(made, probe);
     std::array<Average, 3> fluence;
     constexpr int count = 200000;
     for (int i = 0; i < count; ++i) {

@@ -32,7 +32,7 @@ MaterialSettings settings_of(const Look& look, const Rgb& albedo = Rgb(1)) {
 std::unique_ptr<Material> standard(const Look& look, const Rgb& albedo = Rgb(1)) {
   return make_material(settings_of(look, albedo), 1);
 }
-Vec3f at_angle(double degrees, float side = 1) {
+Vec3f standard_direction(double degrees, float side = 1) {
   const auto radians = static_cast<float>(degrees * M_PI / 180);
   return {std::sin(radians), 0, side * std::cos(radians)};
 }
@@ -53,7 +53,7 @@ TEST(Standard, KeepsEnergy) {
   for (const Look& look : looks)
     for (const double angle : {0.0, 30.0, 60.0, 85.0, 89.0})
       for (const float side : {1.0f, -1.0f}) {
-        const test::Samples light = furnace(*standard(look), at_angle(angle, side));
+        const test::Samples light = furnace(*standard(look), standard_direction(angle, side));
         SCOPED_TRACE(testing::Message() << look << " at " << angle);
         EXPECT_LT(light.mean(), 1 + 0.004 + 4 * light.error());
         if (look.metal == 0) {
@@ -90,7 +90,7 @@ TEST(Standard, MattPartChangesByItsAlbedoAlone) {
       const float u = rng.uniform(), v = rng.uniform();
       Vec3f wi = sample_sphere(u, v);
       wi.z = std::abs(wi.z);
-      const Vec3f a = at_angle(20), b = at_angle(70);
+      const Vec3f a = standard_direction(20), b = standard_direction(70);
       for (int c = 0; c < 3; ++c) {
         const float of_a = material->matt(a, wi)[c], of_b = material->matt(b, wi)[c];
         EXPECT_LE(of_a, material->evaluate(a, wi)[c] * 1.0001f) << look;
@@ -99,7 +99,8 @@ TEST(Standard, MattPartChangesByItsAlbedoAlone) {
             << look;
       }
     }
-    EXPECT_EQ(max_component(material->matt_albedo(at_angle(20))) > 0, look.metal < 1) << look;
+    EXPECT_EQ(max_component(material->matt_albedo(standard_direction(20))) > 0, look.metal < 1)
+        << look;
   }
 }
 
@@ -111,7 +112,7 @@ TEST(Standard, SampledAndEvaluatedReflectanceAgree) {
     const auto material = standard(look, {0.8f, 0.3f, 0});
     for (const double angle : {0.0, 40.0, 75.0})
       for (const int channel : {0, 2}) {
-        const Vec3f wo = at_angle(angle, -1);
+        const Vec3f wo = standard_direction(angle, -1);
         test::Samples uniform;
         Rng rng({}, RngStage::test, 1);
         for (int i = 0; i < 400000; ++i) {
@@ -131,7 +132,7 @@ TEST(Standard, DirectionsAreDrawnByTheStatedDensity) {
   for (const Look& look : {Look{0.7, 0, 0, 0}, Look{0.8, 0.5, 0.6, 0.6}})
     for (const double angle : {10.0, 60.0}) {
       const auto material = standard(look, Rgb(0.6f));
-      const Vec3f wo = at_angle(angle);
+      const Vec3f wo = standard_direction(angle);
       std::vector<double> counts(rows * columns + 1), expected(rows * columns + 1);
       Rng rng({}, RngStage::test, 3);
       for (int i = 0; i < draws; ++i) {
@@ -172,7 +173,7 @@ TEST(Standard, LimitsAreOtherMaterials) {
   const auto metal = make_material(conductor, 1);
   const auto same = standard({0.4, 1, 0, 0}, conductor.reflectance);
   for (const double angle : {5.0, 50.0, 80.0}) {
-    const Vec3f wo = at_angle(angle), wi = at_angle(-angle + 8);
+    const Vec3f wo = standard_direction(angle), wi = standard_direction(-angle + 8);
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(same->evaluate(wo, wi)[c], metal->evaluate(wo, wi)[c],
                   1e-4f * metal->evaluate(wo, wi)[c]);
@@ -184,7 +185,7 @@ TEST(Standard, LimitsAreOtherMaterials) {
 
 /// A texture colours the base and the reflections of metal, not those of the layers above.
 TEST(Standard, TexturesColourTheBase) {
-  const Vec3f wo = at_angle(40), wi = at_angle(-35);
+  const Vec3f wo = standard_direction(40), wi = standard_direction(-35);
   for (const Look& look : looks) {
     const auto white = standard(look), dim = standard(look, Rgb(0.25f));
     const Rgb rest = white->untextured(wo, wi);

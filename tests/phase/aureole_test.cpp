@@ -10,14 +10,14 @@
 namespace vdbeam {
 namespace {
 
-PhaseFunction henyey_greenstein(double g) {
+PhaseFunction henyey_greenstein_phase(double g) {
   PhaseSettings settings;
   settings.type = PhaseType::henyey_greenstein;
   settings.g = g;
   return PhaseFunction(settings);
 }
 
-PhaseFunction mie(double diameter) {
+PhaseFunction mie_phase(double diameter) {
   PhaseSettings settings;
   settings.type = PhaseType::mie;
   settings.droplet_diameter = diameter;
@@ -86,8 +86,10 @@ std::string phase_name(const ::testing::TestParamInfo<PhaseFunction>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Peaks, AureoleOf,
-                         ::testing::Values(henyey_greenstein(0.7), henyey_greenstein(0.85),
-                                           henyey_greenstein(0.95), mie(8), mie(20)),
+                         ::testing::Values(henyey_greenstein_phase(0.7),
+                                           henyey_greenstein_phase(0.85),
+                                           henyey_greenstein_phase(0.95), mie_phase(8),
+                                           mie_phase(20)),
                          phase_name);
 
 } // namespace

@@ -11,7 +11,7 @@
 namespace vdbeam {
 namespace {
 
-Scene small_cloud(EstimatorType estimator) {
+Scene cloud_by(EstimatorType estimator) {
   Scene scene = load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", 1,
                            {"image.width=64", "image.height=36", "render.passes=2"});
   scene.render.estimator = estimator;
@@ -20,7 +20,7 @@ Scene small_cloud(EstimatorType estimator) {
 
 /// As thin as haze, under a sky that is the same all around.
 Scene haze(EstimatorType estimator) {
-  Scene scene = small_cloud(estimator);
+  Scene scene = cloud_by(estimator);
   scene.volumes[0].extinction = 0.2;
   LightSettings sky;
   sky.type = LightType::environment;
@@ -38,17 +38,17 @@ TEST(Auto, IsTheDefault) {
 }
 
 TEST(Auto, RendersACloudByGather) {
-  const Scene scene = small_cloud(EstimatorType::automatic);
+  const Scene scene = cloud_by(EstimatorType::automatic);
   const RenderResult result = render(scene);
   EXPECT_EQ(result.plan.estimator, "gather");
   EXPECT_EQ(report_json(scene, result, {})["plan"]["estimator"], "gather");
   EXPECT_FALSE(result.plan.unbiased);
-  expect_same_picture(result.image, render(small_cloud(EstimatorType::gather)).image);
+  expect_same_picture(result.image, render(cloud_by(EstimatorType::gather)).image);
 }
 
 /// Where final gathering is excluded, a note says why.
 TEST(Gather, SaysWhereItGathersAlongRays) {
-  Scene scene = small_cloud(EstimatorType::gather);
+  Scene scene = cloud_by(EstimatorType::gather);
   EXPECT_EQ(render(scene).plan.schedule.at(0).estimator, "gather");
   scene.render.max_bounces = 50;
   const RenderResult result = render(scene);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int passes = 4;
 
-Scene small_cloud(const std::vector<std::string>& more = {}) {
+Scene cloud_by_path(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=24", "image.height=14", "render.estimator=path",
                                      "render.passes=4"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -36,15 +36,15 @@ bool notes_clamp(const RenderResult& result) {
 }
 
 TEST(Clamp, IsOffUnlessAskedFor) {
-  const RenderResult result = render(small_cloud());
+  const RenderResult result = render(cloud_by_path());
   EXPECT_EQ(result.statistics.clamp_total, 0);
   EXPECT_FALSE(notes_clamp(result));
 }
 
 /// The picture lacks just the energy that the report names.
 TEST(Clamp, WhatItTookIsTold) {
-  const RenderResult whole = render(small_cloud());
-  const RenderResult clamped = render(small_cloud({"render.clamp=0.5"}));
+  const RenderResult whole = render(cloud_by_path());
+  const RenderResult clamped = render(cloud_by_path({"render.clamp=0.5"}));
   const RenderStatistics& statistics = clamped.statistics;
   EXPECT_GT(statistics.clamped_pixels, 0u);
   EXPECT_GT(statistics.clamped_fraction(), 0.001);
@@ -55,8 +55,8 @@ TEST(Clamp, WhatItTookIsTold) {
 }
 
 TEST(Clamp, ALimitThatNothingReachesTakesNothing) {
-  const RenderResult whole = render(small_cloud());
-  const RenderResult clamped = render(small_cloud({"render.clamp=1e30"}));
+  const RenderResult whole = render(cloud_by_path());
+  const RenderResult clamped = render(cloud_by_path({"render.clamp=1e30"}));
   EXPECT_EQ(clamped.statistics.clamp_removed, 0);
   EXPECT_EQ(light_of(clamped.image), light_of(whole.image));
   EXPECT_TRUE(notes_clamp(clamped)) << "that it took nothing is worth a line";
@@ -65,7 +65,7 @@ TEST(Clamp, ALimitThatNothingReachesTakesNothing) {
 /// Parts and resumed renders report the sum.
 TEST(Clamp, TalliesOfPartsAddUp) {
   const test::TempFolder folder;
-  const Scene scene = small_cloud({"render.clamp=0.5"});
+  const Scene scene = cloud_by_path({"render.clamp=0.5"});
   const RenderStatistics whole = render(scene).statistics;
   const auto parts = test::render_parts(scene, folder, {{0, 1}, {2, 3}});
   const Image merged = merge_partials(parts);

@@ -1,3 +1,4 @@
+#include "support/image_checks.h"
 #include "support/read_deep.h"
 #include "support/render_parts.h"
 #include "support/temp_folder.h"
@@ -15,18 +16,13 @@
 namespace vdbeam {
 namespace {
 
+using test::plane;
+
 Scene sample_scene(const std::string& file, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=24", "image.height=16", "render.photons=3000",
                                      "render.passes=4", "image.deep=true"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scene(VDBEAM_SOURCE_DIR "/data/" + file, 14, overrides);
-}
-
-const std::vector<float>& plane(const Image& image, const std::string& name) {
-  const ImageChannel* channel = image.find(name);
-  if (!channel)
-    throw FrameError("no channel " + name);
-  return channel->data;
 }
 
 struct FlatCase {

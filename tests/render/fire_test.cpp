@@ -1,4 +1,5 @@
 #include "prepare/prepared_scene.h"
+#include "support/image_checks.h"
 #include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
@@ -14,6 +15,8 @@
 namespace vdbeam {
 namespace {
 
+using test::expect_same_pixels;
+
 Scene small_fire(int frame, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=24", "image.height=24", "render.photons=2000",
                                      "render.passes=4"};
@@ -26,17 +29,6 @@ double mean(const Image& image, const std::string& channel) {
   for (const float value : image.find(channel)->data)
     sum += static_cast<double>(value);
   return sum / static_cast<double>(image.find(channel)->data.size());
-}
-
-void expect_same_pixels(const Image& a, const Image& b) {
-  ASSERT_EQ(a.channels.size(), b.channels.size());
-  for (std::size_t c = 0; c < a.channels.size(); ++c) {
-    ASSERT_EQ(a.channels[c].data.size(), b.channels[c].data.size());
-    EXPECT_EQ(std::memcmp(a.channels[c].data.data(), b.channels[c].data.data(),
-                          a.channels[c].data.size() * sizeof(float)),
-              0)
-        << a.channels[c].name;
-  }
 }
 
 TEST(SampleFire, EmissionIsAnOutputOfItsOwn) {

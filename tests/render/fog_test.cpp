@@ -1,6 +1,7 @@
 // Volumes without a file from the scene file to the picture.
 #include "medium/medium.h"
 #include "prepare/prepared_scene.h"
+#include "support/image_checks.h"
 #include "support/read_deep.h"
 #include "support/temp_folder.h"
 #include "vdbeam/memory_plan.h"
@@ -13,6 +14,8 @@
 
 namespace vdbeam {
 namespace {
+
+using test::plane;
 
 class FogPicture : public ::testing::Test {
 protected:
@@ -30,12 +33,6 @@ protected:
 
   test::TempFolder folder_;
 };
-
-const std::vector<float>& plane(const Image& image, const std::string& name) {
-  const ImageChannel* channel = image.find(name);
-  EXPECT_NE(channel, nullptr) << name;
-  return channel->data;
-}
 
 constexpr const char* shapes[] = {
     "[[volume]]\nshape = 'box'\nextinction = 0.7\nrotate = [0, 30, 0]\nname = 'fog'\n",

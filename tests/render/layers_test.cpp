@@ -1,3 +1,4 @@
+#include "support/image_checks.h"
 #include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
@@ -12,19 +13,14 @@
 namespace vdbeam {
 namespace {
 
+using test::plane;
+
 /// The sample cloud in a sun and a sky.
-Scene cloud(const std::vector<std::string>& more = {}) {
+Scene sunlit_cloud(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=32", "image.height=18", "render.photons=3000",
                                      "render.passes=8"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scene(VDBEAM_SOURCE_DIR "/data/sunlit_cloud.toml", 1, overrides);
-}
-
-const std::vector<float>& plane(const Image& image, const std::string& name) {
-  const ImageChannel* channel = image.find(name);
-  if (!channel)
-    throw FrameError("no channel " + name);
-  return channel->data;
 }
 
 double mean(const std::vector<float>& values) {
@@ -36,7 +32,7 @@ double mean(const std::vector<float>& values) {
 
 std::string error_of(const std::vector<std::string>& overrides) {
   try {
-    cloud(overrides);
+    sunlit_cloud(overrides);
   } catch (const InputError& error) {
     const std::string text = error.what();
     return text.substr(text.find(": ") + 2);
@@ -49,7 +45,7 @@ class GroupsOfLights : public testing::TestWithParam<const char*> {};
 /// Groups add up to the picture, pixel by pixel.
 TEST_P(GroupsOfLights, AddUpToTheBeauty) {
   const std::string estimator = std::string("render.estimator=") + GetParam();
-  const Scene scene = cloud({estimator, "light.0.group=sun"});
+  const Scene scene = sunlit_cloud({estimator, "light.0.group=sun"});
   const Image image = render(scene).image;
   for (const char* channel : {"R", "G", "B"}) {
     const auto &all = plane(image, channel),
@@ -67,7 +63,8 @@ INSTANTIATE_TEST_SUITE_P(Estimators, GroupsOfLights, testing::Values("beam", "pa
 
 TEST(Layers, MergedPartsHaveTheGroups) {
   const test::TempFolder folder;
-  const Scene scene = cloud({"light.0.group=sun", "layer.0.name=lights", "layer.1.name=depth"});
+  const Scene scene =
+      sunlit_cloud({"light.0.group=sun", "layer.0.name=lights", "layer.1.name=depth"});
   const Image whole = render(scene).image;
   const Image merged = merge_partials(test::render_parts(scene, folder, {{0, 2}, {3, 7}}));
   ASSERT_EQ(merged.channels.size(), whole.channels.size());
@@ -78,10 +75,10 @@ TEST(Layers, MergedPartsHaveTheGroups) {
 }
 
 TEST(Layers, AreChosenByName) {
-  const Image image =
-      render(cloud({"layer.0.name=depth", "layer.1.name=background", "layer.1.precision=float",
-                    "layer.2.name=transmittance", "layer.3.name=variance"}))
-          .image;
+  const Image image = render(sunlit_cloud({"layer.0.name=depth", "layer.1.name=background",
+                                           "layer.1.precision=float", "layer.2.name=transmittance",
+                                           "layer.3.name=variance"}))
+                          .image;
   std::vector<std::string> names;
   for (const ImageChannel& channel : image.channels)
     names.push_back(channel.name);
@@ -91,7 +88,7 @@ TEST(Layers, AreChosenByName) {
   EXPECT_FALSE(image.find("background.R")->half);
   EXPECT_TRUE(image.find("R")->half);
   // The usual image gives the expected values.
-  const Image usual = render(cloud()).image;
+  const Image usual = render(sunlit_cloud()).image;
   for (std::size_t i = 0; i < plane(usual, "R").size(); ++i) {
     EXPECT_NEAR(plane(image, "background.G")[i], plane(usual, "G")[i] - plane(usual, "volume.G")[i],
                 1e-5);
@@ -106,8 +103,8 @@ TEST(Layers, SlowVarianceIsThatOfThePicture) {
   double stated = 0, shown = 0;
   std::vector<Image> images;
   for (int seed = 1; seed <= 12; ++seed) {
-    images.push_back(render(cloud({"layer.0.name=variance", "render.estimator=path",
-                                   "render.seed=" + std::to_string(seed)}))
+    images.push_back(render(sunlit_cloud({"layer.0.name=variance", "render.estimator=path",
+                                          "render.seed=" + std::to_string(seed)}))
                          .image);
     stated += mean(plane(images.back(), "variance.G")) / 12;
   }
@@ -128,7 +125,7 @@ TEST(Layers, SlowVarianceIsThatOfThePicture) {
 TEST(Layers, CompressionOfTheFile) {
   const test::TempFolder folder;
   for (const char* name : {"zip", "piz", "none", "zips", "rle"}) {
-    Scene scene = cloud({std::string("image.compression=") + name, "render.passes=1"});
+    Scene scene = sunlit_cloud({std::string("image.compression=") + name, "render.passes=1"});
     Image image = render(scene).image;
     image.metadata["vdbeam:compression"] = name;
     write_exr(image, folder.file("a.exr"));

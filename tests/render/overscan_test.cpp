@@ -11,7 +11,7 @@ namespace {
 
 constexpr int width = 30, height = 20, beyond = 5;
 
-Scene cloud(const std::vector<std::string>& more = {}) {
+Scene cloud_with_overscan(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=30", "image.height=20", "image.overscan=5",
                                      "render.photons=1500", "render.passes=4"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -25,7 +25,7 @@ float value(const Image& image, const char* name, int x, int y) {
 
 TEST(Overscan, ReachesBeyondThePicture) {
   const test::TempFolder folder;
-  const Image image = render(cloud()).image;
+  const Image image = render(cloud_with_overscan()).image;
   EXPECT_EQ(image.x, -beyond);
   EXPECT_EQ(image.y, -beyond);
   EXPECT_EQ(image.width, width + 2 * beyond);
@@ -42,8 +42,10 @@ TEST(Overscan, ReachesBeyondThePicture) {
 }
 
 TEST(Overscan, ShowsWhatAWiderPictureShows) {
-  const Image image = render(cloud({"render.passes=16", "render.estimator=path"})).image;
-  Scene wide = cloud({"render.passes=16", "render.estimator=path", "image.overscan=0"});
+  const Image image =
+      render(cloud_with_overscan({"render.passes=16", "render.estimator=path"})).image;
+  Scene wide =
+      cloud_with_overscan({"render.passes=16", "render.estimator=path", "image.overscan=0"});
   wide.image.width = width + 2 * beyond;
   wide.image.height = height + 2 * beyond;
   const double tangent = std::tan(wide.camera.fov * M_PI / 360);
@@ -60,7 +62,7 @@ TEST(Overscan, ShowsWhatAWiderPictureShows) {
 }
 
 TEST(Overscan, RegionsCountFromThePicture) {
-  const Scene scene = cloud();
+  const Scene scene = cloud_with_overscan();
   const Image whole = render(scene).image;
   FrameSettings frame;
   frame.region = PixelRegion{-3, -5, 9, 4};
@@ -74,7 +76,7 @@ TEST(Overscan, RegionsCountFromThePicture) {
 
 TEST(Overscan, PartsMerge) {
   const test::TempFolder folder;
-  const Scene scene = cloud();
+  const Scene scene = cloud_with_overscan();
   const Image whole = render(scene).image;
   const Image merged = merge_partials(test::render_parts(scene, folder, {{0, 1}, {2, 3}}));
   EXPECT_EQ(merged.x, -beyond);

@@ -1,5 +1,6 @@
 #include "film/film_file.h"
 #include "photonmap/map_queries.h"
+#include "support/image_checks.h"
 #include "support/render_parts.h"
 #include "support/temp_folder.h"
 #include "vdbeam/error.h"
@@ -13,32 +14,19 @@
 namespace vdbeam {
 namespace {
 
+using test::expect_same_pixels;
+
 /// The sample cloud, small and quick.
-Scene small_cloud(const std::vector<std::string>& more = {}) {
+Scene cloud_of_six_passes(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=40", "image.height=23", "render.photons=1500",
                                      "render.passes=6"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scene(VDBEAM_SOURCE_DIR "/data/cloud.toml", 1, overrides);
 }
 
-/// Channels, names and values, bit for bit.
-void expect_same_pixels(const Image& a, const Image& b) {
-  ASSERT_EQ(a.width, b.width);
-  ASSERT_EQ(a.height, b.height);
-  ASSERT_EQ(a.channels.size(), b.channels.size());
-  for (std::size_t c = 0; c < a.channels.size(); ++c) {
-    EXPECT_EQ(a.channels[c].name, b.channels[c].name);
-    ASSERT_EQ(a.channels[c].data.size(), b.channels[c].data.size());
-    EXPECT_EQ(std::memcmp(a.channels[c].data.data(), b.channels[c].data.data(),
-                          a.channels[c].data.size() * sizeof(float)),
-              0)
-        << a.channels[c].name;
-  }
-}
-
 class Partial : public ::testing::Test {
 protected:
-  std::string render_range(int first, int last, const Scene& scene = small_cloud()) {
+  std::string render_range(int first, int last, const Scene& scene = cloud_of_six_passes()) {
     return test::render_parts(scene, folder_, {{first, last}}).front();
   }
   std::string error_of(const std::vector<std::string>& paths, const MergeSettings& settings = {}) {
@@ -54,7 +42,7 @@ protected:
 };
 
 TEST_F(Partial, MergesToTheUndividedImage) {
-  const Image whole = render(small_cloud()).image;
+  const Image whole = render(cloud_of_six_passes()).image;
   const std::string a = render_range(0, 0), b = render_range(1, 3), c = render_range(4, 5);
   expect_same_pixels(merge_partials({c, a, b}), whole);
   // In a tree: (b + c) + a.
@@ -67,7 +55,7 @@ TEST_F(Partial, OpensInAViewer) {
   const Image image = read_image(render_range(0, 1));
   for (const char* name : {"R", "G", "B", "A"})
     ASSERT_TRUE(image.find(name)) << name;
-  const Image rendered = render(small_cloud({"render.passes=2"})).image;
+  const Image rendered = render(cloud_of_six_passes({"render.passes=2"})).image;
   EXPECT_EQ(image.find("R")->data, rendered.find("R")->data);
 }
 
@@ -91,12 +79,12 @@ TEST_F(Partial, RefusesWhatDoesNotBelongTogether) {
   EXPECT_NE(error_of({a}, {false, 6, "", ""}).find("passes 2-5 are missing"), std::string::npos);
   EXPECT_NE(error_of({a}, {false, 1, "", ""}).find("passes 1 are more than"), std::string::npos);
   EXPECT_TRUE(error_of({a, d}, {true, std::nullopt, "", ""}).empty());
-  const std::string other = render_range(2, 3, small_cloud({"render.seed=9"}));
+  const std::string other = render_range(2, 3, cloud_of_six_passes({"render.seed=9"}));
   EXPECT_NE(error_of({a, other}).find("the scenes differ"), std::string::npos);
-  const std::string smaller = render_range(3, 3, small_cloud({"image.width=39"}));
+  const std::string smaller = render_range(3, 3, cloud_of_six_passes({"image.width=39"}));
   EXPECT_NE(error_of({a, smaller}).find("the scenes differ"), std::string::npos);
   // Only the stop rule differs: they are passes of one picture.
-  const std::string longer = render_range(2, 3, small_cloud({"render.passes=64"}));
+  const std::string longer = render_range(2, 3, cloud_of_six_passes({"render.passes=64"}));
   EXPECT_TRUE(error_of({a, longer}).empty());
 }
 
@@ -144,7 +132,8 @@ TEST_F(Partial, OfMachinesThatRoundDifferentlyAreRefused) {
       continue;
     const std::string c = render_range(2, 3);
     confine_simd_targets(0);
-    expect_same_pixels(merge_partials({a, c}), render(small_cloud({"render.passes=4"})).image);
+    expect_same_pixels(merge_partials({a, c}),
+                       render(cloud_of_six_passes({"render.passes=4"})).image);
   }
   confine_simd_targets(0);
 }
@@ -159,7 +148,7 @@ TEST_F(Partial, DamagedAndForeignFilesAreRefusedInOneLine) {
     EXPECT_FALSE(error.empty()) << share;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
-  write_exr(render(small_cloud({"render.passes=1"})).image, broken);
+  write_exr(render(cloud_of_six_passes({"render.passes=1"})).image, broken);
   EXPECT_NE(error_of({broken}).find("not a partial image"), std::string::npos);
   EXPECT_FALSE(error_of({folder_.file("absent.exr")}).empty());
 }
@@ -172,7 +161,7 @@ TEST(Region, PixelsAreThoseOfTheWholeImage) {
       {"render.estimator=path"}};
   for (std::vector<std::string> way : ways) {
     way.push_back("render.passes=2");
-    const Scene scene = small_cloud(way);
+    const Scene scene = cloud_of_six_passes(way);
     const Image whole = render(scene).image;
     FrameSettings frame;
     frame.region = PixelRegion{9, 5, 31, 19};
@@ -192,7 +181,7 @@ TEST(Region, IsADataWindowInTheFile) {
   const test::TempFolder folder;
   FrameSettings frame;
   frame.region = PixelRegion{9, 5, 31, 19};
-  const Image part = render(small_cloud({"render.passes=1"}), frame).image;
+  const Image part = render(cloud_of_six_passes({"render.passes=1"}), frame).image;
   write_exr(part, folder.file("a.exr"));
   const Image read = read_image(folder.file("a.exr"));
   ASSERT_EQ(read.width, 40);
@@ -200,7 +189,7 @@ TEST(Region, IsADataWindowInTheFile) {
   EXPECT_EQ(read.find("A")->data[4 * 40 + 20], 0);
   EXPECT_EQ(read.find("depth.Z")->data[12 * 40 + 20], part.find("depth.Z")->data[7 * 22 + 11]);
   frame.region = PixelRegion{9, 5, 41, 19};
-  EXPECT_THROW(render(small_cloud(), frame), InputError);
+  EXPECT_THROW(render(cloud_of_six_passes(), frame), InputError);
 }
 
 /// Ends a render after some passes, as a signal does.
@@ -225,16 +214,16 @@ private:
 TEST(Checkpoint, ResumesBitForBit) {
   const test::TempFolder folder;
   const std::string path = folder.file("c.exr");
-  const RenderResult whole = render(small_cloud());
+  const RenderResult whole = render(cloud_of_six_passes());
   for (const int passes : {2, 5}) {
     Stopper stopper(passes);
-    const RenderResult stopped = stopper.render(small_cloud(), path);
+    const RenderResult stopped = stopper.render(cloud_of_six_passes(), path);
     EXPECT_EQ(stopped.stopped_by, "stop");
     EXPECT_EQ(read_film_info(path).passes.size(), static_cast<std::size_t>(passes));
   }
   FrameSettings frame;
   frame.checkpoint.path = path;
-  const RenderResult resumed = render(small_cloud(), frame);
+  const RenderResult resumed = render(cloud_of_six_passes(), frame);
   EXPECT_EQ(resumed.resumed_passes, 5);
   EXPECT_EQ(resumed.passes.back().pass, 6);
   EXPECT_EQ(resumed.passes.back().error_estimate, whole.passes.back().error_estimate);
@@ -249,7 +238,7 @@ TEST(Checkpoint, IsWrittenAtIntervalsOfPassesAndOfSeconds) {
     frame.checkpoint.passes = by_time ? 0 : 4;
     frame.checkpoint.seconds = by_time ? 1e-9 : 0;
     frame.checkpoint.resume = false;
-    render(small_cloud(), frame);
+    render(cloud_of_six_passes(), frame);
     EXPECT_EQ(read_film_info(frame.checkpoint.path).passes.size(), by_time ? 6u : 4u);
   }
 }
@@ -260,37 +249,38 @@ TEST(Checkpoint, OfAMachineThatRoundsDifferentlyIsNotUsed) {
   {
     const OldMachine old;
     Stopper stopper(2);
-    stopper.render(small_cloud(), path);
+    stopper.render(cloud_of_six_passes(), path);
   }
   FrameSettings frame;
   frame.checkpoint.path = path;
-  const RenderResult resumed = render(small_cloud(), frame);
+  const RenderResult resumed = render(cloud_of_six_passes(), frame);
   EXPECT_EQ(resumed.resumed_passes, 0);
   ASSERT_FALSE(resumed.notes.empty());
   EXPECT_NE(resumed.notes.back().find("rounds differently"), std::string::npos);
-  expect_same_pixels(resumed.image, render(small_cloud()).image);
+  expect_same_pixels(resumed.image, render(cloud_of_six_passes()).image);
 }
 
 TEST(Checkpoint, OfAnotherSceneOrBrokenIsNotUsed) {
   const test::TempFolder folder;
   const std::string path = folder.file("c.exr");
   Stopper stopper(2);
-  stopper.render(small_cloud({"render.seed=9"}), path);
+  stopper.render(cloud_of_six_passes({"render.seed=9"}), path);
   FrameSettings frame;
   frame.checkpoint.path = path;
-  const RenderResult whole = render(small_cloud()), other = render(small_cloud(), frame);
+  const RenderResult whole = render(cloud_of_six_passes()),
+                     other = render(cloud_of_six_passes(), frame);
   EXPECT_EQ(other.resumed_passes, 0);
   ASSERT_FALSE(other.notes.empty());
   EXPECT_NE(other.notes.back().find("another scene"), std::string::npos);
   expect_same_pixels(other.image, whole.image);
   test::write_bytes(path, test::read_bytes(path).substr(0, 5000));
-  const RenderResult broken = render(small_cloud(), frame);
+  const RenderResult broken = render(cloud_of_six_passes(), frame);
   EXPECT_EQ(broken.resumed_passes, 0);
   expect_same_pixels(broken.image, whole.image);
 }
 
 TEST(PreparedScene, IsTakenOverWhereNothingChanged) {
-  const Scene scene = small_cloud();
+  const Scene scene = cloud_of_six_passes();
   const PreparedScenePtr first = prepare_scene(scene);
   Scene moved = scene;
   moved.camera.position.x += 0.5;

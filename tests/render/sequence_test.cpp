@@ -13,7 +13,7 @@ namespace vdbeam {
 namespace {
 
 /// The sample cloud at a frame, small and quick.
-Scene small_cloud(int frame = 1, const std::vector<std::string>& more = {}) {
+Scene cloud_in_frame(int frame = 1, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"image.width=40", "image.height=23", "render.photons=3000",
                                      "render.passes=3", "render.estimator=beam"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -42,13 +42,13 @@ bool same_pixels(const Image& a, const Image& b) {
 TEST(Seeds, CorrelatedFramesDrawTheSameNumbers) {
   for (const char* estimator : {"beam", "march", "path"}) {
     const std::string choice = std::string("render.estimator=") + estimator;
-    const Scene correlated = small_cloud(1, {choice, "render.seeds=correlated"});
-    const Scene per_frame = small_cloud(1, {choice, "render.seeds=per_frame"});
+    const Scene correlated = cloud_in_frame(1, {choice, "render.seeds=correlated"});
+    const Scene per_frame = cloud_in_frame(1, {choice, "render.seeds=per_frame"});
     const Image first = render_alone(correlated, 1);
     EXPECT_TRUE(same_pixels(first, render_alone(correlated, 7))) << estimator;
     EXPECT_TRUE(same_pixels(first, render_alone(per_frame, 1))) << estimator;
     EXPECT_FALSE(same_pixels(first, render_alone(per_frame, 7))) << estimator;
-    const Scene other = small_cloud(1, {choice, "render.seeds=correlated", "render.seed=2"});
+    const Scene other = cloud_in_frame(1, {choice, "render.seeds=correlated", "render.seed=2"});
     EXPECT_FALSE(same_pixels(first, render_alone(other, 7))) << estimator;
   }
 }
@@ -58,10 +58,10 @@ std::vector<Image> render_pair(const char* policy, int seed, int passes) {
   std::vector<Image> images;
   for (int frame = 1; frame <= 2; ++frame)
     images.push_back(render_alone(
-        small_cloud(frame,
-                    {std::string("render.seeds=") + policy, "render.seed=" + std::to_string(seed),
-                     "render.passes=" + std::to_string(passes), "render.photons=20000",
-                     frame == 1 ? "volume.0.extinction=40" : "volume.0.extinction=40.8"}),
+        cloud_in_frame(frame, {std::string("render.seeds=") + policy,
+                               "render.seed=" + std::to_string(seed),
+                               "render.passes=" + std::to_string(passes), "render.photons=20000",
+                               frame == 1 ? "volume.0.extinction=40" : "volume.0.extinction=40.8"}),
         frame));
   return images;
 }
@@ -77,7 +77,7 @@ double flicker(const std::vector<Image>& truth, const char* policy) {
 }
 
 TEST(Seeds, TheDefaultFlickersLess) {
-  EXPECT_EQ(small_cloud().render.seeds, SeedPolicy::correlated);
+  EXPECT_EQ(cloud_in_frame().render.seeds, SeedPolicy::correlated);
   const std::vector<Image> truth = render_pair("correlated", 99, 60);
   const double correlated = flicker(truth, "correlated"), per_frame = flicker(truth, "per_frame");
   EXPECT_GT(correlated, 0);
@@ -91,7 +91,7 @@ std::vector<std::uint64_t> reused_maps(const std::vector<std::string>& more) {
   std::vector<std::uint64_t> counts;
   PreparedScenePtr prepared;
   for (int frame = 1; frame <= 4; ++frame) {
-    Scene scene = small_cloud(frame, more);
+    Scene scene = cloud_in_frame(frame, more);
     scene.camera.position.x += 0.1 * frame;
     scene.camera.fov += frame;
     prepared = prepare_scene(scene, prepared);
@@ -112,7 +112,7 @@ TEST(PhotonReuse, WorksOnSurfacesToo) {
   PreparedScenePtr prepared;
   Counts counts;
   for (int frame = 1; frame <= 4; ++frame) {
-    Scene scene = small_cloud(frame, {"render.thinning=even"});
+    Scene scene = cloud_in_frame(frame, {"render.thinning=even"});
     SurfaceSettings& floor = scene.surfaces.emplace_back();
     floor.shape = SurfaceShape::quad;
     floor.transform = {4, 0, 0, 0, 0, 0, 4, -0.9, 0, -4, 0, 0};
@@ -151,7 +151,7 @@ TEST(PhotonReuse, IsNotDoneWhereTheNumberOfPhotonsFollowsTheView) {
   PreparedScenePtr prepared;
   std::vector<std::uint64_t> counts;
   for (int frame = 1; frame <= 4; ++frame) {
-    Scene scene = small_cloud(
+    Scene scene = cloud_in_frame(
         frame, {"image.width=160", "image.height=92", "render.passes=1", "render.photons=auto"});
     scene.camera.fov = frame == 3 ? 10 : 24;
     prepared = prepare_scene(scene, prepared);
@@ -167,7 +167,7 @@ TEST(PhotonReuse, IsNotDoneWhereTheNumberOfPhotonsFollowsTheView) {
 TEST(PhotonReuse, SettingsMayChangeOverOneWorld) {
   PreparedScenePtr first, prepared;
   for (int frame = 1; frame <= 4; ++frame) {
-    Scene scene = small_cloud(frame, {"render.thinning=even"});
+    Scene scene = cloud_in_frame(frame, {"render.thinning=even"});
     scene.render.kernel_shape = frame < 4 ? KernelShape::biweight : KernelShape::constant;
     prepared = prepare_scene(scene, prepared);
     first = first ? first : prepared;
@@ -181,7 +181,7 @@ TEST(PhotonReuse, SettingsMayChangeOverOneWorld) {
 TEST(PhotonReuse, EndsWhenALightOrTheVolumeChanges) {
   PreparedScenePtr prepared;
   for (int frame = 1; frame <= 5; ++frame) {
-    Scene scene = small_cloud(frame);
+    Scene scene = cloud_in_frame(frame);
     scene.lights[0].irradiance = Rgb(frame == 4 ? 2.0f : 1.0f);
     prepared = prepare_scene(scene, prepared);
     const RenderResult result = render_frame(scene, frame, prepared);

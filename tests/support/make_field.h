@@ -10,7 +10,7 @@ namespace vdbeam::test {
 /// where the ramp below the first voxel matters.
 template <class Value>
 DensityField make_field(int nx, int ny, int nz, Value value) {
-  constexpr int cell = DensityField::cell_width, brick = DensityField::brick_width;
+  constexpr int cell = cell_width, brick = brick_width;
   const Vec3<int> counts{(nx + cell - 1) / cell, (ny + cell - 1) / cell, (nz + cell - 1) / cell};
   std::vector<std::int32_t> cells;
   std::vector<float> bricks, uniform_values;

@@ -24,7 +24,7 @@ namespace vdbeam::test {
 /// brick, also where it is uniform.
 template <class Value>
 DensityField closed_field(const Vec3<int>& cells, Value value) {
-  constexpr int cell = DensityField::cell_width, brick = DensityField::brick_width;
+  constexpr int cell = cell_width, brick = brick_width;
   std::vector<std::int32_t> table;
   std::vector<float> bricks;
   for (int i = 0; i < cells.x; ++i)

@@ -10,7 +10,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"reflectance"};
+constexpr std::string_view toy_material_keys[] = {"reflectance"};
 
 /// Diffuse with half its reflectance as albedo.
 class Slate final : public Diffuse {
@@ -27,7 +27,7 @@ private:
 const MaterialKind slate_material{
     .name = "slate",
     .help = "diffuse and rather dark",
-    .keys = keys,
+    .keys = toy_material_keys,
     .colored = [](const MaterialSettings& settings) { return !is_grey(settings.reflectance); },
     .make = [](const MaterialSettings& settings, double) -> std::unique_ptr<Material> {
       return std::make_unique<Slate>(settings);

@@ -7,13 +7,13 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::string_view keys[] = {"g"};
+constexpr std::string_view toy_phase_keys[] = {"g"};
 
 /// As much backwards as forwards.
 const PhaseKind mirrored_phase{
     .name = "mirrored",
     .help = "as much backwards as forwards",
-    .keys = keys,
+    .keys = toy_phase_keys,
     .complaint =
         [](const PhaseSettings& phase) {
           return phase.g > 0 ? mean_cosine_complaint("g", phase.g)

@@ -12,27 +12,27 @@
 namespace vdbeam {
 namespace {
 
-constexpr int flights = 100000;
-constexpr int bins = 60;
+constexpr int free_flights = 100000;
+constexpr int free_bins = 60;
 
 /// Chi-squared p-value of the distances (and of no collision at all) that delta tracking draws
 /// along a ray, against the exact CDF.
 double flight_p_value(const Medium& medium, const Ray& ray, float t_end, std::uint64_t seed) {
-  std::vector<double> counts(bins + 1), expected(bins + 1);
+  std::vector<double> counts(free_bins + 1), expected(free_bins + 1);
   double before = 1;
-  for (int b = 0; b < bins; ++b) {
+  for (int b = 0; b < free_bins; ++b) {
     const double after = static_cast<double>(
-        exact_transmittance(medium, {ray, 0, t_end * static_cast<float>(b + 1) / bins}).x);
-    expected[static_cast<std::size_t>(b)] = (before - after) * flights;
+        exact_transmittance(medium, {ray, 0, t_end * static_cast<float>(b + 1) / free_bins}).x);
+    expected[static_cast<std::size_t>(b)] = (before - after) * free_flights;
     before = after;
   }
-  expected[bins] = before * flights;
+  expected[free_bins] = before * free_flights;
   Rng rng({seed, 0, 0}, RngStage::test, 1);
-  for (int n = 0; n < flights; ++n) {
+  for (int n = 0; n < free_flights; ++n) {
     Rgb weight(1);
     const Collision hit = test::next_scattering(medium, ray, weight, rng);
     const bool beyond = hit.volume == nullptr || hit.t >= t_end;
-    ++counts[beyond ? bins : static_cast<std::size_t>(hit.t / t_end * bins)];
+    ++counts[beyond ? free_bins : static_cast<std::size_t>(hit.t / t_end * free_bins)];
   }
   return test::chi_squared_test(counts, expected);
 }
@@ -46,7 +46,7 @@ Volume noise_volume(std::uint64_t seed, float voxel, float corner, float extinct
                            voxel, Vec3f(corner), extinction);
 }
 
-const Boxf bounds{Vec3f(-0.6f), Vec3f(0.6f)};
+const Boxf free_bounds{Vec3f(-0.6f), Vec3f(0.6f)};
 
 /// Rays across the box (-0.5, 0.5)^3.
 std::vector<Ray> rays(int count) {
@@ -61,7 +61,7 @@ std::vector<Ray> rays(int count) {
 }
 
 void expect_exact_flights(std::vector<Volume> volumes, int ray_count) {
-  const Medium medium = test::make_medium(std::move(volumes), bounds);
+  const Medium medium = test::make_medium(std::move(volumes), free_bounds);
   std::uint64_t seed = 1;
   for (const Ray& ray : rays(ray_count))
     EXPECT_GT(flight_p_value(medium, ray, 1.5f, seed++), test::family_level(3 * ray_count));
@@ -95,10 +95,10 @@ TEST(DeltaTracking, CollisionsBelongToVolumesByTheirShare) {
       test::make_volume(test::uniform_field({2, 2, 2}, 1), 1.0f / 16, Vec3f(-0.5f), 3));
   volumes.push_back(
       test::make_volume(test::uniform_field({1, 1, 1}, 1), 1.0f / 8, Vec3f(-0.5f), 1));
-  const Medium medium = test::make_medium(std::move(volumes), bounds);
+  const Medium medium = test::make_medium(std::move(volumes), free_bounds);
   Rng rng({1, 0, 0}, RngStage::test, 3);
   double counts[2] = {0, 0};
-  for (int n = 0; n < flights; ++n) {
+  for (int n = 0; n < free_flights; ++n) {
     Rgb weight(1);
     const Collision hit = test::next_scattering(medium, {{-0.7f, 0, 0}, {1, 0, 0}}, weight, rng);
     if (hit.volume != nullptr)
@@ -116,14 +116,14 @@ TEST(SpectralTracking, WeightsAreUnbiasedInEveryChannel) {
   volumes.push_back(noise_volume(4, 1.0f / 40, -0.25f, 10));
   volumes[0].channel_scale = {1, 0.4f, 0.1f};
   volumes[1].channel_scale = {0, 0.3f, 1};
-  const Medium medium = test::make_medium(std::move(volumes), bounds);
+  const Medium medium = test::make_medium(std::move(volumes), free_bounds);
   ASSERT_TRUE(medium.chromatic);
   const Rgb start{0.5f, 1, 0.25f};
   Rng rng({1, 0, 0}, RngStage::test, 4);
   for (const Ray& ray : rays(5)) {
     test::Samples passed[3], collided[3];
     float largest = 0;
-    for (int n = 0; n < flights; ++n) {
+    for (int n = 0; n < free_flights; ++n) {
       Rgb weight = start;
       const Collision hit = test::next_scattering(medium, ray, weight, rng);
       for (int c = 0; c < 3; ++c) {

@@ -15,7 +15,7 @@ namespace {
 /// From -0.1 to 0.1 along each axis, in volumes from -1 to 1.
 const WantedBox corner{{Vec3d(-0.1), Vec3d(0.1)}};
 
-float value_at(const DensityGrid& grid, const Vec3d& index) {
+float value_at_index(const DensityGrid& grid, const Vec3d& index) {
   return grid.field.sample(Vec3f(index - Vec3d(grid.field.origin())));
 }
 
@@ -40,9 +40,9 @@ TEST_P(CroppedRead, HasTheSameValuesInTheBox) {
   for (double i = std::floor(inside.lower.x); i <= inside.upper.x + 1; ++i)
     for (double j = std::floor(inside.lower.y); j <= inside.upper.y + 1; ++j)
       for (double k = std::floor(inside.lower.z); k <= inside.upper.z + 1; ++k) {
-        ASSERT_EQ(value_at(part, {i, j, k}), value_at(whole, {i, j, k}))
+        ASSERT_EQ(value_at_index(part, {i, j, k}), value_at_index(whole, {i, j, k}))
             << i << " " << j << " " << k;
-        positive += value_at(whole, {i, j, k}) > 0;
+        positive += value_at_index(whole, {i, j, k}) > 0;
       }
   EXPECT_GT(positive, 500);
   EXPECT_LT(part.active_voxels, whole.active_voxels / 2 + 1);
@@ -63,8 +63,8 @@ TEST_F(CroppedReadOf, Tiles) {
   const std::string path = write("tiles");
   const DensityGrid whole = read_density_grid(path, "density"),
                     part = read_density_grid(path, "density", {}, Background::refused, corner);
-  EXPECT_EQ(value_at(part, {0, 0, 0}), value_at(whole, {0, 0, 0}));
-  EXPECT_EQ(value_at(part, {-5, -5, -5}), value_at(whole, {-5, -5, -5}));
+  EXPECT_EQ(value_at_index(part, {0, 0, 0}), value_at_index(whole, {0, 0, 0}));
+  EXPECT_EQ(value_at_index(part, {-5, -5, -5}), value_at_index(whole, {-5, -5, -5}));
   EXPECT_LT(part.active_voxels, whole.active_voxels);
 }
 
@@ -101,7 +101,8 @@ TEST_F(CroppedReadOf, FilesThatAreCutShort) {
     try {
       const DensityGrid part = read_density_grid(path, "density", {}, Background::refused, corner);
       for (double i = -9; i <= 16; ++i)
-        EXPECT_EQ(value_at(part, {i, 3, -2}), value_at(whole, {i, 3, -2})) << share << " " << i;
+        EXPECT_EQ(value_at_index(part, {i, 3, -2}), value_at_index(whole, {i, 3, -2}))
+            << share << " " << i;
     } catch (const Error& error) {
       ++refused;
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);

@@ -12,7 +12,6 @@
 namespace vdbeam {
 namespace {
 
-constexpr int width = DensityField::brick_width;
 const Vec3<int> cells{3, 3, 2};
 
 /// Like cells at each height, with the values of `value(y)`.
@@ -24,10 +23,10 @@ DensityField layered_field(const std::function<double(int)>& value) {
       for (int z = 0; z < cells.z; ++z)
         table.push_back(y);
   for (int cell = 0; cell < cells.y; ++cell)
-    for (int x = 0; x < width; ++x)
-      for (int y = 0; y < width; ++y)
-        for (int z = 0; z < width; ++z)
-          bricks.push_back(static_cast<float>(value(DensityField::cell_width * cell + y)));
+    for (int x = 0; x < brick_width; ++x)
+      for (int y = 0; y < brick_width; ++y)
+        for (int z = 0; z < brick_width; ++z)
+          bricks.push_back(static_cast<float>(value(cell_width * cell + y)));
   return DensityField({}, cells, std::move(table), std::move(bricks), {});
 }
 

@@ -59,7 +59,7 @@ const auto everywhere = [](const Vec3d&) { return true; };
 const auto in_the_ball = [](const Vec3d& p) { return length(p - center) < 9; };
 
 /// The value of the moved field at an index.
-float value_at(const DensityGrid& grid, const Vec3d& index) {
+float moved_value_at(const DensityGrid& grid, const Vec3d& index) {
   return grid.field.sample(Vec3f(index - Vec3d(grid.field.origin())));
 }
 
@@ -69,7 +69,7 @@ double mass(const DensityGrid& grid, const Vec3d& lower = Vec3d(-60),
   for (double x = lower.x; x <= upper.x; ++x)
     for (double y = lower.y; y <= upper.y; ++y)
       for (double z = lower.z; z <= upper.z; ++z)
-        sum += static_cast<double>(value_at(grid, {x, y, z}));
+        sum += static_cast<double>(moved_value_at(grid, {x, y, z}));
   return sum;
 }
 
@@ -92,7 +92,8 @@ TEST(MovedField, TranslatesABall) {
       for (int j = 0; j < size; j += 2)
         for (int k = 0; k < size; ++k) {
           const Vec3d p{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
-          ASSERT_EQ(value_at(grid, p + v * time), value_at(still, p)) << i << " " << j << " " << k;
+          ASSERT_EQ(moved_value_at(grid, p + v * time), moved_value_at(still, p))
+              << i << " " << j << " " << k;
         }
     EXPECT_NEAR(mass(grid), mass(still), 1e-6 * mass(still));
   }
@@ -109,8 +110,8 @@ TEST(MovedField, KeepsMassBetweenVoxels) {
   for (int i = 0; i < size; ++i)
     for (int j = 0; j < size; ++j) {
       const Vec3d p{static_cast<double>(i), static_cast<double>(j), 11};
-      worst = std::max(
-          worst, std::abs(static_cast<double>(value_at(grid, p)) - ball(p, center + v * 0.5)));
+      worst = std::max(worst, std::abs(static_cast<double>(moved_value_at(grid, p)) -
+                                       ball(p, center + v * 0.5)));
     }
   EXPECT_LT(worst, 3 * 6.0 / 64 / 8); // three axes of |f''| / 8, f'' = 6 / 64 at the middle
 }
@@ -130,7 +131,8 @@ TEST(MovedField, TurnsByTheTangent) {
         const Vec3d source{(q.x + turn * q.y) / stretch, (q.y - turn * q.x) / stretch, q.z};
         const double expected = ball(source + Vec3d(16, 16, 16));
         worst = std::max(
-            worst, std::abs(static_cast<double>(value_at(grid, q + Vec3d(16, 16, 16))) - expected));
+            worst,
+            std::abs(static_cast<double>(moved_value_at(grid, q + Vec3d(16, 16, 16))) - expected));
         sum += expected;
       }
   EXPECT_GT(sum, 100);
@@ -167,8 +169,9 @@ TEST(MovedField, WaysBetweenThePointsOfACoarseVelocity) {
       for (int j = 4; j < size - 4; ++j)
         for (int k = 4; k < size - 4; ++k) {
           const Vec3d p(Vec3<int>{i, j, k});
-          const auto value = static_cast<double>(value_at(found, p));
-          worst = std::max(worst, std::abs(static_cast<double>(value_at(between, p)) - value));
+          const auto value = static_cast<double>(moved_value_at(found, p));
+          worst =
+              std::max(worst, std::abs(static_cast<double>(moved_value_at(between, p)) - value));
           change = std::max(change, std::abs(value - ball(p)));
         }
     EXPECT_GT(change, 0.2);
@@ -184,9 +187,10 @@ TEST(MovedField, UnitsOfTheWorldAndOfTheIndex) {
       velocities([](const Vec3d&) { return Vec3d(2, 0, 0); }, everywhere, false, 0.25);
   const Vec3d top{15, 16, 15};
   const DensityGrid still = ball_grid(0.25);
-  EXPECT_EQ(value_at(moved(velocity, 1, 0.25), top + Vec3d(8, 0, 0)), value_at(still, top));
-  EXPECT_EQ(value_at(moved(velocity, 1, 0.25, VelocityUnits::index), top + Vec3d(2, 0, 0)),
-            value_at(still, top));
+  EXPECT_EQ(moved_value_at(moved(velocity, 1, 0.25), top + Vec3d(8, 0, 0)),
+            moved_value_at(still, top));
+  EXPECT_EQ(moved_value_at(moved(velocity, 1, 0.25, VelocityUnits::index), top + Vec3d(2, 0, 0)),
+            moved_value_at(still, top));
 }
 
 TEST(MovedField, StandsStillWithoutTimeOrVelocity) {
@@ -194,8 +198,8 @@ TEST(MovedField, StandsStillWithoutTimeOrVelocity) {
   const DensityGrid same = moved(velocity, 0), still = ball_grid();
   ASSERT_EQ(same.field.brick_count(), still.field.brick_count());
   for (int i = 0; i < size; ++i)
-    EXPECT_EQ(value_at(same, {static_cast<double>(i), 16, 15}),
-              value_at(still, {static_cast<double>(i), 16, 15}));
+    EXPECT_EQ(moved_value_at(same, {static_cast<double>(i), 16, 15}),
+              moved_value_at(still, {static_cast<double>(i), 16, 15}));
   const VectorField nothing =
       velocities([](const Vec3d&) { return Vec3d(5, 5, 5); }, [](const Vec3d&) { return false; });
   EXPECT_EQ(mass(moved(nothing, 1)), mass(still));
@@ -212,7 +216,8 @@ TEST(MovedField, OutliersMoveLikeTheirNeighbours) {
   EXPECT_EQ(velocity.outliers(), 2);
   const DensityGrid grid = moved(velocity, 1), still = ball_grid();
   for (int i = 4; i < size; ++i)
-    EXPECT_EQ(value_at(grid, {i + 4.0, 16, 15}), value_at(still, {static_cast<double>(i), 16, 15}));
+    EXPECT_EQ(moved_value_at(grid, {i + 4.0, 16, 15}),
+              moved_value_at(still, {static_cast<double>(i), 16, 15}));
 }
 
 TEST(ReadVelocity, FindsItByItsName) {

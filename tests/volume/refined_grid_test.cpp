@@ -11,7 +11,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::uint64_t plenty = std::uint64_t(1) << 30;
+constexpr std::uint64_t enough_memory = std::uint64_t(1) << 30;
 
 template <class Value>
 DensityGrid grid_of(Value value) {
@@ -58,7 +58,7 @@ double noise(int i, int j, int k) {
 
 TEST(RefinedGrid, IsTheSplineAtEveryPointOfItsLattice) {
   const DensityGrid grid = grid_of(noise);
-  const DensityGrid fine = refined_grid(grid, "a.vdb", plenty);
+  const DensityGrid fine = refined_grid(grid, "a.vdb", enough_memory);
   double largest = 0;
   for (int i = -5; i < 46; ++i)
     for (int j = -5; j < 40; ++j)
@@ -76,7 +76,7 @@ TEST(RefinedGrid, IsTheSplineAtEveryPointOfItsLattice) {
 /// As much lies in it, and no plane of the old lattice has a kink.
 TEST(RefinedGrid, KeepsTheMassAndIsSmooth) {
   const DensityGrid grid = grid_of(noise);
-  const DensityGrid fine = refined_grid(grid, "a.vdb", plenty);
+  const DensityGrid fine = refined_grid(grid, "a.vdb", enough_memory);
   double before = 0, after = 0;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 17; ++j)
@@ -94,11 +94,11 @@ TEST(RefinedGrid, RefusesMoreMemoryThanThereIs) {
   EXPECT_THROW(refined_grid(grid_of(noise), "a.vdb", 1000), FrameError);
   const std::atomic<bool> yes = true;
   const StopToken stop(&yes);
-  EXPECT_THROW(refined_grid(grid_of(noise), "a.vdb", {plenty, &stop}), Stopped);
+  EXPECT_THROW(refined_grid(grid_of(noise), "a.vdb", {enough_memory, &stop}), Stopped);
 }
 
 TEST(RefinedGrid, OfNothingIsNothing) {
-  EXPECT_TRUE(refined_grid(DensityGrid{}, "a.vdb", plenty).field.empty());
+  EXPECT_TRUE(refined_grid(DensityGrid{}, "a.vdb", enough_memory).field.empty());
 }
 
 } // namespace

@@ -12,24 +12,23 @@
 namespace vdbeam {
 namespace {
 
-constexpr double pi_ = std::numbers::pi;
 /// Least transmittance that counts as more than 0.
 constexpr double least_left = 1e-12;
-
-/// What tables depend on.
-struct TableKey {
-  AirSettings air;
-  Rgb irradiance;
-  ColorSpace space = ColorSpace::rec709;
-
-  friend bool operator==(const TableKey&, const TableKey&) = default;
-};
 
 } // namespace
 
 /// Rows by elevation, densest at the horizon, as those of the sky; columns by azimuth from the sun.
 struct AerialPerspective::Tables {
-  Tables(const TableKey& key_, const AirColors& color)
+  /// What the tables depend on.
+  struct Key {
+    AirSettings air;
+    Rgb irradiance;
+    ColorSpace space = ColorSpace::rec709;
+
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+
+  Tables(const Key& key_, const AirColors& color)
       : key(key_), air(atmosphere_of(key_.air)), depths(static_cast<std::size_t>(rows) * knots),
         sources(static_cast<std::size_t>(rows) * columns * knots) {
     tbb::parallel_for(0, rows, [&](int row) { fill(row, color); });
@@ -37,7 +36,7 @@ struct AerialPerspective::Tables {
 
   static double elevation(int row) {
     const double v = 2 * (row + 0.5) / rows - 1;
-    return std::copysign(v * v, v) * pi_ / 2;
+    return std::copysign(v * v, v) * std::numbers::pi / 2;
   }
   static std::size_t offset(int row, int column) {
     return (static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)) * knots;
@@ -52,7 +51,7 @@ struct AerialPerspective::Tables {
     const Vec3d white = color.rgb(air->unfiltered());
     Rgb* depth = &depths[static_cast<std::size_t>(row) * knots];
     for (int column = 0; column < columns; ++column) {
-      air->between(elevation(row), pi_ * column / (columns - 1), distances, between);
+      air->between(elevation(row), std::numbers::pi * column / (columns - 1), distances, between);
       Rgb* source = &sources[offset(row, column)];
       for (std::size_t k = 1; k < knots; ++k) {
         const Vec3d left = color.rgb(between[k - 1].left);
@@ -69,7 +68,7 @@ struct AerialPerspective::Tables {
     depth[0] = depth[1];
   }
 
-  TableKey key;
+  Key key;
   std::shared_ptr<const Atmosphere> air;
   std::vector<Rgb> depths;  ///< [row][knot]
   std::vector<Rgb> sources; ///< [row][column][knot]
@@ -80,7 +79,7 @@ AerialPerspective::AerialPerspective(const LightSettings& settings, const Vec3d&
     : axes_(environment_axes(up, 0)), metres_(*settings.metres_per_unit / space.scale) {
   const Vec3d to_sun = -unit_direction(settings.direction, "light.direction");
   sun_turn_ = std::atan2(dot(axes_[1], to_sun), dot(axes_[0], to_sun));
-  const TableKey key{air_of(settings, up), settings.irradiance, settings.color_space};
+  const Tables::Key key{air_of(settings, up), settings.irradiance, settings.color_space};
   static std::mutex mutex;
   static std::shared_ptr<const Tables> last;
   const std::scoped_lock lock(mutex);
@@ -99,11 +98,13 @@ RayAir AerialPerspective::along(const Vec3d& direction, double shift) const {
     rest = static_cast<float>(inside - first);
     return first;
   };
-  const double v = std::copysign(std::sqrt(std::abs(elevation) / (pi_ / 2)), elevation);
+  const double v =
+      std::copysign(std::sqrt(std::abs(elevation) / (std::numbers::pi / 2)), elevation);
   float down = 0, across = 0;
   const int row = split((v + 1) / 2 * rows - 0.5, rows, down);
-  const int column =
-      split(std::abs(std::remainder(azimuth, 2 * pi_)) / pi_ * (columns - 1), columns, across);
+  const int column = split(std::abs(std::remainder(azimuth, 2 * std::numbers::pi)) /
+                               std::numbers::pi * (columns - 1),
+                           columns, across);
   RayAir::Table table;
   table.knots = knots;
   table.length = tables_->air->length_in_air(elevation);

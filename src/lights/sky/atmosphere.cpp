@@ -11,13 +11,11 @@
 namespace vdbeam {
 namespace {
 
-constexpr double pi_ = std::numbers::pi;
-constexpr std::size_t count = Atmosphere::wavelengths;
 constexpr double first_nm = 390, step_nm = 20; ///< middles of the bands, and their width
 constexpr double earth = 6360e3, top = 6420e3; ///< radii of the ground and of the air's end [m]
 constexpr double air_height = 8000, haze_height = 1200; ///< over which densities fall to 1/e [m]
 constexpr double haze_albedo = 0.92, haze_g = 0.8, haze_exponent = 1.3; ///< of a rural haze
-constexpr double sun_radius = 0.2666 * pi_ / 180;
+constexpr double sun_radius_radians = 0.2666 * std::numbers::pi / 180;
 
 /// The sun's irradiance above the air (ASTM G173-03, extraterrestrial) in each band
 /// [W / m^2 / nm].
@@ -54,11 +52,11 @@ double to_ground(double radius, double mu) {
 }
 
 double rayleigh(double cosine) {
-  return 3 / (16 * pi_) * (1 + cosine * cosine);
+  return 3 / (16 * std::numbers::pi) * (1 + cosine * cosine);
 }
 double haze_phase(double cosine) {
   return (1 - haze_g * haze_g) /
-         (4 * pi_ * std::pow(1 + haze_g * haze_g - 2 * haze_g * cosine, 1.5));
+         (4 * std::numbers::pi * std::pow(1 + haze_g * haze_g - 2 * haze_g * cosine, 1.5));
 }
 
 /// Bilinear reading of a table of rows; both places in [0, 1].
@@ -84,7 +82,7 @@ constexpr auto mix_vectors = [](const Vec3d& a, const Vec3d& b, double t) {
   return a + (b - a) * t;
 };
 constexpr auto mix_spectra = [](Atmosphere::Spectrum a, const Atmosphere::Spectrum& b, double t) {
-  for (std::size_t w = 0; w < count; ++w)
+  for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w)
     a[w] += (b[w] - a[w]) * t;
   return a;
 };
@@ -100,7 +98,7 @@ struct Atmosphere::Line {
 
 Atmosphere::Atmosphere(const AirSettings& settings) : settings_(settings) {
   settings_.altitude = std::clamp(settings_.altitude, 1.0, 50e3);
-  for (std::size_t w = 0; w < count; ++w) {
+  for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w) {
     const double micrometres = (first_nm + step_nm * static_cast<double>(w)) / 1000;
     const double square = micrometres * micrometres;
     // Optical depth of all the air (Hansen and Travis, Light scattering in planetary atmospheres,
@@ -121,7 +119,7 @@ Atmosphere::Atmosphere(const AirSettings& settings) : settings_(settings) {
 Vec3d Atmosphere::to_xyz(const Spectrum& spectrum) const {
   Vec3d sum;
   double white = 0;
-  for (std::size_t w = 0; w < count; ++w) {
+  for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w) {
     const Vec3d seen = color_matching(first_nm + step_nm * static_cast<double>(w)) * solar[w];
     sum += seen * spectrum[w];
     white += seen.y;
@@ -167,7 +165,7 @@ Atmosphere::Columns Atmosphere::columns_to_top(double radius, double mu) const {
 
 Atmosphere::Spectrum Atmosphere::transmittance(const Columns& columns) const {
   Spectrum result;
-  for (std::size_t w = 0; w < count; ++w)
+  for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w)
     result[w] = std::exp(-(air_[w] * columns.x + haze_[w] * columns.y + ozone_[w] * columns.z));
   return result;
 }
@@ -175,7 +173,7 @@ Atmosphere::Spectrum Atmosphere::transmittance(const Columns& columns) const {
 Atmosphere::Spectrum Atmosphere::sunlight(double radius, double mu) const {
   const double sine = earth / radius, horizon = -std::sqrt(std::max(0.0, 1 - sine * sine));
   // The part of the disc that stands above the horizon.
-  const double x = std::clamp((mu - horizon) / (2 * sine * sun_radius) + 0.5, 0.0, 1.0);
+  const double x = std::clamp((mu - horizon) / (2 * sine * sun_radius_radians) + 0.5, 0.0, 1.0);
   if (x == 0)
     return {};
   Spectrum result = transmittance(columns_to_top(radius, std::max(mu, horizon)));
@@ -207,7 +205,7 @@ public:
     const Vec3d density = densities(radius);
     const Spectrum sun = air_.sunlight(radius, sun_mu),
                    more = repeated_ ? air_.scattered(radius, sun_mu) : Spectrum{};
-    for (std::size_t w = 0; w < count; ++w) {
+    for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w) {
       const double air = air_.air_[w] * density.x, all_haze = air_.haze_[w] * density.y;
       const double haze = all_haze * haze_albedo;
       const double extinction = air + all_haze + air_.ozone_[w] * density.z;
@@ -250,9 +248,9 @@ Atmosphere::Spectrum Atmosphere::along(const Line& line, bool repeated, Spectrum
     double radius = 0, sun_mu = 0;
     gathering.point(length, radius, sun_mu);
     const Spectrum sun = sunlight(earth, sun_mu);
-    for (std::size_t w = 0; w < count; ++w) {
+    for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w) {
       const double lit = std::max(0.0, sun_mu) * sun[w] + (repeated ? sky_spectrum_[w] : 0);
-      sum[w] += gathering.left[w] * settings_.ground_albedo / pi_ * lit;
+      sum[w] += gathering.left[w] * settings_.ground_albedo / std::numbers::pi * lit;
       if (isotropic)
         (*isotropic)[w] += gathering.left[w] * settings_.ground_albedo;
     }
@@ -299,13 +297,14 @@ void Atmosphere::make_scattered() {
     for (int i = 0; i < polar; ++i)
       for (int j = 0; j < around; ++j) {
         const double mu = 2 * (i + 0.5) / polar - 1, side = std::sqrt(1 - mu * mu);
-        const double cosine = mu * sun_mu + side * sun_side * std::cos(pi_ * (j + 0.5) / around);
+        const double cosine =
+            mu * sun_mu + side * sun_side * std::cos(std::numbers::pi * (j + 0.5) / around);
         const Spectrum found = along({radius, mu, sun_mu, cosine, 16}, false, &isotropic);
-        for (std::size_t w = 0; w < count; ++w)
+        for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w)
           once[w] += found[w];
       }
     Spectrum& result = scattered_[static_cast<std::size_t>(entry)];
-    for (std::size_t w = 0; w < count; ++w)
+    for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w)
       result[w] = once[w] / (polar * around) / (1 - isotropic[w] / (polar * around));
   });
 }
@@ -318,12 +317,12 @@ void Atmosphere::make_table() {
   const double radius = earth + settings_.altitude;
   const auto elevation = [](int row) {
     const double v = 2 * (row + 0.5) / table_rows - 1;
-    return std::copysign(v * v, v) * pi_ / 2;
+    return std::copysign(v * v, v) * std::numbers::pi / 2;
   };
   const auto fill = [&](int row) {
     const double mu = std::sin(elevation(row)), side = std::cos(elevation(row));
     for (int j = 0; j < table_columns; ++j) {
-      const double azimuth = pi_ * j / (table_columns - 1);
+      const double azimuth = std::numbers::pi * j / (table_columns - 1);
       const double cosine =
           std::clamp(mu * sun_mu + side * sun_side * std::cos(azimuth), -1.0, 1.0);
       spectra[static_cast<std::size_t>(row) * table_columns + static_cast<std::size_t>(j)] =
@@ -332,13 +331,15 @@ void Atmosphere::make_table() {
   };
   tbb::parallel_for(table_rows / 2, table_rows, fill);
   for (int row = table_rows / 2; row < table_rows; ++row) {
-    const double v = 2 * (row + 0.5) / table_rows - 1, band = pi_ * v * 2 / table_rows; // de
-    const double e = elevation(row), weight = std::sin(e) * std::cos(e) * band * 2 * pi_;
+    const double v = 2 * (row + 0.5) / table_rows - 1,
+                 band = std::numbers::pi * v * 2 / table_rows; // de
+    const double e = elevation(row),
+                 weight = std::sin(e) * std::cos(e) * band * 2 * std::numbers::pi;
     for (int j = 0; j < table_columns; ++j) {
       const double share = (j == 0 || j + 1 == table_columns ? 0.5 : 1.0) / (table_columns - 1);
       const Spectrum& seen =
           spectra[static_cast<std::size_t>(row) * table_columns + static_cast<std::size_t>(j)];
-      for (std::size_t w = 0; w < count; ++w)
+      for (std::size_t w = 0; w < Atmosphere::wavelengths; ++w)
         sky_spectrum_[w] += seen[w] * weight * share;
     }
   }
@@ -348,13 +349,13 @@ void Atmosphere::make_table() {
 }
 
 Vec3d Atmosphere::radiance(double elevation, double azimuth) const {
-  const double v =
-      std::copysign(std::sqrt(std::min(1.0, std::abs(elevation) / (pi_ / 2))), elevation);
+  const double v = std::copysign(
+      std::sqrt(std::min(1.0, std::abs(elevation) / (std::numbers::pi / 2))), elevation);
   double row = (v + 1) / 2 * table_rows - 0.5;
   // Nothing is blended across the horizon.
   const double half = table_rows / 2.0;
   row = elevation >= 0 ? std::max(row, half) : std::min(row, half - 1);
-  const double turn = std::abs(std::remainder(azimuth, 2 * pi_)) / pi_;
+  const double turn = std::abs(std::remainder(azimuth, 2 * std::numbers::pi)) / std::numbers::pi;
   return read_table(table_, table_rows, table_columns, row / (table_rows - 1), turn, mix_vectors);
 }
 

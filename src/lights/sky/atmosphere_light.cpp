@@ -14,7 +14,7 @@ namespace vdbeam {
 namespace {
 
 /// The sun's radius as seen from the earth, degrees.
-constexpr double sun_radius = 0.2666;
+constexpr double sun_radius_degrees = 0.2666;
 /// How the sun darkens towards its limb, at 610, 550 and 465 nm (Hestroffer and Magnan, Wavelength
 /// dependency of the Solar limb darkening, 1998).
 const Rgb sun_limb{0.456f, 0.508f, 0.605f};
@@ -111,7 +111,8 @@ std::unique_ptr<Light> make_atmosphere_light(const LightSettings& settings,
 std::unique_ptr<Light> make_sun_light(const LightSettings& settings, const LightContext& context) {
   const auto air = atmosphere_of(air_of(settings, context.up));
   return make_disc_light(unit_direction(settings.direction, "light.direction"),
-                         AirColors(settings)(air->sun()), sun_radius, sun_limb, context.region);
+                         AirColors(settings)(air->sun()), sun_radius_degrees, sun_limb,
+                         context.region);
 }
 
 constexpr std::string_view atmosphere_keys[] = {

@@ -15,7 +15,7 @@
 namespace vdbeam {
 namespace {
 
-constexpr std::size_t longest_file = std::size_t(256) << 20;
+constexpr std::size_t longest_table = std::size_t(256) << 20;
 
 enum Column : std::size_t { x, y, z, rx, ry, rz, scale, sx, sy, sz, density, matrix, end = 23 };
 const std::vector<std::string>& names() {
@@ -131,7 +131,7 @@ InstanceRow InstanceColumns::row(const std::vector<double>& numbers) const {
 }
 
 std::vector<InstanceRow> read_instance_file(const std::string& path, const std::string& columns) {
-  std::istringstream stream(read_text(path, longest_file));
+  std::istringstream stream(read_text(path, longest_table));
   std::vector<InstanceRow> rows;
   std::optional<InstanceColumns> meaning;
   int line = 0;
