@@ -151,12 +151,18 @@ Rgb light_of_end(const World& world, const TileRays::PixelRay& ray, const SeenSu
   return light * tr + lights_through(world, ray.camera.whole(), ray.profile, tr, false).sum();
 }
 
-/// Sets of shadow rays of a ray.
-int direct_samples(const PhotonPlan& plan, const TileRays::PixelRay& ray, float effort) {
+/// Sets of shadow rays of a ray, and the factor of what they find: where less than one is due,
+/// there is one by chance, or none.
+std::pair<int, float> direct_samples(const PhotonPlan& plan, const TileRays::PixelRay& ray,
+                                     float effort, Rng& rng) {
   if (ray.profile.empty())
-    return 1;
-  const int samples = plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1));
-  return std::max(1, static_cast<int>(std::lround(static_cast<float>(samples) * effort)));
+    return {1, 1};
+  const auto samples =
+      static_cast<float>(plan.direct_samples_of(ray.profile.total(ray.profile.knots() - 1)));
+  const float of_opacity = plan.effort_of(ray.profile.opacity());
+  if (const float due = samples * of_opacity; due < 1)
+    return {rng.uniform() < due, 1 / due};
+  return {std::max(1, static_cast<int>(std::lround(samples * effort * of_opacity))), 1};
 }
 
 /// Which pixels of the tile lie on edges.
@@ -247,12 +253,13 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
   Rng rng(key, RngStage::direct, ray.stream);
   const PhotonPlan& plan = photons.plan();
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
-  const LightSampling sampling{plan.sampled_lights, direct_samples(plan, ray, effort),
-                               &photons.shadows(), input.stop};
-  image.add(&PassImage::direct, target.pixel,
-            light_of_the_peak(world, ray, surface, plan.sampled_lights, sink) +
-                direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
-                             counts.shadow_rays, sink));
+  const auto [samples, weight] = direct_samples(plan, ray, effort, rng);
+  GroupedLight light = light_of_the_peak(world, ray, surface, plan.sampled_lights, sink);
+  if (samples > 0)
+    light += direct_light(world, ray.camera.ray(), ray.profile,
+                          {plan.sampled_lights, samples, &photons.shadows(), input.stop, weight},
+                          rng, counts.shadow_rays, sink);
+  image.add(&PassImage::direct, target.pixel, light);
   return medium;
 }
 

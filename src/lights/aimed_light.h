@@ -37,6 +37,9 @@ public:
   bool has_extent() const override { return light().has_extent(); }
   EmittedPhoton emit(double place, Rng& rng) const override;
   Rgb power() const override { return power_; }
+  Rgb power_into_nest() const override {
+    return medium_aim_ > 0 ? aims_[0].light->power() : power_;
+  }
   bool is_delta() const override { return light().is_delta(); }
   const Vec3d* position() const override { return light().position(); }
   Segment lit_part(const Segment& segment) const override { return light().lit_part(segment); }

@@ -60,6 +60,8 @@ public:
   }
   /// Power into the occupied region (render units), to share photons between lights.
   virtual Rgb power() const = 0;
+  /// The same into the smallest nest of the medium, where it has any.
+  virtual Rgb power_into_nest() const { return power(); }
   /// True where only sample_incident can find the light.
   virtual bool is_delta() const = 0;
   /// Where a local light stands, in render space; null for lights at infinity.

@@ -2,6 +2,7 @@
 
 #include "math/sampling.h"
 #include "medium/depth_profile.h"
+#include "medium/nest_bounds.h"
 
 #include <tbb/parallel_for.h>
 
@@ -26,8 +27,16 @@ Boxf box_along(const std::array<Vec3f, 3>& axes, const Boxf& box) {
 
 } // namespace
 
-ShadowLattice::ShadowLattice(const Medium& medium, const Vec3f& towards, double rays) {
-  place(medium.bounds, towards, rays);
+ShadowLattice::ShadowLattice(const Medium& medium, const Vec3f& towards, double rays)
+    : ShadowLattice(medium, medium.bounds, towards, rays) {
+  for (const std::vector<std::size_t>& nest : medium.nests)
+    finer_.push_back(ShadowLattice(medium, nest_bounds(medium, nest), towards, rays));
+}
+
+ShadowLattice::ShadowLattice(const Medium& medium, const Boxf& bounds, const Vec3f& towards,
+                             double rays) {
+  place(bounds, towards, rays);
+  to_edge_ = std::max(0.0f, origin_.z - box_along(axes_, medium.bounds).lower.z);
   depths_.resize(static_cast<std::size_t>(counts_.x) * counts_.y * counts_.z);
   tbb::parallel_for(0, counts_.x * counts_.y, [&](int column) { trace_column(medium, column); });
 }
@@ -60,14 +69,14 @@ void ShadowLattice::place(const Boxf& bounds, const Vec3f& towards, double rays)
 /// Follows the light through the medium.
 void ShadowLattice::trace_column(const Medium& medium, int column) {
   static thread_local DepthProfile profile;
-  const Vec3f start = point({column / counts_.y, column % counts_.y, 0});
+  const Vec3f start = point({column / counts_.y, column % counts_.y, 0}) - axes_[2] * to_edge_;
   profile.build(medium, {{start, axes_[2]}}, std::exp(-opaque_optical_depth));
   float* depths = depths_.data() + static_cast<std::size_t>(column) * counts_.z;
   if (profile.empty())
     return;
   ProfileCursor cursor(profile);
   for (int z = 0; z < counts_.z; ++z) {
-    cursor.move_to(static_cast<float>(z) * spacing_.z);
+    cursor.move_to(to_edge_ + static_cast<float>(z) * spacing_.z);
     Rgb tau;
     for (std::size_t v = 0; v < profile.volume_count(); ++v)
       tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
@@ -80,7 +89,23 @@ Vec3f ShadowLattice::point(const Vec3<int>& index) const {
   return axes_[0] * along.x + axes_[1] * along.y + axes_[2] * along.z;
 }
 
-float ShadowLattice::depth(const Vec3f& point) const {
+const ShadowLattice& ShadowLattice::finest_at(const Vec3f& point) const {
+  for (const ShadowLattice& lattice : finer_)
+    if (lattice.holds(point))
+      return lattice;
+  return *this;
+}
+
+bool ShadowLattice::holds(const Vec3f& point) const {
+  for (int a = 0; a < 3; ++a) {
+    const float x = (dot(point, axes_[static_cast<std::size_t>(a)]) - origin_[a]) / spacing_[a];
+    if (!(x >= 0 && x <= static_cast<float>(counts_[a] - 1)))
+      return false;
+  }
+  return true;
+}
+
+float ShadowLattice::own_depth(const Vec3f& point) const {
   const std::size_t strides[3] = {static_cast<std::size_t>(counts_.y) * counts_.z,
                                   static_cast<std::size_t>(counts_.z), 1};
   std::size_t corner = 0;

@@ -49,6 +49,41 @@ double total_power(const PhotonList& photons) {
   return sum;
 }
 
+/// What a coarse sample of the camera rays meets.
+struct SeenRays {
+  double hits = 0; ///< rays of a pass that show photons' light, by their effort
+  float full_opacity = 0;
+};
+
+SeenRays look_at_rays(const EstimatorInput& input) {
+  constexpr int samples = 48;
+  const Camera& camera = input.camera;
+  const bool caustics =
+      input.plan.needs(Stage::surface_photons) && input.world.surfaces->throw_light();
+  DepthProfile profile;
+  double hits = 0, sum = 0, squares = 0;
+  std::vector<float> opacities;
+  for (int y = 0; y < samples && !input.stopped(); ++y)
+    for (int x = 0; x < samples; ++x) {
+      const CameraRay ray = camera_ray(
+          input.world, camera,
+          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
+      profile.build(input.world.medium, ray.segment, 0.5f);
+      if (caustics && ray.hit) {
+        ++hits;
+      } else if (!profile.empty()) {
+        opacities.push_back(profile.opacity());
+        sum += opacities.back();
+        squares += opacities.back() * opacities.back();
+      }
+    }
+  PhotonPlan plan;
+  plan.full_opacity = sum > 0 ? tuning::faint_opacity * static_cast<float>(squares / sum) : 0;
+  for (const float opacity : opacities)
+    hits += plan.effort_of(opacity);
+  return {hits / (samples * samples) * camera.width() * camera.height(), plan.full_opacity};
+}
+
 } // namespace
 
 int PhotonPlan::direct_samples_of(float depth) const {
@@ -56,21 +91,7 @@ int PhotonPlan::direct_samples_of(float depth) const {
 }
 
 double count_hits(const EstimatorInput& input) {
-  constexpr int samples = 48;
-  const Camera& camera = input.camera;
-  const bool caustics =
-      input.plan.needs(Stage::surface_photons) && input.world.surfaces->throw_light();
-  DepthProfile profile;
-  double hits = 0;
-  for (int y = 0; y < samples && !input.stopped(); ++y)
-    for (int x = 0; x < samples; ++x) {
-      const CameraRay ray = camera_ray(
-          input.world, camera,
-          camera.ray((x + 0.5) * camera.width() / samples, (y + 0.5) * camera.height() / samples));
-      profile.build(input.world.medium, ray.segment, 0.5f);
-      hits += !profile.empty() || (caustics && ray.hit) ? 1 : 0;
-    }
-  return hits / (samples * samples) * camera.width() * camera.height();
+  return look_at_rays(input).hits;
 }
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {
@@ -93,6 +114,7 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = tuning::pilot_paths;
   pass.caustic_lights = caustic_lights(input.world);
+  plan.full_opacity = look_at_rays(input).full_opacity;
   TracedPhotons pilot = trace_photons(input.world, pass);
   if (const double power = total_power(pilot.photons); power > 0)
     plan.caustic_share = total_power(pilot.caustics) / power;

@@ -19,6 +19,8 @@ struct PhotonPlan {
   /// Shadow-ray samples per camera ray, at least and at most.
   int direct_samples = 1, most_direct_samples = 1;
   bool chooses_direct_samples = false; ///< the scene asks for no number
+  /// Opacity of a camera ray from which on it gets all of its walks and shadow rays.
+  float full_opacity = 0;
   /// The photons' power is scattered flux already, so that rays need not multiply by the albedo:
   /// always in scatter storage, in fluence storage where all volumes have the same albedo.
   bool albedo_in_power = false;
@@ -39,6 +41,11 @@ struct PhotonPlan {
   /// Shadow-ray samples of a camera ray that meets the optical depth `depth`: more where it is
   /// small and lights have an extent, since what is seen there is mostly scattered once.
   int direct_samples_of(float depth) const;
+  /// Part of the effort that a camera ray of this opacity gets: thin medium beside or before a
+  /// cloud, which is hardly seen, does not cost as much as the cloud.
+  float effort_of(float opacity) const {
+    return opacity < full_opacity ? opacity / full_opacity : 1;
+  }
 
   /// Kernels count with the part of them that lies inside the medium.
   bool share_at_boundary = true;
@@ -57,7 +64,7 @@ PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 /// Camera rays of a pass that show photons' light, from a coarse sample: those that meet the
-/// medium, and surfaces where photons bring caustics.
+/// medium, by their effort (PhotonPlan::effort_of), and surfaces where photons bring caustics.
 double count_hits(const EstimatorInput& input);
 /// Light paths per pass, from the photons that one of them stores.
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);

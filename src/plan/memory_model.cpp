@@ -10,6 +10,7 @@
 #include "lights/light_groups.h"
 #include "machine/threads.h"
 #include "materials/material_table.h"
+#include "medium/nests.h"
 #include "medium/shadow_lattice.h"
 #include "photonmap/photon_blocks.h"
 #include "photonmap/photon_map.h"
@@ -185,19 +186,35 @@ private:
     if (!plan_.needs(Stage::shadow_rays) ||
         !estimator_kind(scene_.render.estimator).shoots_photons())
       return;
-    Boxd bounds;
-    for (const SeenCells& seen : volumes_.seen)
-      if (seen.dims && !seen.cells.empty())
-        bounds.extend(seen.to_world.bounds(seen.cells.bounds()));
+    std::vector<Boxd> boxes;
+    std::vector<double> areas;
+    std::vector<std::vector<std::size_t>> lattices(1); // over all volumes, and over each nest
+    for (const SeenCells& seen : volumes_.seen) {
+      if (!seen.dims || seen.cells.empty())
+        continue;
+      lattices[0].push_back(boxes.size());
+      boxes.push_back(seen.to_world.bounds(seen.cells.bounds()));
+      const Vec3d size = boxes.back().size();
+      areas.push_back(size.x * size.y + size.y * size.z + size.z * size.x);
+    }
+    if (boxes.empty())
+      return;
+    const Nests nests = find_nests(areas);
+    lattices.insert(lattices.end(), nests.begin(), nests.end());
     const bool moves = volumes_.moments > 0 && plan_.needs(Stage::photon_importance);
     const double rays = PhotonPass::shadow_rays_per_pixel(moves) * static_cast<double>(pixels_);
     std::uint64_t bytes = 0;
-    for (std::size_t i = 0; i < scene_.lights.size() && !(bounds.lower.x > bounds.upper.x); ++i)
-      if ((scene_.lights[i].type == LightType::distant ||
-           scene_.lights[i].type == LightType::sun) &&
-          plan_.shadow_ray_lights[i])
-        bytes += ShadowLattice::bytes(Boxf{Vec3f(bounds.lower), Vec3f(bounds.upper)},
-                                      Vec3f(normalize(scene_.lights[i].direction)) * -1.0f, rays);
+    for (const std::vector<std::size_t>& lattice : lattices) {
+      Boxd bounds;
+      for (const std::size_t i : lattice)
+        bounds.extend(boxes[i]);
+      for (std::size_t i = 0; i < scene_.lights.size(); ++i)
+        if ((scene_.lights[i].type == LightType::distant ||
+             scene_.lights[i].type == LightType::sun) &&
+            plan_.shadow_ray_lights[i])
+          bytes += ShadowLattice::bytes(Boxf{Vec3f(bounds.lower), Vec3f(bounds.upper)},
+                                        Vec3f(normalize(scene_.lights[i].direction)) * -1.0f, rays);
+    }
     bytes *= std::max<std::uint64_t>(1, volumes_.moments);
     add("shadows", "", "", 0, bytes, bytes);
   }

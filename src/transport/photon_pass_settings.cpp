@@ -3,14 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include <numeric>
+
 namespace vdbeam {
+
+std::vector<double> shares_by_power(const LightSet& lights) {
+  std::vector<double> power, into_nest;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    power.push_back(mean_component(Vec3d(lights[i].power())));
+    into_nest.push_back(mean_component(Vec3d(lights[i].power_into_nest())));
+  }
+  const double all = std::accumulate(power.begin(), power.end(), 0.0),
+               nest = std::accumulate(into_nest.begin(), into_nest.end(), 0.0);
+  if (into_nest == power || !(nest > 0))
+    return power;
+  for (std::size_t i = 0; i < power.size(); ++i)
+    power[i] = 0.5 * (power[i] / all + into_nest[i] / nest);
+  return power;
+}
 
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,
                                        const PathGuide* guide) {
-  std::vector<double> power(lights.size());
-  double total = 0;
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    total += power[i] = guide ? guide->light_shares[i] : mean_component(Vec3d(lights[i].power()));
+  const std::vector<double> power = guide ? guide->light_shares : shares_by_power(lights);
+  const double total = std::accumulate(power.begin(), power.end(), 0.0);
   std::vector<std::uint64_t> first{0};
   double sum = 0;
   for (std::size_t i = 0; i < lights.size(); ++i) {

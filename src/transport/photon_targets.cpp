@@ -2,6 +2,8 @@
 
 #include "lights/aimed_light.h"
 #include "lights/light_table.h"
+#include "medium/optical_depth.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 
@@ -114,13 +116,16 @@ bool meets_sphere(const OccupiedRegion& region, const Ray& ray, double back) {
   return beside < radius * radius && along > -std::sqrt(radius * radius - beside) - back;
 }
 
-/// Whether a line from its origin on meets a cell in which there may be medium.
-bool meets(const Medium& medium, const Ray& ray) {
+/// Whether a line from its origin on meets a cell in which there may be medium; `only`: of these
+/// volumes.
+bool meets(const Medium& medium, const Ray& ray, const std::vector<std::size_t>* only = nullptr) {
   const Segment segment = medium.clip({ray});
   if (segment.empty())
     return false;
   bool met = false;
   medium.for_each_met(segment, [&](std::size_t v) {
+    if (only && std::find(only->begin(), only->end(), v) == only->end())
+      return;
     const Volume& volume = medium.volumes[v];
     for (GridTraversal walk = volume.traverse(segment); !met && !walk.done(); walk.advance()) {
       const Vec3<int>& cell = walk.cell();
@@ -130,46 +135,76 @@ bool meets(const Medium& medium, const Ray& ray) {
   return met;
 }
 
+/// The ray from a distance `back` before its origin on.
+Ray from_light(const Ray& ray, double back) {
+  return {ray.origin - ray.direction * static_cast<float>(back), ray.direction};
+}
+
 bool meets_target(const World& world, std::size_t target, const Ray& ray, double back) {
   const Medium& medium = world.medium;
   if (target >= world.medium_targets)
     return meets(world.targets[target].boxes, ray);
-  return target == medium.nests.size() ? meets(medium, ray)
-                                       : meets_sphere(world.targets[target], ray, back);
+  if (target + 1 == world.medium_targets)
+    return meets(medium, ray);
+  return target < world.first_sphere ? meets(medium, from_light(ray, back), &medium.nests[0])
+                                     : meets_sphere(world.targets[target], ray, back);
 }
 
-/// Flux of an aim's photons that counts, in the strongest channel and up to a factor.
-double counted_flux(const World& world, const AimedLight::Aim& aim) {
-  double flux = 0;
+/// What an aim's photons find that count, in the strongest channel.
+struct CountedFlux {
+  double sum = 0;     ///< up to a factor
+  double opacity = 0; ///< of the medium on their straight ways from the light, the mean
+};
+
+CountedFlux counted_flux(const World& world, const AimedLight::Aim& aim) {
+  CountedFlux flux;
   for (std::uint64_t n = 0; n < trial_photons; ++n) {
     Rng rng({}, RngStage::light, n);
     EmittedPhoton photon = aim.light->emit((static_cast<double>(n) + 0.5) / trial_photons, rng);
     photon.first_target = aim.first_target;
     photon.last_target = aim.last_target;
-    if (counts_for_its_target(world, *aim.light, photon))
-      flux += static_cast<double>(max_component(photon.flux));
+    if (!counts_for_its_target(world, *aim.light, photon))
+      continue;
+    const auto own = static_cast<double>(max_component(photon.flux));
+    flux.sum += own;
+    const Ray way = from_light(photon.ray, distance_to_light(world, *aim.light, photon));
+    if (const Segment segment = world.medium.clip({way}); !segment.empty()) {
+      const Rgb left = exact_transmittance(world.medium, segment);
+      flux.opacity += own * (1 - static_cast<double>(std::min({left.x, left.y, left.z})));
+    }
   }
+  if (flux.sum > 0)
+    flux.opacity /= flux.sum;
   return flux;
 }
 
-/// Shares of the photons: each target gets half of the previous one, those after the medium at most
-/// the flux that counts there in units of that to the medium; next to none where the light does not
-/// shine. Returns the aim at the medium.
+/// Shares of the photons: equal ones for the volumes of the nest and the medium, half of them for
+/// each sphere between these. Each target after the medium gets half of the previous one, at most
+/// the flux that counts there in units of that to the medium. Next to none where the light does not
+/// shine or the medium around the nests is not seen. Returns the aim at the medium.
 std::size_t share_out(const World& world, std::vector<AimedLight::Aim>& aims) {
   const std::size_t medium = std::max<std::size_t>(world.medium_targets, 1) - 1;
   std::vector<double> weights;
-  double sum = 0, to_medium = 0;
+  double sum = 0, to_medium = 0, full_opacity = 0;
   for (std::size_t i = 0; i < aims.size(); ++i) {
-    const double flux = counted_flux(world, aims[i]);
+    const CountedFlux flux = counted_flux(world, aims[i]);
     if (i <= medium)
-      to_medium += flux;
-    double relative = flux > 0;
-    if (i == medium)
+      to_medium += flux.sum;
+    double relative = flux.sum > 0;
+    if (i == 0 && medium == 0)
       relative = 1;
+    else if (i > 0 && i <= medium)
+      relative = flux.opacity < full_opacity ? flux.opacity / full_opacity : 1;
     else if (i > medium)
-      relative = to_medium > 0 ? std::min(1.0, flux / to_medium) : 1;
-    constexpr double least = 1e-3;
-    weights.push_back(std::max(least, relative) * std::exp2(-static_cast<double>(i)));
+      relative = to_medium > 0 ? std::min(1.0, flux.sum / to_medium) : 1;
+    if (i < medium)
+      full_opacity = std::max(full_opacity, tuning::faint_opacity * flux.opacity);
+    // Trial photons may miss a cloud that some of the lines in a wide sphere cross.
+    const double least = i > 0 && i <= medium ? 1.0 / 32 : 1e-3;
+    double usual = std::exp2(-static_cast<double>(std::max(i, medium) - medium));
+    if (i >= world.first_sphere && i < medium)
+      usual = 0.5;
+    weights.push_back(std::max(least, relative) * usual);
     sum += weights.back();
   }
   for (std::size_t i = 0; i < aims.size(); ++i)
@@ -239,15 +274,16 @@ Vec3d beginning_of_flight(const World& world, const Light& light, const EmittedP
     return origin;
   const double back = distance_to_light(world, light, photon);
   const bool at_nest =
-      photon.first_target < static_cast<int>(world.medium.nests.size()); // within the medium
+      photon.first_target + 1 < static_cast<int>(world.medium_targets); // within the medium
   return back > 0 && (at_nest || (world.surfaces &&
                                   world.surfaces->set->occluded(origin, -direction, 0, back)))
              ? origin - direction * back
              : origin;
 }
 
-TargetCones::TargetCones(const World& world, const Vec3d& point, std::size_t most) {
-  for (std::size_t i = 0; i < std::min(most, world.targets.size()); ++i) {
+TargetCones::TargetCones(const World& world, const Vec3d& point, std::size_t end)
+    : first_(world.first_sphere) {
+  for (std::size_t i = first_; i < std::min(end, world.targets.size()); ++i) {
     const OccupiedRegion& target = world.targets[i];
     const Vec3d way = Vec3d(target.center) - point;
     const double distance = length(way), sine = static_cast<double>(target.radius) / distance;

@@ -30,20 +30,31 @@ double surface_extent(const World& world);
 /// would spoil the scale of all others.
 bool may_hold_photons(const World& world, const SurfaceHit& hit);
 
-/// The cones about the spheres of the world's targets as seen from a point, from the first on up to
-/// that in whose sphere the point lies, which has none.
+/// The cones about the spheres of the world's targets as seen from a point, from the first sphere
+/// on up to that in which the point lies, which has none.
 class TargetCones {
 public:
-  /// `most`: number of the targets that count.
+  /// `end`: the first target that does not count.
   TargetCones(const World& world, const Vec3d& point,
-              std::size_t most = std::numeric_limits<std::size_t>::max());
+              std::size_t end = std::numeric_limits<std::size_t>::max());
 
   std::size_t size() const { return cones_.size(); }
   const Cone& operator[](std::size_t i) const { return cones_[i]; }
+  /// The target of a cone; of cone size(), that in whose sphere the point lies.
+  std::size_t target(std::size_t i) const { return first_ + i; }
+  /// Drops the cones from the first target on that `keep` does not accept.
+  template <class Keep>
+  void keep_while(const Keep& keep) {
+    std::size_t kept = 0;
+    while (kept < size() && keep(target(kept)))
+      ++kept;
+    cones_.resize(kept);
+  }
   /// The first that holds a direction; size() where none does.
   std::size_t first_of(const Vec3f& direction) const;
 
 private:
+  std::size_t first_;
   std::vector<Cone> cones_;
 };
 

@@ -166,28 +166,29 @@ private:
         material.refracts() || world_.medium.empty())
       return std::nullopt;
     TargetCones cones(world_, vertex.hit().position);
-    for (std::size_t target = 0; target < cones.size(); ++target) {
-      const Vec3f axis(cones[target].axis);
-      send_into(cones, target, max_component(vertex.evaluate(axis, Carried::power)), path,
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+      const Vec3f axis(cones[i].axis);
+      send_into(cones, i, max_component(vertex.evaluate(axis, Carried::power)), path,
                 [&](const Vec3f& wi, float solid_angle) {
                   send_copy(path, vertex, wi, vertex.evaluate(wi, Carried::power) * solid_angle);
                 });
     }
-    if (cones.size() < world_.medium_targets)
+    if (cones.target(cones.size()) < world_.medium_targets)
       share_flux(path, vertex, cones);
     return cones;
   }
 
-  /// Draws the directions of the path's copies into the cone of a target, beside those of smaller
+  /// Draws the directions of the path's copies into cone i of a target, beside those of smaller
   /// ones. `value` [1 / sr]: the part of its flux that goes along the cone's axis.
   template <class Send>
-  void send_into(const TargetCones& cones, std::size_t target, float value, LightPath& path,
+  void send_into(const TargetCones& cones, std::size_t i, float value, LightPath& path,
                  const Send& send) const {
-    const Copies copies = copies_into(cones[target], value, path.relative_flux(target), path.rng);
-    for (int i = 0; i < copies.count; ++i) {
+    const Copies copies =
+        copies_into(cones[i], value, path.relative_flux(cones.target(i)), path.rng);
+    for (int n = 0; n < copies.count; ++n) {
       const float u = path.rng.uniform(), v = path.rng.uniform();
-      const Vec3f wi(cones[target].sample(static_cast<double>(u), static_cast<double>(v)));
-      if (cones.first_of(wi) == target)
+      const Vec3f wi(cones[i].sample(static_cast<double>(u), static_cast<double>(v)));
+      if (cones.first_of(wi) == i)
         send(wi, copies.solid_angle);
     }
   }
@@ -197,14 +198,17 @@ private:
   /// would be far brighter than others.
   std::optional<TargetCones> send_to_nests(LightPath& path, const PhaseFunction& phase,
                                            const Vec3f& point) {
-    const std::size_t nests = world_.medium.nests.size();
-    if (nests == 0 || path.fair_fluxes.size() <= nests || !(path.fair_fluxes.back() > 0))
+    const std::size_t medium = std::max<std::size_t>(world_.medium_targets, 1) - 1;
+    if (medium == 0 || path.fair_fluxes.size() <= medium || !(path.fair_fluxes.back() > 0))
       return std::nullopt;
-    TargetCones cones(world_, Vec3d(point), nests);
+    TargetCones cones(world_, Vec3d(point), medium);
+    // Paths of no more flux than those aimed at a sphere go there by themselves, since copies would
+    // be rare: a cloud beside a nest would lose its light to them.
+    cones.keep_while([&](std::size_t target) { return path.relative_flux(target) > 1; });
     const Vec3f& travel = path.segment.ray.direction;
-    for (std::size_t nest = 0; nest < cones.size(); ++nest) {
-      const float value = phase.evaluate(dot(travel, Vec3f(cones[nest].axis)));
-      send_into(cones, nest, value, path, [&](const Vec3f& wi, float solid_angle) {
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+      const float value = phase.evaluate(dot(travel, Vec3f(cones[i].axis)));
+      send_into(cones, i, value, path, [&](const Vec3f& wi, float solid_angle) {
         LightPath copy = copy_of(path);
         copy.throughput *= phase.evaluate(dot(travel, wi)) * solid_angle;
         if (!(max_component(copy.throughput) > 0))
@@ -221,7 +225,7 @@ private:
   void share_flux(LightPath& path, const SurfaceVertex& vertex, const TargetCones& cones) {
     constexpr auto most = static_cast<float>(Copies::most);
     const int paths =
-        static_cast<int>(std::clamp(path.relative_flux(world_.medium_targets - 1), 1.0f, most));
+        static_cast<int>(std::clamp(path.relative_flux(cones.target(cones.size())), 1.0f, most));
     path.throughput *= 1 / static_cast<float>(paths);
     for (int i = 1; i < paths; ++i) {
       const MaterialSample next = vertex.sample(Carried::power, path.rng);

@@ -43,6 +43,11 @@ struct PhotonPassSettings {
   const StopToken* stop = nullptr;
 };
 
+/// Shares of the lights in the photons where no guide is, up to a factor: by their power. Where the
+/// medium has nests, half of a share is that of the power into the smallest, which a lamp beside a
+/// cloud may light as much as the sun, although the sun lights all of the fog around.
+std::vector<double> shares_by_power(const LightSet& lights);
+
 /// First path number of each light, and the number after the last: lights share the paths by power,
 /// or as the guide has it.
 std::vector<std::uint64_t> share_paths(const LightSet& lights, std::uint64_t paths,

@@ -7,6 +7,7 @@
 #include "math/color.h"
 #include "transport/build_surfaces.h"
 #include "transport/photon_targets.h"
+#include "transport/target_regions.h"
 #include "vdbeam/error.h"
 
 #include <fmt/format.h>
@@ -59,32 +60,6 @@ RenderSpace choose_space(const Boxd& bounds) {
   if (size > 0)
     space.scale = std::exp2(-std::floor(std::log2(size)));
   return space;
-}
-
-Parallelepiped parallelepiped(const Affine& local_to_render, const Boxd& local) {
-  const Vec3d size = local.size();
-  return {Vec3f(local_to_render.point(local.lower)),
-          {Vec3f(local_to_render.vector({size.x, 0, 0})),
-           Vec3f(local_to_render.vector({0, size.y, 0})),
-           Vec3f(local_to_render.vector({0, 0, size.z}))}};
-}
-
-void add_region(OccupiedRegion& region, const DensityField& field, const Affine& local_to_render) {
-  const Boxf& occupied = field.occupied();
-  region.boxes.push_back(
-      parallelepiped(local_to_render, {Vec3d(occupied.lower), Vec3d(occupied.upper)}));
-  const Vec3<int> n = field.cell_counts();
-  for (int i = 0; i < n.x; ++i)
-    for (int j = 0; j < n.y; ++j)
-      for (int k = 0; k < n.z; ++k) {
-        if (field.cell_maximum(field.cell_offset(i, j, k)) == 0)
-          continue;
-        const Vec3d cell = Vec3d(Vec3<int>{i, j, k}) * double{cell_width};
-        const Vec3d lower = max(cell, Vec3d(occupied.lower));
-        const Vec3d upper = min(cell + Vec3d(double{cell_width}), Vec3d(occupied.upper));
-        if (lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)
-          region.cells.push_back(parallelepiped(local_to_render, {lower, upper}));
-      }
 }
 
 int phase_index_of(std::vector<PhaseFunction>& phases, std::vector<PhaseSettings>& known,
@@ -262,35 +237,6 @@ void sort_volumes(World& world) {
   for (const Parallelepiped& box : world.region.boxes)
     areas.push_back(box.surface_area());
   world.medium.nests = find_nests(areas);
-}
-
-/// The region of a nest: the sphere around it, and a cube around that.
-OccupiedRegion region_of(const World& world, const std::vector<std::size_t>& nest) {
-  Boxd bounds;
-  for (const std::size_t v : nest)
-    bounds.extend(world.region.boxes[v].bounds());
-  const double radius = 0.5 * length(bounds.size()) * 1.01;
-  OccupiedRegion region;
-  region.center = Vec3f(bounds.center());
-  region.radius = static_cast<float>(radius);
-  const Vec3d half(radius * 1.001);
-  region.boxes.push_back(
-      parallelepiped(Affine(), {bounds.center() - half, bounds.center() + half}));
-  region.cells = region.boxes;
-  return region;
-}
-
-/// Chooses the targets of photons where they need any: nests, the medium and surfaces.
-void choose_targets(World& world) {
-  if (!world.surfaces && world.medium.nests.empty())
-    return;
-  for (const std::vector<std::size_t>& nest : world.medium.nests)
-    world.targets.push_back(region_of(world, nest));
-  if (!world.region.boxes.empty())
-    world.targets.push_back(world.region);
-  world.medium_targets = world.targets.size();
-  if (world.surfaces)
-    add_surface_targets(world.region, *world.surfaces->set, world.targets);
 }
 
 /// The transform of each volume to the world, and the bounds of their contents [world].

@@ -20,9 +20,11 @@ struct World {
   LightSet lights;
   OccupiedRegion region;                    ///< of the medium
   std::shared_ptr<const Surfaces> surfaces; ///< null: there are none
-  /// Targets of photons, in a scene with surfaces or nests: nests, the medium, what is around it.
+  /// Targets of photons, in a scene with surfaces or nests: the volumes of the smallest nest,
+  /// spheres around nests, the medium, what is around it.
   std::vector<OccupiedRegion> targets;
-  std::size_t medium_targets = 0; ///< the first of these: nests and, last, the medium
+  std::size_t medium_targets = 0; ///< the first of these: up to the medium
+  std::size_t first_sphere = 0;   ///< of these, the first that surfaces and medium send copies to
   /// Towards what glows in the medium, where surfaces may see it; else null.
   std::shared_ptr<const EmissionDirections> emission;
   /// The air between the camera and what it sees first; null: none.

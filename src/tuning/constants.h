@@ -140,6 +140,13 @@ VDBEAM_TUNED(double, guide_prior_paths, 32);
 VDBEAM_TUNED(double, guide_uniform_share, 0.1);
 VDBEAM_TUNED(double, guide_power_share, 0.2);
 
+// Medium that is hardly seen.
+
+/// Opacity under which camera rays get walks, shadow rays and light paths in proportion to it, and
+/// the medium around nests photons: in parts of the opacity that is typical of the image, and of
+/// that of the nests.
+VDBEAM_TUNED(float, faint_opacity, 0.003f);
+
 // Final gathering.
 
 /// Scatterings of a walk at most: in very dense media kernels are far wider than walks could go.

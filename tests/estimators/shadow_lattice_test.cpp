@@ -94,6 +94,29 @@ Direct measure(const MemoryScene& scene, double rays) {
   return result;
 }
 
+/// In a wide fog, which is most of the medium, the cloud in it has a lattice of its own.
+TEST(ShadowLattice, IsAsFineInACloudWhereFogSurroundsIt) {
+  const auto worst_in_cloud = [](const World& world) {
+    const ShadowLattice lattice(world.medium, *world.lights[0].narrow_direction(), 1200);
+    Rng rng({5, 1, 1}, RngStage::test, 0);
+    double worst = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const float u = rng.uniform(), v = rng.uniform(), w = rng.uniform();
+      const Vec3f p = Vec3f(-0.5f, -0.4f, -0.3f) + Vec3f(1, 0.8f, 0.6f) * Vec3f(u, v, w);
+      const Vec3f point(world.space.point(Vec3d(p)));
+      const Rgb exact =
+          exact_transmittance(world.medium, {{point, *world.lights[0].narrow_direction()}});
+      worst = std::max(worst, std::abs(static_cast<double>(lattice.transmittance(point)) -
+                                       static_cast<double>(max_component(exact))));
+    }
+    return worst;
+  };
+  MemoryScene scene = lumps(4);
+  const double alone = worst_in_cloud(scene.world());
+  scene.add_box(Vec3d(-30), Vec3d(30)).extinction = 0.01;
+  EXPECT_LT(worst_in_cloud(scene.world()), 1.2 * alone + 0.01);
+}
+
 TEST(ShadowLattice, LosesNothingAndLowersNoise) {
   for (const double rays : {60.0, 1000.0}) { // a coarse lattice is right on average too
     const Direct direct = measure(lumps(40), rays);

@@ -155,6 +155,21 @@ INSTANTIATE_TEST_SUITE_P(Lights, AimedAtNests,
                                   (std::get<1>(light.param) ? "_over_ground" : "");
                          });
 
+/// A lamp that lights the cloud as much as the sun does, which lights all of the fog, too, gets a
+/// good part of the photons. By its power it would get next to none, and each would be a firefly.
+TEST(LightShares, CountWhatLightsTheCloudInAWideFog) {
+  MemoryScene scene = cloud_in_fog(LightType::distant, false);
+  scene.add_light(LightType::point).position = {1.5, 1, 3};
+  scene.scene.lights[1].intensity = Rgb(10);
+  const World world = scene.world();
+  const auto power = [&](std::size_t light) {
+    return static_cast<double>(mean_component(world.lights[light].power()));
+  };
+  const std::vector<double> shares = shares_by_power(world.lights);
+  EXPECT_LT(power(1), 0.1 * power(0));
+  EXPECT_GT(shares[1], 0.2 * shares[0]);
+}
+
 TEST(PhotonTargets, LieOneWithinTheOther) {
   const World world = scene_of(LightType::distant, 1000).world();
   ASSERT_GE(world.targets.size(), 4u);

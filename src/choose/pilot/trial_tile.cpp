@@ -73,7 +73,8 @@ TrialTile view_trial_tile(const EstimatorInput& input, const PhotonPlan& plan,
   const auto width = static_cast<std::size_t>(input.camera.width());
   for (std::size_t i = 0; i < TileRays::count; ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
-    if (!ray.inside || ray.profile.empty() || input.stopped())
+    if (!ray.inside || ray.profile.empty() || input.stopped() ||
+        ray.profile.opacity() < plan.full_opacity) // hardly seen
       continue;
     CameraRay without_surface = ray.camera;
     without_surface.hit.reset();

@@ -43,6 +43,9 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
                                   const RaySink& sink) const {
   const Medium& medium = world_.medium;
   DistanceSampler distances(medium, ray, profile);
+  const float expected = static_cast<float>(walks) * plan_.effort_of(profile.opacity());
+  if (const float all = std::floor(expected); all < static_cast<float>(walks))
+    walks = static_cast<int>(all) + (rng.uniform() < expected - all);
   const float stratum = 1 / static_cast<float>(walks);
   GatheredLight sum;
   for (int i = 0; i < walks; ++i) {
@@ -64,7 +67,7 @@ GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, i
     follow(walk);
     rng = walk.rng;
     ++counts.gather_walks;
-    const float counted = std::copysign(stratum * ray_weight, weight);
+    const float counted = std::copysign(ray_weight / expected, weight);
     const Rgb light = (walk.found.direct.sum() + walk.found.indirect.sum()) * counted;
     sink.add(point.t, volume.setting, light);
     sum.direct += walk.found.direct *= counted;
