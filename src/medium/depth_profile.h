@@ -38,7 +38,7 @@ public:
       sum += tau(knot, v);
     return sum;
   }
-  /// Of the strongest channels; 0 where the profile is empty.
+  /// Opacity of the strongest channels; 0 where the profile is empty.
   float opacity() const { return empty() ? 0 : opacity_of(total(knots() - 1)); }
   /// Per-channel optical depth at a knot.
   Rgb channels(const Medium& medium, std::size_t knot) const {

@@ -14,8 +14,8 @@ namespace vdbeam {
 /// their own, in which the points lie as densely as in a medium of the nest alone.
 class ShadowLattice {
 public:
-  /// For a light in the direction `towards` (unit); sends up to about `rays` rays, and as many for
-  /// each nest.
+  /// For a light in the direction `towards` (unit); sends up to about `rays` rays, and the same
+  /// number for each nest.
   ShadowLattice(const Medium& medium, const Vec3f& towards, double rays);
   /// Memory of such a lattice over a medium with these bounds [bytes].
   static std::uint64_t bytes(const Boxf& bounds, const Vec3f& towards, double rays);

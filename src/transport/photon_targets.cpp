@@ -16,7 +16,7 @@ namespace {
 constexpr double first_box = 1.5, next_box = 4;
 /// Greatest number of a target's boxes: more than these are merged into one.
 constexpr std::size_t most_boxes = 64;
-constexpr int most_targets = 8;
+constexpr std::size_t most_targets = 8; ///< from the medium on
 /// Photons that find out how much of an aim's light counts.
 constexpr std::uint64_t trial_photons = 256;
 
@@ -218,9 +218,10 @@ void add_surface_targets(const OccupiedRegion& medium, const SurfaceSet& surface
                          std::vector<OccupiedRegion>& targets) {
   const Boxd everywhere{Vec3d(-1e300), Vec3d(1e300)};
   if (!medium.boxes.empty()) {
+    const std::size_t most = targets.size() - 1 + most_targets;
     double half = first_box * static_cast<double>(medium.radius);
     const Vec3d center(medium.center);
-    while (static_cast<int>(targets.size()) + 1 < most_targets) {
+    while (targets.size() + 1 < most) {
       const Boxd box{center - Vec3d(half), center + Vec3d(half)};
       if (contains_all(box, surfaces))
         break;
