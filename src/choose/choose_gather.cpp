@@ -66,17 +66,17 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
   return sum;
 }
 
-/// Share of lamps in the medium in the power of all lights (shares_by_power). The few walks that
-/// come near them are far brighter than all others, and the forecast may lack them.
+/// Share of lamps in the medium in the power of all lights. The few walks that come near them are
+/// far brighter than all others, and the forecast may lack them.
 double share_of_lamps_inside(const World& world) {
   const Boxf& box = world.medium.bounds;
-  const std::vector<double> shares = shares_by_power(world.lights);
   double inside = 0, all = 0;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    all += shares[i];
+    const double power{max_component(world.lights[i].power())};
+    all += power;
     const Vec3d* const lamp = world.lights[i].position();
     if (lamp && min(max(*lamp, Vec3d(box.lower)), Vec3d(box.upper)) == *lamp)
-      inside += shares[i];
+      inside += power;
   }
   return all > 0 ? inside / all : 0;
 }

@@ -5,6 +5,7 @@
 
 namespace vdbeam {
 
+/// The bytes times a factor, in whole bytes.
 inline std::uint64_t times(double factor, std::uint64_t bytes) {
   return static_cast<std::uint64_t>(factor * static_cast<double>(bytes));
 }

@@ -32,8 +32,9 @@ void add_region(OccupiedRegion& region, const DensityField& field, const Affine&
 
 namespace {
 
-/// How much wider each further sphere around a nest is. Photons aimed at the next one carry the
-/// square of it more, and what they send into the smaller one is a few copies of equal flux.
+/// Ratio of the radii of neighbouring spheres around a nest. A photon aimed at the wider one
+/// carries the square of the ratio times the flux, so a scattering there needs at most about 16
+/// copies to light the smaller one evenly.
 constexpr float next_sphere = 4;
 
 /// A sphere, and a cube around it.
