@@ -176,6 +176,16 @@ SquaredBias average(const SquaredBias& first, const SquaredBias& second) {
   return {(a * first.value + b * second.value) / (a + b), 1 / std::sqrt(a + b)};
 }
 
+/// What probes find in large regions beyond what kernels and the truncation explain. `more`: factor
+/// of standard errors of few batches.
+SquaredBias beyond_truncation(const BiasStatistics& bias, double more) {
+  const double error = std::hypot(bias.hidden_error, bias.truncation_error);
+  if (!std::isfinite(error) || !std::isfinite(bias.hidden - bias.truncation))
+    return {};
+  return {positive_part(bias.hidden - bias.truncation, error * more, tuning::shrinkage_of_probes),
+          error};
+}
+
 /// The squared bias from kernels of other widths and from probes, weighted by their precision.
 /// Where only probes are, small values are noise more likely than bias. `t`: quantile of the
 /// batches that give the standard errors.
@@ -199,8 +209,11 @@ SquaredBias squared_bias(const BiasStatistics& bias, double noise, double t) {
       average({bias.hidden, bias.hidden_error}, {bias.truncation, bias.truncation_error});
   if (std::isfinite(rest.value)) {
     // Three batches that agree by chance would make a bias of what is noise.
-    result.value +=
-        positive_part(rest.value, rest.error * t / normal_quantile, tuning::shrinkage_of_probes);
+    const double more = t / normal_quantile;
+    result.value += positive_part(rest.value, rest.error * more, tuning::shrinkage_of_probes);
+    // Truncation is known better than what probes find, but need not be all of it.
+    if (const SquaredBias other = beyond_truncation(bias, more); other.value > 0)
+      result = {result.value + other.value, std::hypot(result.error, other.error)};
     const double expected = tuning::expected_bias * (noise + result.value);
     if (rest.error > 0 && expected > 0)
       result.error = std::hypot(result.error, 1 / std::hypot(1 / rest.error, 1 / expected));

@@ -339,6 +339,19 @@ TEST(ErrorEstimate, FewBatchesThatAgreeByChanceMakeNoBias) {
   EXPECT_NEAR(combine_errors(0.002, {1, 0.1, 16}, bias, false).bias_mrse, 0.0034, 0.00005);
 }
 
+TEST(ErrorEstimate, TruncationDoesNotOutvoteRaysThatFindMore) {
+  const auto with_truncation = [](double hidden, double hidden_error, double truncation) {
+    const BiasStatistics bias{0, 1e3, 0, 0.01, 0, 0.0004, hidden, hidden_error, truncation, 2e-4};
+    return combine_errors(0.002, {1, 0.1, 16}, bias, false);
+  };
+  // 0.006 less 2 (0.00102 t / 1.96)^2 / 0.006 with t = 2.13, though the weighted mean is 0.0002.
+  const ErrorEstimate found = with_truncation(0.006, 0.001, 0);
+  EXPECT_NEAR(found.bias_mrse, 0.0056, 0.00005);
+  EXPECT_GT(found.high - found.mrse, 2.13 * 0.00102);
+  // Where the rays' own error explains the difference, the weighted mean counts, shrunk a little.
+  EXPECT_NEAR(with_truncation(0.003, 0.002, 0.001).bias_mrse, 0.00093, 0.00002);
+}
+
 /// What nobody has seen is expected to be no larger than the error that is known, 0.0039, so the
 /// interval ends at t = 2.13 times as much above it, and what is known is not sure either.
 TEST(ErrorEstimate, RaysThatTellNothingLeaveTheIntervalFinite) {
