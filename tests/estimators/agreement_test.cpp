@@ -83,6 +83,17 @@ MemoryScene overlap() {
   return scene;
 }
 
+/// Blobs in haze, of extinctions so unlike that photons of the two are kept apart.
+MemoryScene blobs_in_haze() {
+  MemoryScene scene = sun_and_sky();
+  scene.scene.volumes[0].phase = test::henyey_greenstein(0.5);
+  VolumeSettings& haze = scene.add(test::uniform_field({1, 1, 1}, 1),
+                                   test::box_map({1, 1, 1}, {-0.6, -0.5, -0.5}, {0.5, 0.6, 0.6}));
+  haze.extinction = 1;
+  haze.albedo = {0.4f, 0.9f, 1};
+  return scene;
+}
+
 /// Grey throughout, but no albedo that all volumes share: one channel, albedo in the rays' weights.
 MemoryScene grey_overlap() {
   MemoryScene scene = overlap();
@@ -231,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SingleBounce,
 // Scatter photons blur the density as well, which costs accuracy where it varies within a kernel:
 // smaller kernels, and a wider bound.
 TEST(AgreementOfStorage, ScatterPhotons) {
-  for (MemoryScene scene : {lamps(), overlap(), colored_overlap()}) {
+  for (MemoryScene scene : {lamps(), overlap(), blobs_in_haze(), colored_overlap()}) {
     const PassMeans truth = truth_of(scene);
     scene.scene.render.store = PhotonStore::scatter;
     scene.scene.render.radius = 0.03;

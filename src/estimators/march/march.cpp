@@ -48,7 +48,7 @@ public:
         std::fill(gathered_.begin(), gathered_.end(), Rgb());
         counts.contributions += query(camera.ray().at(t), camera.ray().direction);
         ++counts.lookups;
-        find_albedos(camera.ray().at(t));
+        find_shares(before, after, camera.ray().at(t));
         air_ = profile.air().left(t);
         const Rgb light = weigh(before, after, step, gathered_.data(), sink.volumes);
         std::vector<Rgb> parts;
@@ -67,9 +67,9 @@ public:
 private:
   /// Volume v of the profile at hand.
   const Volume& volume(std::size_t v) const { return world_.medium.volumes[profile_->volume(v)]; }
+  std::size_t part(std::size_t v) const { return world_.medium.parts[profile_->volume(v)]; }
   std::size_t group(std::size_t v) const {
-    return world_.medium.parts[profile_->volume(v)] * world_.medium.phases.size() +
-           static_cast<std::size_t>(volume(v).phase_index);
+    return part(v) * world_.medium.phases.size() + static_cast<std::size_t>(volume(v).phase_index);
   }
 
   /// Fills what is gathered by [part][phase function], and by [group] before that. Returns the
@@ -92,11 +92,30 @@ private:
     return counts.contributions;
   }
 
-  /// Scattering coefficient at a point, where photons do not contain it.
-  void find_albedos(const Vec3f& point) {
-    albedos_.clear();
-    for (std::size_t v = 0; v < profile_->volume_count(); ++v)
-      albedos_.push_back(photons_.plan().albedo_in_power ? Rgb(1) : volume(v).albedo_at(point));
+  /// Fills the volumes' shares of the light that photons scatter within a step: of sigma_t, times
+  /// the albedo where photons do not contain it. Scatter storage: of the sigma_s of all volumes of
+  /// the same part of the medium, since its photons bring what has been scattered by any of them.
+  void find_shares(const std::vector<float>& before, const std::vector<float>& after,
+                   const Vec3f& point) {
+    const std::size_t volumes = profile_->volume_count();
+    const bool albedo_counts = scatter_photons_ || !photons_.plan().albedo_in_power;
+    Rgb piece;
+    std::vector<Rgb> of_part(world_.medium.parts.count);
+    std::vector<float> volumes_of_part(of_part.size());
+    shares_.clear();
+    for (std::size_t v = 0; v < volumes; ++v) {
+      const Rgb depth = volume(v).channel_scale * (after[v] - before[v]);
+      shares_.push_back(albedo_counts ? depth * volume(v).albedo_at(point) : depth);
+      piece += depth;
+      of_part[part(v)] += shares_[v];
+      volumes_of_part[part(v)] += 1;
+    }
+    for (std::size_t v = 0; v < volumes; ++v)
+      for (int c = 0; c < 3; ++c) {
+        const float whole = scatter_photons_ ? of_part[part(v)][c] : piece[c];
+        // Beside the medium, where kernels reach beyond it, all volumes count the same.
+        shares_[v][c] = whole > 0 ? shares_[v][c] / whole : 1 / volumes_of_part[part(v)];
+      }
   }
 
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
@@ -113,10 +132,7 @@ private:
       const float whole =
           scatter_photons_ ? std::exp(-0.5f * piece[c]) * tr * step : tr * opacity_of(piece[c]);
       for (std::size_t v = 0; v < volumes; ++v) {
-        const float share = piece[c] > 0
-                                ? volume(v).channel_scale[c] * (after[v] - before[v]) / piece[c]
-                                : 1 / static_cast<float>(volumes);
-        const float light = whole * share * albedos_[v][c] * gathered[group(v)][c];
+        const float light = whole * shares_[v][c] * gathered[group(v)][c];
         sum[c] += light;
         if (of_volumes) {
           Rgb of_channel;
@@ -134,7 +150,7 @@ private:
   bool scatter_photons_;
   float step_ = 0, reach_ = 0;
   Rgb air_{1, 1, 1};          ///< what the air lets through of light from the step
-  std::vector<Rgb> albedos_;  ///< per volume
+  std::vector<Rgb> shares_;   ///< per volume of the profile, of the step (find_shares)
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights
   std::vector<Rgb> groups_;   ///< what of it each group of lights has: [group][phase function]
