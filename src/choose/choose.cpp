@@ -39,7 +39,8 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
   }
   RadiusSettings radii = radius_settings(input, plan.neighbours);
   const double photons =
-      plan.stored_per_path * static_cast<double>(choose_paths(input, plan.stored_per_path));
+      plan.stored_per_path *
+      static_cast<double>(choose_paths(input, plan.stored_per_path, plan.collisions_per_path));
   radii.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
   return PhotonMap::build(std::move(sample), 1, radii, KernelShape::biweight).mean_radius();
 }
@@ -69,6 +70,7 @@ void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedP
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
     pilot = trace_guided_pilot(input, plan);
+    plan.collisions_per_path = pilot.mean_collisions;
     plan.stored_per_path = wanted_per_path();
   }
   if (pilot.photons.size() == 0) // only where a pilot was stopped
@@ -121,6 +123,7 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
       std::ceil(std::clamp(tuning::trial_share * paths,
                            std::min(tuning::few_trial_paths, 2 * tuning::trial_share * paths),
                            tuning::most_trial_paths));
+  plan.collisions_per_path = 0;
   KernelTrial narrow, wide;
   narrow.neighbours = std::min(tuning::trial_neighbours, tuning::most_in_kernel * photons);
   wide.neighbours = tuning::wide_over_narrow * narrow.neighbours;
@@ -158,13 +161,13 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
   plan = default_photon_plan(input);
   if (!input.plan.needs(Stage::photons)) {
     if (input.plan.needs(Stage::surface_photons))
-      plan.paths = choose_paths(input, 1);
+      plan.paths = choose_paths(input, 1, 1);
     return;
   }
   TracedPhotons pilot = trace_pilot(input, plan);
   if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
     follow_view(input, kind, std::move(pilot), plan);
-  plan.paths = choose_paths(input, plan.stored_per_path);
+  plan.paths = choose_paths(input, plan.stored_per_path, plan.collisions_per_path);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= tuning::fewest_for_trial)
     try_kernels(input, kind, choices);

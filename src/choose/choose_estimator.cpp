@@ -155,8 +155,9 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
   const EstimatorType type = choices.gather ? EstimatorType::gather : EstimatorType::beam;
   // Most light passes the medium by, as where it hangs over a wide ground. A kernel pilot, which
   // needs thousands of photons, shows what they are worth.
+  const bool tried = choices.trial && !choices.trial->pixels.empty();
   const double fewest_per_path =
-      choices.trial ? tuning::rarest_photons : tuning::rarest_photons_without_pilot;
+      tried ? tuning::rarest_photons : tuning::rarest_photons_without_pilot;
   const double stored = choices.photons.stored_per_path;
   if (photon_input.plan.needs(Stage::photons) && photon_input.world.surfaces &&
       stored < fewest_per_path && !photon_input.stopped())
@@ -164,7 +165,7 @@ EstimatorChoice choose_estimator(const EstimatorInput& photon_input,
             stored > 0 ? fmt::format("one photon is stored in {:.0f} light paths", 1 / stored)
                        : "no light path stores a photon",
             0, nullptr};
-  if (!choices.trial || choices.trial->pixels.empty())
+  if (!tried)
     return {type, "without a kernel pilot there is nothing to compare", 0, std::move(passes)};
   if (!sees_directly(photon_input.world))
     return {type, "path may miss caustics", 0, std::move(passes)};

@@ -134,15 +134,6 @@ std::optional<KernelSupport::SeenPoint> KernelSupport::point_on_ray(const Vec3f&
   return SeenPoint{point, view, from_camera};
 }
 
-bool KernelSupport::in_medium(const Vec3f& point, std::size_t part) const {
-  bool found = false;
-  const Medium& medium = world_->medium;
-  medium.for_each_at(point, [&](std::size_t v) {
-    found = found || (medium.parts[v] == part && medium.volumes[v].majorant(point) > 0);
-  });
-  return found;
-}
-
 bool KernelSupport::unobstructed(const Vec3f& photon, const Vec3f& point) const {
   const Vec3f to_point = point - photon;
   const float distance = length(to_point);

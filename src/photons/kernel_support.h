@@ -46,7 +46,9 @@ private:
     double distance;
   };
   std::optional<SeenPoint> point_on_ray(const Vec3f& photon, int i, float distance) const;
-  bool in_medium(const Vec3f& point, std::size_t part) const;
+  bool in_medium(const Vec3f& point, std::size_t part) const {
+    return world_->medium.majorant(point, part) > 0;
+  }
   bool unobstructed(const Vec3f& photon, const Vec3f& point) const;
 
   const World* world_;

@@ -120,6 +120,7 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
     plan.caustic_share = total_power(pilot.caustics) / power;
   plan.pilot_paths += pass.paths;
   const double collisions = std::max(1e-3, pilot.mean_collisions);
+  plan.collisions_per_path = collisions;
   if (settings.direct_samples == 0) {
     plan.direct_samples = samples_for(collisions);
     // Light of one direction has little noise where the ray is thin.
@@ -132,15 +133,18 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   return pilot;
 }
 
-std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path) {
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
+                           double collisions_per_path) {
   const std::optional<std::uint64_t>& photons = input.settings.photons;
-  return static_cast<std::uint64_t>(
-      std::ceil(photons ? paths_for_photons(static_cast<double>(*photons), stored_per_path)
-                        : automatic_paths(count_hits(input), stored_per_path)));
+  return static_cast<std::uint64_t>(std::ceil(
+      photons ? paths_for_photons(static_cast<double>(*photons), stored_per_path)
+              : automatic_paths(count_hits(input), stored_per_path, collisions_per_path)));
 }
 
-double automatic_paths(double hits, double stored_per_path) {
-  return std::min(std::max(tuning::fewest_paths, in_steps(tuning::paths_per_hit * hits)),
+double automatic_paths(double hits, double stored_per_path, double collisions_per_path) {
+  // Paths that meet little cost little, and photons of few of them would have wide kernels.
+  const double more = std::clamp(1 / collisions_per_path, 1.0, tuning::most_paths_per_photon);
+  return std::min(std::max(tuning::fewest_paths, in_steps(tuning::paths_per_hit * hits * more)),
                   tuning::most_photons / stored_per_path);
 }
 

@@ -66,10 +66,12 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 /// Camera rays of a pass that show photons' light, from a coarse sample: those that meet the
 /// medium, by their effort (PhotonPlan::effort_of), and surfaces where photons bring caustics.
 double count_hits(const EstimatorInput& input);
-/// Light paths per pass, from the photons that one of them stores.
-std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path);
-/// The same, from the camera rays that meet the medium, where the scene asks for no number.
-double automatic_paths(double hits, double stored_per_path);
+/// Light paths per pass, from the photons that one of them stores and its tentative collisions.
+std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
+                           double collisions_per_path);
+/// The same, from the camera rays that meet the medium, where the scene asks for no number. Thin
+/// media get more: a collision per path of others, within tuning::most_paths_per_photon.
+double automatic_paths(double hits, double stored_per_path, double collisions_per_path);
 /// The same, where the scene asks for a number of photons.
 double paths_for_photons(double photons, double stored_per_path);
 

@@ -149,7 +149,7 @@ private:
     const auto& asked = scene_.render.photons;
     const double hits = share_that_wants_photons() * static_cast<double>(pixels_);
     return stored * (asked ? paths_for_photons(static_cast<double>(*asked), stored)
-                           : automatic_paths(hits, stored));
+                           : automatic_paths(hits, stored, stored));
   }
 
   /// Where mirrors, metal or glass may throw light onto surfaces, every pixel may show one: how

@@ -2,6 +2,7 @@
 
 #include "choose/choose.h"
 #include "support/render_passes.h"
+#include "tuning/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,15 @@ TEST(PhotonPlan, ThinRaysTakeMoreShadowRays) {
   plan.direct_samples = plan.most_direct_samples = 1; // the user's own number
   EXPECT_EQ(plan.direct_samples_of(0), 1);
   EXPECT_EQ(plan.direct_samples_of(30), 1);
+}
+
+TEST(PhotonPlan, ThinMediaTakeMoreLightPaths) {
+  const double usual = automatic_paths(1e4, 3, 3);
+  EXPECT_EQ(automatic_paths(1e4, 1, 1), usual);
+  // Five paths for the collision that one brought, to the nearest step of 2^(1/4).
+  EXPECT_NEAR(automatic_paths(1e4, 0.2, 0.2) / usual, 5, 5 * 0.2);
+  EXPECT_EQ(automatic_paths(1e4, 0.2, 1), usual) << "photons are few because they are not seen";
+  EXPECT_NEAR(automatic_paths(1e4, 1e-3, 1e-3) / usual, tuning::most_paths_per_photon, 1);
 }
 
 /// Shadow rays per camera ray through a ball of optical depth 60 with thin rims.

@@ -119,9 +119,7 @@ public:
     const double unit = 1 / max_component(Vec3d(albedo)); // stored powers hold it, paths do not
     for (std::size_t i = photons_.size(); i-- > 0;) {
       double& later = brought[photons_.path[i]];
-      sums.add(block_of_[i], later,
-               unit * max_component(Vec3d(photons_.power[i])) *
-                   majorant(photons_.position[i], part(i)));
+      sums.add(block_of_[i], later, unit * max_component(Vec3d(photons_.power[i])) * majorant(i));
       later += values_[i];
     }
     return sums.ratios();
@@ -132,20 +130,14 @@ private:
   std::size_t part(std::size_t photon) const {
     return photons_.part.empty() ? 0 : photons_.part[photon];
   }
-  /// Sum of the majorants of a part's volumes.
-  double majorant(const Vec3f& point, std::size_t part) const {
-    double sum = 0;
-    medium_.for_each_at(point, [&](std::size_t v) {
-      if (medium_.parts[v] == part)
-        sum += static_cast<double>(medium_.volumes[v].majorant(point));
-    });
-    return sum;
+  double majorant(std::size_t photon) const {
+    return static_cast<double>(medium_.majorant(photons_.position[photon], part(photon)));
   }
   bool has_medium(const Vec3f& point) const {
-    bool found = false;
-    medium_.for_each_at(
-        point, [&](std::size_t v) { found = found || medium_.volumes[v].majorant(point) > 0; });
-    return found;
+    for (std::size_t part = 0; part < medium_.parts.count; ++part)
+      if (medium_.majorant(point, part) > 0)
+        return true;
+    return false;
   }
 
   /// Mean fluence where there is medium, by block and up to a factor.
@@ -171,7 +163,7 @@ private:
   std::vector<double> mean_extinctions() const {
     std::vector<double> flux(medium_.parts.count), powers(flux.size());
     for (std::size_t i = 0; i < photons_.size(); ++i) {
-      flux[part(i)] += power(i) * majorant(photons_.position[i], part(i));
+      flux[part(i)] += power(i) * majorant(i);
       powers[part(i)] += power(i);
     }
     for (std::size_t p = 0; p < flux.size(); ++p)
@@ -277,9 +269,10 @@ std::shared_ptr<const PathGuide> fit_path_guide(const EstimatorInput& input, Pho
                                                 const CellTables& view, double mean_collisions) {
   const World& world = input.world;
   PhotonPassSettings pass = pass_settings(input, plan, guide_pass);
-  const double wanted = std::clamp(
-      tuning::guide_share * static_cast<double>(choose_paths(input, plan.stored_per_path)),
-      tuning::fewest_guide_paths, tuning::most_guide_paths);
+  const double wanted =
+      std::clamp(tuning::guide_share * static_cast<double>(choose_paths(input, plan.stored_per_path,
+                                                                        plan.collisions_per_path)),
+                 tuning::fewest_guide_paths, tuning::most_guide_paths);
   pass.paths = static_cast<std::uint64_t>(
       std::ceil(std::min(wanted, tuning::most_guide_photons / std::max(1.0, mean_collisions))));
   pass.store_probability = 1;
