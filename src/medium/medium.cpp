@@ -40,6 +40,15 @@ std::size_t Medium::bytes() const {
   return sum;
 }
 
+float Medium::majorant(const Vec3f& point, std::size_t part, const Volume* but) const {
+  float sum = 0;
+  for_each_at(point, [&](std::size_t v) {
+    if (parts[v] == part && &volumes[v] != but)
+      sum += volumes[v].majorant(point);
+  });
+  return sum;
+}
+
 void Medium::grow_tree() {
   tree = nullptr;
   if (volumes.size() <= VolumeTree::few)

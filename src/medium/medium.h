@@ -103,6 +103,14 @@ struct Medium {
     return false;
   }
   std::size_t bytes() const;
+  /// Number of one of the volumes.
+  std::size_t index_of(const Volume& volume) const {
+    return static_cast<std::size_t>(&volume - volumes.data());
+  }
+  std::size_t part_of(const Volume& volume) const { return parts[index_of(volume)]; }
+  /// Sum of the majorants of a part's volumes at a point, without that of `but`: the rate of
+  /// tentative collisions in the part.
+  float majorant(const Vec3f& point, std::size_t part, const Volume* but = nullptr) const;
   /// Puts a tree over the volumes, where they are many.
   void grow_tree();
   /// Calls visit(v) for the volumes that the segment may meet, in the order of their numbers; it

@@ -33,21 +33,9 @@ struct LightPath : Flight {
   }
 };
 
-/// The part of the medium in which a collision is.
-inline std::size_t part_of(const Medium& medium, const Collision& hit) {
-  return medium.parts[static_cast<std::size_t>(hit.volume - medium.volumes.data())];
-}
-
-/// Rate of tentative collisions in a part: the majorants of overlapping volumes add.
-inline float majorant_of_part(const Medium& medium, const Ray& ray, const Collision& hit) {
-  float sum = hit.majorant;
-  const Vec3f point = ray.at(hit.t);
-  const std::size_t part = part_of(medium, hit);
-  medium.for_each_at(point, [&](std::size_t v) {
-    if (&medium.volumes[v] != hit.volume && medium.parts[v] == part)
-      sum += medium.volumes[v].majorant(point);
-  });
-  return sum;
+/// Rate of tentative collisions in the part of the medium where there is one.
+inline float majorant_of_part(const Medium& medium, const Collision& hit, const Vec3f& point) {
+  return hit.majorant + medium.majorant(point, medium.part_of(*hit.volume), hit.volume);
 }
 
 } // namespace vdbeam

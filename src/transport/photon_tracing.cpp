@@ -8,6 +8,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 
 namespace vdbeam {
@@ -25,9 +26,7 @@ public:
   PathTracer(const World& world, const PhotonPassSettings& settings)
       : world_(world), settings_(settings),
         single_scattering_(world.surfaces != nullptr ||
-                           std::find(settings.skip_first_flight.begin(),
-                                     settings.skip_first_flight.end(),
-                                     false) != settings.skip_first_flight.end()) {}
+                           std::ranges::count(settings.skip_first_flight, false) > 0) {}
 
   /// The paths `begin` to `end` of a pass; light i emits first[i] to first[i + 1]. Several
   /// are under way at a time and take turns at every collision, so that one path computes while the
@@ -64,7 +63,7 @@ public:
   static constexpr bool bounds_null_collisions = false;
   void meet(LightPath& path, const Collision& hit) {
     if (may_store(path) && settings_.store == PhotonStore::fluence)
-      store(path, hit, path.throughput / majorant_of_part(world_.medium, path.segment.ray, hit));
+      store(path, hit);
   }
   bool pass(LightPath& path) const { return path.length.survive(path.throughput, path.rng); }
   bool collide(LightPath& path, const Collision& hit) {
@@ -73,7 +72,7 @@ public:
     const Vec3f point = path.segment.ray.at(hit.t);
     const Rgb albedo = hit.volume->albedo_at(point);
     if (may_store(path) && settings_.store == PhotonStore::scatter)
-      store(path, hit, path.throughput * albedo);
+      store(path, hit);
     if (!absorption_roulette(albedo, path.throughput, path.rng))
       return false;
     if (++path.bounces == 1 && !path.met_surface)
@@ -305,7 +304,7 @@ private:
   float store_probability(const Volume& volume, const Vec3f& point, const Vec3f& direction) const {
     if (!settings_.store_probability_by_cell)
       return settings_.store_probability;
-    const auto index = static_cast<std::size_t>(&volume - world_.medium.volumes.data());
+    const std::size_t index = world_.medium.index_of(volume);
     const float by_cell = (*settings_.store_probability_by_cell)[index][volume.cell_at(point)];
     if (!settings_.camera || !settings_.directions)
       return by_cell;
@@ -317,29 +316,31 @@ private:
       list.group.push_back(static_cast<std::uint16_t>(world_.lights.group(path.light)));
   }
 
-  void store(LightPath& path, const Collision& hit, const Rgb& power) {
+  void store(LightPath& path, const Collision& hit) {
     ++collisions;
     const Vec3f point = path.segment.ray.at(hit.t);
     const float probability =
         std::min(1.0f, store_probability(*hit.volume, point, path.segment.ray.direction));
     if (probability < 1 && path.rng.uniform() >= probability)
       return;
-    const Rgb stored = power * settings_.albedo / probability;
-    const std::size_t part = part_of(world_.medium, hit);
-    append(photons, path, point, part, stored);
+    const Rgb stored = path.throughput * settings_.albedo / probability *
+                       (settings_.store == PhotonStore::scatter
+                            ? hit.volume->albedo_at(point)
+                            : Rgb(1 / majorant_of_part(world_.medium, hit, point)));
+    append(photons, path, point, *hit.volume, stored);
     if (settings_.path_numbers)
       photons.path.push_back(path.number);
     if (single_scattering_)
       photons.first_flight.push_back(path.bounces == 0);
     if (is_caustic(path))
-      append(caustics, path, point, part, stored);
+      append(caustics, path, point, *hit.volume, stored);
   }
 
-  void append(PhotonList& list, const LightPath& path, const Vec3f& point, std::size_t part,
+  void append(PhotonList& list, const LightPath& path, const Vec3f& point, const Volume& volume,
               const Rgb& power) const {
     list.position.push_back(point);
     if (!world_.medium.parts.single())
-      list.part.push_back(static_cast<std::uint8_t>(part));
+      list.part.push_back(static_cast<std::uint8_t>(world_.medium.part_of(volume)));
     if (settings_.directions)
       list.direction.push_back(path.segment.ray.direction);
     list.power.push_back(power);

@@ -229,7 +229,7 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
 void FinalGather::gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
   const auto phase = static_cast<std::size_t>(volume.phase_index);
-  const std::size_t part = part_of(volume);
+  const std::size_t part = world_.medium.part_of(volume);
   std::vector<Rgb> gathered(phases.size()), groups;
   const Ray& at = walk.segment.ray;
   const auto query = [&](const PhotonMap& photons, std::vector<Rgb>* of_groups) {

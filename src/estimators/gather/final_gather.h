@@ -62,12 +62,9 @@ private:
   bool meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const;
-  std::size_t part_of(const Volume& volume) const {
-    return world_.medium.parts[static_cast<std::size_t>(&volume - world_.medium.volumes.data())];
-  }
   /// Distance from its beginning at which a walk that collides in a volume gathers and ends.
   float far_enough(const Volume& volume) const {
-    return maps_.photons.mean_radius(part_of(volume));
+    return maps_.photons.mean_radius(world_.medium.part_of(volume));
   }
 
   const World& world_;
