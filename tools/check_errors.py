@@ -9,13 +9,19 @@ collisions, photons), not timed, so that a busy machine changes nothing; seconds
 tools/scene_suite/limits.json holds the error that each scene may have after these passes and the lead that it must
 have; the program ends with 1 where one does not. --update writes the limits anew: a third above what was measured.
 
+--seeds 20 validates the error estimate instead: each scene is rendered with 20 seeds, and a line per scene says how
+often the stated 95 % interval holds the true error, the median of the stated over the true error, and the median of the
+interval's upper end over its lower one. It needs references with far less noise than the renders, and 3 passes or more.
+
 Examples:
   PYTHONPATH=build/release/python tools/check_errors.py
   PYTHONPATH=build/release/python tools/check_errors.py --scenes tower,fog_with_trees --references out/references
+  PYTHONPATH=build/release/python tools/check_errors.py --seeds 20 --reference-passes 128
 """
 import argparse
 import json
 import pathlib
+import statistics
 import sys
 
 LIMITS = pathlib.Path(__file__).parent / "scene_suite" / "limits.json"
@@ -34,7 +40,24 @@ def arguments():
     parser.add_argument("--no-limits", action="store_true", help="compare with no limits, as at another size")
     parser.add_argument("--json", help="file for the figures")
     parser.add_argument("--update", action="store_true", help="write the limits anew")
-    return parser.parse_args()
+    parser.add_argument("--seeds", type=int, default=0, help="validate the error estimate with the seeds 1 to this")
+    options = parser.parse_args()
+    if options.seeds and options.passes < 3:
+        parser.error("--seeds needs --passes 3 or more: before, no interval is stated")
+    return options
+
+
+def validate(suite, name, keys, options):
+    """Renders a scene with each seed and prints how the stated errors compare with the true ones."""
+    suite.prepare(keys)
+    found = [suite.estimate(keys, options.passes, seed) for seed in range(1, options.seeds + 1)]
+    held, over_true, widths = zip(*found)
+    figures = {"scene": name, "seeds": options.seeds, "passes": options.passes, "held": sum(held),
+               "stated_over_true": statistics.median(over_true), "least": min(over_true), "most": max(over_true),
+               "width": statistics.median(widths)}
+    print(f"{name:22} {sum(held):4d} of {options.seeds:<4d} {figures['stated_over_true']:8.2f} {min(over_true):6.2f} "
+          f"{max(over_true):6.2f} {figures['width']:7.1f}", flush=True)
+    return figures
 
 
 def line(outcome):
@@ -55,6 +78,11 @@ def broken_limits(outcome, limits):
     return broken
 
 
+def write_figures(file, figures):
+    if file:
+        pathlib.Path(file).write_text(json.dumps(figures, indent=1) + "\n")
+
+
 def main():
     options = arguments()
     import vdbeam
@@ -66,6 +94,10 @@ def main():
     for name in names:
         if name not in known:
             sys.exit(f"check_errors.py: there is no scene {name}; there are {', '.join(known)}")
+    if options.seeds:
+        print(f"{'scene':22} {'interval holds':>12} {'median':>6} {'least':>6} {'most':>6} {'width':>7}", flush=True)
+        figures = [validate(suite, name, known[name], options) for name in names]
+        return write_figures(options.json, figures)
     limits = json.loads(LIMITS.read_text()) if LIMITS.exists() and not options.no_limits else {}
     print(f"{'scene':22} {'takes':7} {'MRSE':>9} {'stated':>7} {'holds':5} {'lead':>8} {'s':>8} {'s path':>8}", flush=True)
     outcomes, broken = [], []
@@ -74,9 +106,7 @@ def main():
         print(line(outcome), flush=True)
         outcomes.append(outcome)
         broken += broken_limits(outcome, limits)
-    if options.json:
-        figures = [{**vars(o), "holds": o.holds, "lead": o.lead} for o in outcomes]
-        pathlib.Path(options.json).write_text(json.dumps(figures, indent=1) + "\n")
+    write_figures(options.json, [{**vars(o), "holds": o.holds, "lead": o.lead} for o in outcomes])
     if options.update:
         limits.update({o.scene: {"mrse": round(o.mrse * SLACK, 7), "lead": round(o.lead / SLACK, 3)} for o in outcomes})
         LIMITS.write_text(json.dumps(limits, indent=1) + "\n")

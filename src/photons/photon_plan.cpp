@@ -143,7 +143,7 @@ std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
 
 double automatic_paths(double hits, double stored_per_path, double collisions_per_path) {
   // Paths that meet little cost little, and photons of few of them would have wide kernels.
-  const double more = std::clamp(1 / collisions_per_path, 1.0, tuning::most_paths_per_photon);
+  const double more = std::clamp(1 / collisions_per_path, 1.0, tuning::most_paths_in_thin_media);
   return std::min(std::max(tuning::fewest_paths, in_steps(tuning::paths_per_hit * hits * more)),
                   tuning::most_photons / stored_per_path);
 }

@@ -25,10 +25,10 @@ TEST(PhotonPlan, ThinRaysTakeMoreShadowRays) {
 TEST(PhotonPlan, ThinMediaTakeMoreLightPaths) {
   const double usual = automatic_paths(1e4, 3, 3);
   EXPECT_EQ(automatic_paths(1e4, 1, 1), usual);
-  // Five paths for the collision that one brought, to the nearest step of 2^(1/4).
-  EXPECT_NEAR(automatic_paths(1e4, 0.2, 0.2) / usual, 5, 5 * 0.2);
+  // Three paths for the collisions that two of them would bring, to the nearest step of 2^(1/4).
+  EXPECT_NEAR(automatic_paths(1e4, 2.0 / 3, 2.0 / 3) / usual, 1.5, 0.15);
   EXPECT_EQ(automatic_paths(1e4, 0.2, 1), usual) << "photons are few because they are not seen";
-  EXPECT_NEAR(automatic_paths(1e4, 1e-3, 1e-3) / usual, tuning::most_paths_per_photon, 1);
+  EXPECT_NEAR(automatic_paths(1e4, 1e-3, 1e-3) / usual, tuning::most_paths_in_thin_media, 0.2);
 }
 
 /// Shadow rays per camera ray through a ball of optical depth 60 with thin rims.
