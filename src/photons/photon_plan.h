@@ -70,7 +70,7 @@ double count_hits(const EstimatorInput& input);
 std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
                            double collisions_per_path);
 /// The same, from the camera rays that meet the medium, where the scene asks for no number. Thin
-/// media get more, but no more than tuning::most_paths_in_thin_media times as many.
+/// media get more, up to tuning::most_paths_in_thin_media times that number.
 double automatic_paths(double hits, double stored_per_path, double collisions_per_path);
 /// The same, where the scene asks for a number of photons.
 double paths_for_photons(double photons, double stored_per_path);
