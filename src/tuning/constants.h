@@ -42,7 +42,7 @@ VDBEAM_TUNED(double, fewest_paths, 10000);
 VDBEAM_TUNED(double, most_photons, 4e6);
 /// Factor, at most, by which a medium gets more light paths where each has less than one tentative
 /// collision: the blur of photons that are few against the time to trace paths that meet little.
-VDBEAM_TUNED(double, most_paths_in_thin_media, 2);
+VDBEAM_TUNED(double, most_paths_in_thin_media, 4);
 /// Photons stored per path, mean; more are nearly redundant.
 VDBEAM_TUNED(double, stored_per_path, 4);
 /// Light paths per photon that a scene asks for: in a medium so thin that more would be needed,
