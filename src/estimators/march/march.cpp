@@ -100,21 +100,21 @@ private:
     const std::size_t volumes = profile_->volume_count();
     const bool albedo_counts = scatter_photons_ || !photons_.plan().albedo_in_power;
     Rgb piece;
-    std::vector<Rgb> of_part(world_.medium.parts.count);
-    std::vector<float> volumes_of_part(of_part.size());
+    part_sums_.assign(world_.medium.parts.count, {});
     shares_.clear();
     for (std::size_t v = 0; v < volumes; ++v) {
       const Rgb depth = volume(v).channel_scale * (after[v] - before[v]);
       shares_.push_back(albedo_counts ? depth * volume(v).albedo_at(point) : depth);
       piece += depth;
-      of_part[part(v)] += shares_[v];
-      volumes_of_part[part(v)] += 1;
+      part_sums_[part(v)].scattered += shares_[v];
+      part_sums_[part(v)].volumes += 1;
     }
     for (std::size_t v = 0; v < volumes; ++v)
       for (int c = 0; c < 3; ++c) {
-        const float whole = scatter_photons_ ? of_part[part(v)][c] : piece[c];
+        const PartSum& sum = part_sums_[part(v)];
+        const float whole = scatter_photons_ ? sum.scattered[c] : piece[c];
         // Beside the medium, where kernels reach beyond it, all volumes count the same.
-        shares_[v][c] = whole > 0 ? shares_[v][c] / whole : 1 / volumes_of_part[part(v)];
+        shares_[v][c] = whole > 0 ? shares_[v][c] / whole : 1 / sum.volumes;
       }
   }
 
@@ -149,7 +149,13 @@ private:
   const DepthProfile* profile_ = nullptr; ///< of the ray at hand
   bool scatter_photons_;
   float step_ = 0, reach_ = 0;
-  Rgb air_{1, 1, 1};          ///< what the air lets through of light from the step
+  Rgb air_{1, 1, 1}; ///< what the air lets through of light from the step
+  /// Over the volumes of a part, within the step.
+  struct PartSum {
+    Rgb scattered;
+    float volumes = 0;
+  };
+  std::vector<PartSum> part_sums_;
   std::vector<Rgb> shares_;   ///< per volume of the profile, of the step (find_shares)
   std::vector<Rgb> gathered_; ///< per phase function
   std::vector<Rgb> straight_; ///< what of it comes straight from lights
