@@ -18,7 +18,13 @@ void FramePasses::render_pass(int pass, PassImage& image, RenderStatistics& stat
     statistics.pilot_paths += choices_.photons.pilot_paths;
     statistics.importance_rays += choices_.photons.importance_rays;
   }
-  estimator_->render(schedule(choices_, input_.settings, pass), image, statistics);
+  try {
+    estimator_->render(schedule(choices_, input_.settings, pass), image, statistics);
+  } catch (const Stopped&) {
+    image.finished_tiles.clear();
+    if (photons_)
+      photons_->release();
+  }
 }
 
 std::unique_ptr<PassRenderer> make_pass_renderer(const EstimatorType& type,

@@ -12,7 +12,8 @@ public:
   virtual ~Estimator() = default;
 
   /// Renders a pass into `image`, which is resized; adds to `statistics`. Where the input's `stop`
-  /// asked to end meanwhile, only `image.finished_tiles` hold what the pass is to be.
+  /// asked to end meanwhile, only `image.finished_tiles` hold what the pass is to be, or it throws
+  /// Stopped.
   virtual void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) = 0;
 };
 

@@ -48,7 +48,7 @@ struct PassImage {
   /// proportional to this; 0: nothing was taken out.
   float truncation = 0;
   /// Per tile of the picture, row by row: whether its pixels that were asked for are finished,
-  /// which all of them are unless the pass was stopped.
+  /// which all of them are unless the pass was stopped; empty where it was stopped before any.
   std::vector<std::uint8_t> finished_tiles;
   static constexpr int tile_width = 16;
 

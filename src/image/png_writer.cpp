@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace vdbeam {
@@ -20,7 +21,10 @@ namespace {
 /// no bands: gradient noise, which eyes see least (Jimenez 2014, "Next generation post processing
 /// in Call of Duty: Advanced Warfare"). 1/2 at the first pixel.
 double dither(std::size_t x, std::size_t y) {
-  const auto fraction = [](double value) { return value - std::floor(value); };
+  // No value is negative here, and to round towards 0 takes less time than std::floor.
+  const auto fraction = [](double value) {
+    return value - static_cast<double>(static_cast<std::int64_t>(value));
+  };
   const double ramp = 0.06711056 * static_cast<double>(x) + 0.00583715 * static_cast<double>(y);
   return fraction(52.9829189 * fraction(ramp) + 0.5);
 }
@@ -30,7 +34,8 @@ double dither(std::size_t x, std::size_t y) {
 unsigned char encode_srgb(double linear, double noise) {
   if (!(linear > 0))
     return 0;
-  return static_cast<unsigned char>(std::floor(srgb_of_light(std::min(linear, 1.0)) * 255 + noise));
+  const auto light = static_cast<float>(std::min(linear, 1.0));
+  return static_cast<unsigned char>(srgb_of_light(light) * 255 + static_cast<float>(noise));
 }
 
 std::vector<unsigned char> encode_pixels(const Image& image, const std::string& path,

@@ -13,6 +13,10 @@ inline double light_of_srgb(double code) {
 inline double srgb_of_light(double light) {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
+/// In single precision, which takes a third of the time.
+inline float srgb_of_light(float light) {
+  return light <= 0.0031308f ? 12.92f * light : 1.055f * std::pow(light, 1 / 2.4f) - 0.055f;
+}
 /// Light of the codes of 8 bits.
 inline std::array<float, 256> light_of_bytes() {
   std::array<float, 256> light{};

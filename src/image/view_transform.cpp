@@ -29,9 +29,9 @@ Vec3d filmic(const Vec3d& radiance) {
   const double largest = std::max({radiance.x, radiance.y, radiance.z});
   if (!(largest > 0))
     return {};
-  const double most = film_curve(largest);
-  const Vec3d kept = radiance * (most / largest);
   const Vec3d separate(film_curve(radiance.x), film_curve(radiance.y), film_curve(radiance.z));
+  const double most = std::max({separate.x, separate.y, separate.z}); // the curve of the largest
+  const Vec3d kept = radiance * (most / largest);
   return (kept + separate) * 0.5;
 }
 

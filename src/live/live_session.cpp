@@ -73,7 +73,8 @@ public:
 private:
   /// The last image of `base_`.
   struct Rendered {
-    Image image; ///< with groups of lights
+    Image image;        ///< with groups of lights
+    bool small = false; ///< to be enlarged
     int passes = 0;
     std::optional<PassRecord> record;
   };
@@ -118,7 +119,7 @@ private:
     }
     record_.reset();
     if (std::optional<Image> look = looks_.take(scene, prepared_, stop_))
-      take(std::move(*look), 0);
+      take(std::move(*look), 0, true);
     RenderHooks hooks;
     hooks.stop = &stop_;
     hooks.discards_when_stopped = true;
@@ -139,11 +140,11 @@ private:
       call(lock, hooks_.on_finished, int{edits_});
   }
 
-  void take(Image image, int passes) {
+  void take(Image image, int passes, bool small = false) {
     if (stop_)
       return;
     std::unique_lock lock(mutex_);
-    last_ = Rendered{std::move(image), passes, passes > 0 ? record_ : std::nullopt};
+    last_ = Rendered{std::move(image), small, passes, passes > 0 ? record_ : std::nullopt};
     show_last(lock);
   }
 
@@ -154,7 +155,7 @@ private:
     if (!image)
       return;
     LiveImage shown;
-    shown.image = std::move(*image);
+    shown.image = last_->small ? enlarged(*image, base_.image) : std::move(*image);
     shown.edit = edits_;
     shown.passes = last_->passes;
     shown.mixed = !mix_.changes_nothing();

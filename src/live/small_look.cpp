@@ -34,27 +34,6 @@ std::vector<Place> places(int size, int small_size) {
   return places;
 }
 
-/// Interpolates between the middles of the pixels of `small`, to the size of `to`.
-void enlarge(const Image& small, Image& to) {
-  const std::vector<Place> columns = places(to.width, small.width);
-  const std::vector<Place> rows = places(to.height, small.height);
-  for (ImageChannel& channel : to.channels)
-    channel.data.resize(columns.size() * rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size() * to.channels.size(), [&](std::size_t task) {
-    const std::size_t c = task / rows.size(), y = task % rows.size();
-    const auto width = static_cast<std::size_t>(small.width);
-    const float* upper = small.channels[c].data.data() + rows[y].low * width;
-    const float* lower = small.channels[c].data.data() + rows[y].high * width;
-    std::vector<float> row(width);
-    for (std::size_t x = 0; x < width; ++x)
-      row[x] = upper[x] + (lower[x] - upper[x]) * rows[y].share;
-    float* out = to.channels[c].data.data() + y * columns.size();
-    for (std::size_t x = 0; x < columns.size(); ++x)
-      out[x] =
-          row[columns[x].low] + (row[columns[x].high] - row[columns[x].low]) * columns[x].share;
-  });
-}
-
 /// The image that a small one becomes, without pixels.
 Image frame_of(const Image& small, const ImageSettings& settings) {
   Image image = small;
@@ -69,6 +48,28 @@ Image frame_of(const Image& small, const ImageSettings& settings) {
 }
 
 } // namespace
+
+Image enlarged(const Image& small, const ImageSettings& settings) {
+  Image image = frame_of(small, settings);
+  const std::vector<Place> columns = places(image.width, small.width);
+  const std::vector<Place> rows = places(image.height, small.height);
+  tbb::parallel_for(std::size_t{0}, small.channels.size(), [&](std::size_t c) {
+    std::vector<float>& out = image.channels[c].data;
+    out.reserve(columns.size() * rows.size());
+    const float* values = small.channels[c].data.data();
+    const auto width = static_cast<std::size_t>(small.width);
+    std::vector<float> row(width);
+    for (const Place& y : rows) {
+      for (std::size_t x = 0; x < width; ++x) {
+        const float low = values[y.low * width + x], high = values[y.high * width + x];
+        row[x] = low + (high - low) * y.share;
+      }
+      for (const Place& x : columns)
+        out.push_back(row[x.low] + (row[x.high] - row[x.low]) * x.share);
+    }
+  });
+  return image;
+}
 
 std::optional<Image> SmallLooks::take(const Scene& scene, const PreparedScenePtr& prepared,
                                       const std::atomic<bool>& stop) {
@@ -87,15 +88,13 @@ std::optional<Image> SmallLooks::take(const Scene& scene, const PreparedScenePtr
   hooks.stop = &stop;
   hooks.discards_when_stopped = true;
   const Stopwatch watch;
-  const RenderResult result = render(small, prepared, {}, hooks);
+  RenderResult result = render(small, prepared, {}, hooks);
   if (stop)
     return std::nullopt;
   const double rendered = static_cast<double>(result.image.width) * result.image.height;
   pixels_ = std::clamp(rendered * look_seconds / std::max(1e-4, watch.seconds()), fewest_pixels,
                        most_pixels);
-  Image image = frame_of(result.image, scene.image);
-  enlarge(result.image, image);
-  return image;
+  return std::move(result.image);
 }
 
 } // namespace vdbeam

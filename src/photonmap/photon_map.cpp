@@ -30,6 +30,10 @@ bool placeable(const Vec3f& p) {
   return std::abs(p.x) < farthest && std::abs(p.y) < farthest && std::abs(p.z) < farthest;
 }
 
+bool stopped(const StopToken* stop) {
+  return stop && stop->stopped();
+}
+
 UnfilledArray<OrderedPhoton> finite_photons(const PhotonList& photons, std::size_t part) {
   const auto usable = [&](std::size_t i) {
     return (photons.part.empty() ? 0 : photons.part[i]) == part && placeable(photons.position[i]) &&
@@ -145,7 +149,7 @@ PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
 PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
 
 PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSettings& radii,
-                           KernelShape shape) {
+                           KernelShape shape, const StopToken* stop) {
   PhotonMap map;
   Data& data = *map.data_;
   data.shape = shape;
@@ -154,14 +158,21 @@ PhotonMap PhotonMap::build(PhotonList photons, int channels, const RadiusSetting
     data.parts.resize(std::size_t{1} + *std::max_element(photons.part.begin(), photons.part.end()));
   for (std::size_t i = 0; i < data.parts.size(); ++i) {
     UnfilledArray<OrderedPhoton> order = finite_photons(photons, i);
+    if (stopped(stop))
+      return {};
     order_photons(order);
+    if (stopped(stop))
+      return {};
     data.parts[i].blocks = gather_blocks(photons, order, channels);
   }
   photons = {}; // its memory is free for what follows
   data.times.order = watch.restart();
 
   for (Data::Part& part : data.parts)
-    find_kernel_radii(part.blocks, radii);
+    if (!stopped(stop))
+      find_kernel_radii(part.blocks, radii);
+  if (stopped(stop))
+    return {};
   data.times.radii = watch.restart();
 
   for (Data::Part& part : data.parts)
@@ -180,18 +191,27 @@ PhotonMap PhotonMap::copy() const {
   return map;
 }
 
-void PhotonMap::fit(const KernelFit& fit) {
+void PhotonMap::fit(const KernelFit& fit, const StopToken* stop) {
   for (std::size_t part = 0; part < data_->parts.size(); ++part) {
     PhotonBlocks& blocks = data_->parts[part].blocks;
     std::atomic<bool> resized = false;
-    tbb::parallel_for(std::size_t(0), blocks.count(), [&](std::size_t i) {
+    const auto fit_photon = [&](std::size_t i) {
       float& radius = blocks.at(i, PhotonBlocks::radius);
       const Kernel kernel = fit(blocks.position(i), part, radius);
       if (kernel.radius != radius)
         resized.store(true, std::memory_order_relaxed);
       radius = kernel.radius;
       weigh_photon(blocks, i, kernel);
-    });
+    };
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, blocks.count(), photons_at_once),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          if (stopped(stop))
+            return;
+          for (std::size_t i = range.begin(); i < range.end(); ++i)
+            fit_photon(i);
+        },
+        tbb::simple_partitioner());
     if (resized)
       data_->parts[part].refit();
   }

@@ -2,6 +2,7 @@
 
 #include "math/affine.h"
 #include "math/ray.h"
+#include "math/stop_token.h"
 #include "photonmap/beam_tile.h"
 #include "photonmap/photon.h"
 
@@ -61,14 +62,14 @@ public:
   PhotonMap& operator=(PhotonMap&&) noexcept;
 
   /// Orders the photons, finds radii, refits boxes. `channels` is 1 where every power is grey (only
-  /// x is kept), else 3.
+  /// x is kept), else 3. Returns an empty map where `stop`, unless it is null, says so.
   static PhotonMap build(PhotonList photons, int channels, const RadiusSettings& radii,
-                         KernelShape shape);
+                         KernelShape shape, const StopToken* stop = nullptr);
 
   /// The same map once more.
   PhotonMap copy() const;
-  /// Changes every kernel.
-  void fit(const KernelFit& fit);
+  /// Changes every kernel, or but some where `stop` says so.
+  void fit(const KernelFit& fit, const StopToken* stop = nullptr);
   /// The same map with the radius of every kernel multiplied by `factor`.
   PhotonMap resized(float factor) const;
 

@@ -144,9 +144,9 @@ void fit_kernels(const EstimatorInput& input, KernelDomain domain, bool by_mediu
   if (!input.world.surfaces && !by_medium)
     return;
   const KernelSupport support(input, domain, by_medium);
-  map.fit([&](const Vec3f& photon, std::size_t part, float radius) {
-    return support.fit(photon, part, radius);
-  });
+  map.fit([&](const Vec3f& photon, std::size_t part,
+              float radius) { return support.fit(photon, part, radius); },
+          input.stop);
 }
 
 } // namespace vdbeam

@@ -56,6 +56,7 @@ void PhotonPass::trace_and_build(const PassSpec& spec, KernelDomain domain,
     fit(domain, compared_map_);
   }
   fit(domain, maps_.medium);
+  input_.check_stop();
   statistics.radii += watch.seconds();
   statistics.photons_stored += maps_.medium.size();
   const bool adaptive = input_.plan.needs(Stage::neighbours);
@@ -89,26 +90,25 @@ void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
   TracedPhotons traced = trace_photons(*world_, settings);
   return_freed_memory(); // the threads' own lists, as large as the one that was made of them
   statistics.trace += watch.seconds();
-  const bool stopped = input_.stopped();
-  if (stopped)
-    traced = {}; // of an abandoned pass, nobody needs the map
   statistics.light_paths += settings.paths;
+  input_.check_stop();
   statistics.light_collisions += static_cast<std::uint64_t>(
       std::llround(traced.mean_collisions * static_cast<double>(settings.paths)));
   RadiusSettings of_caustics = radii;
   of_caustics.neighbours = tuning::caustic_neighbours;
   maps_.caustics = PhotonMap::build(std::move(traced.caustics), input_.photon_channels(),
-                                    of_caustics, input_.settings.kernel_shape);
+                                    of_caustics, input_.settings.kernel_shape, input_.stop);
   maps_.medium = PhotonMap::build(std::move(traced.photons), input_.photon_channels(), radii,
-                                  input_.settings.kernel_shape);
+                                  input_.settings.kernel_shape, input_.stop);
   statistics.order += maps_.medium.times().order;
   statistics.radii += maps_.medium.times().radii;
   statistics.build += maps_.medium.times().build;
   if (on_surfaces)
-    maps_.surfaces =
-        PhotonMap::build(std::move(traced.surface_photons), input_.photon_channels(),
-                         surface_radii(input, spec.kernel_scale), input_.settings.kernel_shape);
-  if (cache && !stopped)
+    maps_.surfaces = PhotonMap::build(std::move(traced.surface_photons), input_.photon_channels(),
+                                      surface_radii(input, spec.kernel_scale),
+                                      input_.settings.kernel_shape, input_.stop);
+  input_.check_stop();
+  if (cache)
     cache->keep(settings, radii, maps_);
 }
 

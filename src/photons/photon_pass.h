@@ -18,7 +18,8 @@ public:
   PhotonPass(const EstimatorInput& input, PassWorlds& worlds, const World& first,
              const PhotonPlan& plan);
 
-  /// Makes the map of a pass. `domain`: what its kernels are normalised over.
+  /// Makes the map of a pass. `domain`: what its kernels are normalised over. Throws Stopped where
+  /// the input's `stop` says so.
   void trace_and_build(const PassSpec& spec, KernelDomain domain, RenderStatistics& statistics);
 
   /// Drops the map until the next pass: where passes see different worlds, each has its own.

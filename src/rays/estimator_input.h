@@ -76,6 +76,11 @@ struct EstimatorInput : EstimatorTask {
                  world.lights.group_count(), deep, object_count(), plane_count());
   }
   bool stopped() const { return stop && stop->stopped(); }
+  /// Throws Stopped where `stop` says so.
+  void check_stop() const {
+    if (stop)
+      stop->check();
+  }
 };
 
 } // namespace vdbeam

@@ -5,6 +5,8 @@
 namespace vdbeam {
 
 bool is_finished(const PassImage& pass, const PixelRegion& window) {
+  if (pass.finished_tiles.empty())
+    return false;
   constexpr int tile = PassImage::tile_width;
   for (int y = window.y0 / tile * tile; y < window.y1; y += tile)
     for (int x = window.x0 / tile * tile; x < window.x1; x += tile)

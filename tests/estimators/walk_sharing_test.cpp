@@ -3,10 +3,12 @@
 
 #include "choose/gather_plan.h"
 #include "estimators/beam/beam.h"
+#include "render/pass_window.h"
 #include "support/render_passes.h"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 
@@ -179,6 +181,25 @@ TEST(GatherPass, FinishedTilesAreThoseOfAWholePass) {
           ASSERT_EQ(part.total(pixel), whole.total(pixel)) << x << " " << y;
         }
   }
+}
+
+/// A pass that is stopped while its photons are traced leaves nothing of an earlier one.
+TEST(GatherPass, APassThatIsStoppedAtItsPhotonsHasNoFinishedTiles) {
+  const MemoryScene scene = stripes();
+  const TestFrame frame(scene);
+  std::atomic<bool> request = false;
+  const StopToken stop(&request);
+  EstimatorInput input = frame.input();
+  input.stop = &stop;
+  const auto passes = make_pass_renderer(EstimatorType::gather, input);
+  RenderStatistics statistics;
+  PassImage image;
+  passes->render_pass(0, image, statistics);
+  const PixelRegion all{0, 0, image.width, image.height};
+  EXPECT_TRUE(is_finished(image, all));
+  request = true;
+  passes->render_pass(1, image, statistics);
+  EXPECT_FALSE(is_finished(image, all));
 }
 
 } // namespace

@@ -313,6 +313,20 @@ TEST(PhotonMap, KernelsKeepClearOfSurfaces) {
   EXPECT_EQ(gathered(0.5f, 1), 0);
 }
 
+/// Nobody waits for the map of a pass that is stopped: on two processors its kernels took up to a
+/// second.
+TEST(PhotonMap, StopsWhereItIsAsked) {
+  const std::atomic<bool> request = true;
+  const StopToken stop(&request);
+  EXPECT_EQ(PhotonMap::build(cube_photons(20000), 1, {}, KernelShape::biweight, &stop).size(), 0u);
+  PhotonMap map = PhotonMap::build(cube_photons(20000), 1, {}, KernelShape::biweight);
+  const float radius = map.mean_radius();
+  std::atomic<int> fitted = 0;
+  map.fit([&](const Vec3f&, std::size_t, float) { return ++fitted, Kernel{2 * radius}; }, &stop);
+  EXPECT_EQ(fitted, 0);
+  EXPECT_EQ(map.mean_radius(), radius);
+}
+
 /// What the memory budget of 55 bytes per photon counts on.
 TEST(PhotonMap, BytesPerPhoton) {
   const PhotonMap grey = PhotonMap::build(cube_photons(50000, true), 1, {}, KernelShape::biweight);
