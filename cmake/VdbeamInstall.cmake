@@ -1,5 +1,5 @@
-# cmake --install: the program with its manual page, completions, documentation and sample scenes; the
-# static library, its headers and a package for find_package(vdbeam), which defines vdbeam::vdbeam.
+# cmake --install: the program with its manual page, completions, documentation, sample scenes, Blender add-on and USD
+# converter; the static library, its headers and a package for find_package(vdbeam), which defines vdbeam::vdbeam.
 include(CMakePackageConfigHelpers)
 set(vdbeam_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdbeam)
 
@@ -35,6 +35,24 @@ if(TARGET vdbeam_cli)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program
           PATTERN reference EXCLUDE PATTERN gallery EXCLUDE)
+
+  # The converter imports what it shares with the add-on from the zip beside it.
+  find_package(Python3 COMPONENTS Interpreter)
+  if(Python3_FOUND)
+    set(addon ${PROJECT_BINARY_DIR}/generated/vdbeam_blender.zip)
+    set(make_zip ${PROJECT_SOURCE_DIR}/tools/blender/make_zip.py)
+    file(GLOB addon_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/blender/vdbeam_blender/*.py)
+    add_custom_command(OUTPUT ${addon} COMMAND ${Python3_EXECUTABLE} -B ${make_zip} ${addon}
+                       DEPENDS ${make_zip} ${addon_sources} VERBATIM)
+    add_custom_target(vdbeam_blender_zip ALL DEPENDS ${addon})
+    set(folder ${CMAKE_INSTALL_DATADIR}/vdbeam)
+    install(FILES ${addon} DESTINATION ${folder} COMPONENT program)
+    install(PROGRAMS tools/usd2vdbeam.py DESTINATION ${folder} COMPONENT program)
+    install(DIRECTORY tools/usd_scene DESTINATION ${folder} COMPONENT program FILES_MATCHING PATTERN *.py
+            PATTERN __pycache__ EXCLUDE)
+  else()
+    message(STATUS "The Blender add-on and the USD converter are not installed: Python is missing")
+  endif()
 endif()
 install(TARGETS vdbeam EXPORT vdbeamTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/vdbeam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -10,7 +10,8 @@ import pathlib
 import sys
 
 TOOLS = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(TOOLS), str(TOOLS / "blender")]
+# An installed converter has the add-on's modules in the zip beside it.
+sys.path[:0] = [str(TOOLS), str(TOOLS / "blender"), str(TOOLS / "vdbeam_blender.zip")]
 
 from vdbeam_blender import animate, camera, notes as notes_module, sequence, toml_text  # noqa: E402
 

@@ -2,16 +2,20 @@
 """Builds the Debian packages with CPack and looks into them: files, dependencies, a program that
 starts, a manual page and completions that name every command and option."""
 import glob
+import io
 import os
+import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 BUILD = os.environ["VDBEAM_BUILD"]
 PROGRAM = os.environ["VDBEAM_BINARY"]
+TESTS = pathlib.Path(__file__).resolve().parents[1]
 MODULE = glob.glob(os.path.join(BUILD, "python/vdbeam/_core*.so"))
 
 
@@ -91,6 +95,28 @@ class Packages(unittest.TestCase):
                      "examples/smoke.toml", "examples/smoke/smoke.0001.vdb", "examples/fire.toml"):
             path = self.installed("share", "doc", "vdbeam", name)
             self.assertTrue(os.path.getsize(path), path)
+
+    def test_blender_addon_is_the_zip_of_the_sources(self):
+        sys.path.insert(0, str(TESTS.parent / "tools" / "blender"))
+        import make_zip
+        again = io.BytesIO()
+        make_zip.make(again)
+        addon = self.installed("share", "vdbeam", "vdbeam_blender.zip")
+        self.assertEqual(pathlib.Path(addon).read_bytes(), again.getvalue())
+        with zipfile.ZipFile(addon) as archive:
+            self.assertIn("vdbeam_blender/__init__.py", archive.namelist())
+
+    def test_usd_converter_runs_by_itself(self):
+        """It finds its modules wherever it starts, and writes what the one of the source tree writes."""
+        stage = TESTS / "usd" / "shot.usda"
+        scenes = []
+        for place in (self.installed("share", "vdbeam"), TESTS.parent / "tools"):
+            folder = tempfile.mkdtemp(dir=self.folder)
+            output(sys.executable, "-B", os.path.join(place, "usd2vdbeam.py"), stage, cwd=folder,
+                   env={"PYTHONPATH": str(TESTS / "usd" / "stub")})
+            scenes.append({path.name: path.read_bytes() for path in pathlib.Path(folder).iterdir()})
+        self.assertIn("scene.toml", scenes[0])
+        self.assertEqual(scenes[0], scenes[1])
 
     def commands(self):
         found = re.findall(r"^  (\w+)  ", output(PROGRAM, "help").split("Commands:")[1]
