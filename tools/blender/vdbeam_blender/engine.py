@@ -57,8 +57,9 @@ class VdbeamRenderEngine(view_engine.Viewport, bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         """Renders the frame at hand."""
-        # A result without pixels crashes Blender 3.4 when it is saved, so there are some, whatever happens.
-        self.end_result(self.begin_result(0, 0, *self.size_of(depsgraph.scene)))
+        # A result without pixels crashes Blender 3.4 when it is saved, so there are some, whatever happens. Those of the
+        # other view layers stay as they are.
+        self.end_result(self.begin_result(0, 0, *self.size_of(depsgraph.scene), layer=depsgraph.view_layer.name))
         try:
             program = process.find_program(program_path())
             with temp_folder.TempFolder() as folder:
@@ -90,8 +91,13 @@ class VdbeamRenderEngine(view_engine.Viewport, bpy.types.RenderEngine):
         for line in self.write_scene(folder, depsgraph, frame, chosen):
             self.report({"INFO"}, f"vdbeam: {line}")
         border = border_of(scene, self.resolution_x, self.resolution_y)
+        target = Target(self, scene, depsgraph.view_layer.name, chosen, folder)
         render = process.Render(command(program, scene, frame, border), folder)
-        errors = self.follow(render, Target(self, scene, depsgraph.view_layer.name, chosen, folder))
+        try:
+            errors = self.follow(render, target)
+        except BaseException:  # Blender may remove the engine meanwhile; the program ends with it
+            render.kill()
+            raise
         code, last_line = render.close()
         text = process.ending(code, errors, last_line)
         if text and not self.cancelled():

@@ -74,6 +74,11 @@ class Render:
             self.ended_at = time.monotonic()
             self.child.send_signal(signal.SIGTERM)
 
+    def kill(self):
+        """Ends the render at once, without its image."""
+        self.child.kill()
+        self.close()
+
     def close(self):
         """Waits for the end; returns (exit code, last line of the log)."""
         code = self.child.wait()

@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""View layers and renders one after the other inside Blender: what each of them leaves to the next. Skipped without
+Blender."""
+import glob
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+FILE = os.path.abspath(__file__)
+sys.path.insert(0, os.path.dirname(FILE))
+
+import blender_runner  # noqa: E402
+
+if blender_runner.inside_blender():
+    import bpy
+    import numpy
+    import scenes
+    from vdbeam_blender import engine, exr, temp_folder, viewport
+
+
+def plain_scene():
+    """A plane under a constant world, small enough to be rendered often."""
+    scene = scenes.empty_scene()
+    scenes.add_camera(scene, (0, -5, 5), (0, 0, 0))
+    scenes.add_plane(scene)
+    scenes.set_world(scene, (0.5, 0.5, 0.5))
+    scene.render.resolution_x, scene.render.resolution_y = 32, 18
+    scene.vdbeam.passes = 1
+    return scene
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.path = self.folder / "image.exr"
+
+    def replace(self, owner, name, value):
+        """Sets an attribute until the test ends."""
+        self.addCleanup(setattr, owner, name, getattr(owner, name))
+        setattr(owner, name, value)
+
+
+class ViewLayers(InFolder):
+    def second_layer(self, scene):
+        """Adds a view layer until the test ends."""
+        layer = scene.view_layers.new("second")
+        self.addCleanup(scene.view_layers.remove, layer)
+        return layer
+
+    def planes(self, scene):
+        """The planes of a render, by view layer and pass."""
+        scene.render.filepath = str(self.path)
+        bpy.ops.render.render(write_still=True)
+        return exr.read(self.path)[0]
+
+    def test_every_view_layer_is_kept(self):
+        scene = plain_scene()
+        second = self.second_layer(scene)
+        second.use_pass_z = True
+        planes = self.planes(scene)
+        first = scene.view_layers[0].name
+        for letter in "RGB":
+            self.assertGreater(planes[f"{first}.Combined.{letter}"].min(), 0.1)
+            self.assertTrue(numpy.array_equal(planes[f"{first}.Combined.{letter}"], planes[f"second.Combined.{letter}"]))
+        self.assertGreater(planes["second.Depth.Z"].max(), 5)
+        self.assertNotIn(f"{first}.Depth.Z", planes)
+
+    def test_a_view_layer_that_fails_is_reported(self):
+        scene = plain_scene()
+        self.second_layer(scene)
+        write = engine.VdbeamRenderEngine.write_scene
+
+        def fail_in_second(own, folder, depsgraph, *more):
+            if depsgraph.view_layer.name == "second":
+                raise ValueError("it is of no use")
+            return write(own, folder, depsgraph, *more)
+
+        self.replace(engine.VdbeamRenderEngine, "write_scene", fail_in_second)
+        with self.assertRaisesRegex(RuntimeError, "vdbeam: it is of no use"):
+            self.planes(scene)
+
+
+class Renders(InFolder):
+    """Blender refuses F12 while an image is rendered. Renders may follow each other, and other programs and viewports
+    render at the same time."""
+
+    def setUp(self):
+        super().setUp()
+        self.started = []
+        begin = engine.process.Render.__init__
+
+        def note(own, words, folder):
+            begin(own, words, folder)
+            self.started.append((own.child, folder))
+
+        self.replace(engine.process.Render, "__init__", note)
+
+    def image(self, scene):
+        return scenes.combined(scenes.render(scene, self.path))
+
+    def nothing_is_left(self, renders):
+        """Checks that programs have ended and their folders are gone."""
+        self.assertEqual(len(self.started), renders)
+        for child, folder in self.started:
+            self.assertIsNotNone(child.returncode)
+            self.assertFalse(os.path.exists(folder))
+
+    def test_one_after_the_other(self):
+        scene = plain_scene()
+        first = self.image(scene)
+        self.assertTrue(numpy.array_equal(first, self.image(scene)))
+        self.nothing_is_left(2)
+
+    def test_after_a_break(self):
+        """A render that the user breaks, by Ctrl-C on the command line or Esc in the editor, does not hinder the next."""
+        scene = plain_scene()
+        first = self.image(scene)
+        scene.vdbeam.passes = 100000
+        follow = engine.VdbeamRenderEngine.follow
+
+        def interrupted(own, *words):
+            os.kill(os.getpid(), signal.SIGINT)
+            return follow(own, *words)
+
+        engine.VdbeamRenderEngine.follow = interrupted
+        try:
+            bpy.ops.render.render()
+        finally:
+            engine.VdbeamRenderEngine.follow = follow
+        scene.vdbeam.passes = 1
+        self.assertTrue(numpy.array_equal(first, self.image(scene)))
+        self.nothing_is_left(3)
+
+    def test_after_an_exception(self):
+        """Blender removes an engine whose scene a script renders once more: then the program ends as well."""
+        scene = plain_scene()
+        scene.vdbeam.passes = 100000
+
+        def removed(_own):
+            raise ReferenceError("StructRNA of type VdbeamRenderEngine has been removed")
+
+        cancelled = engine.VdbeamRenderEngine.cancelled
+        engine.VdbeamRenderEngine.cancelled = removed
+        try:
+            bpy.ops.render.render()  # Blender prints the exception
+        finally:
+            engine.VdbeamRenderEngine.cancelled = cancelled
+        scene.vdbeam.passes = 1
+        self.assertGreater(self.image(scene).min(), 0.1)
+        self.nothing_is_left(2)
+
+    def test_beside_a_viewport(self):
+        """A viewport's program goes on while F12 renders."""
+        scene = plain_scene()
+        preview = viewport.Preview(engine.process.find_program(""), threads=1)
+        self.addCleanup(preview.close)
+        preview.show_scene({"light": [{"type": "environment"}], "render": {"passes": 1000000}}, opaque=True)
+        window = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1.02, -2.02], [0, 0, -1, 0]]
+        place = [[float(row == column) for column in range(4)] for row in range(4)]
+        preview.show_view({"size": (32, 18), "window": window, "camera_to_world": place})
+        self.assertGreater(self.image(scene).min(), 0.1)
+        (live, _), still = self.started[0], self.started[1:]
+        self.assertIsNone(live.poll())
+        preview.close()
+        self.assertIsNotNone(live.wait(60))
+        self.started = still
+        self.nothing_is_left(1)
+
+    def test_two_blenders_at_once(self):
+        """A second Blender renders and ends while the first one does, whose folder it leaves alone."""
+        scene = plain_scene()
+        expected = self.image(scene)
+        shot, other = self.folder / "shot.blend", self.folder / "other.exr"
+        bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+        script = (f"import sys; sys.path.insert(0, {os.path.dirname(FILE)!r}); import bpy, scenes, vdbeam_blender; "
+                  f"vdbeam_blender.register(); bpy.ops.wm.open_mainfile(filepath={str(shot)!r}); "
+                  f"scenes.render(bpy.context.scene, {str(other)!r})")
+        follow = engine.VdbeamRenderEngine.follow
+        results = []
+
+        def with_another(own, render, target):
+            results.append(subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--python-expr", script],
+                                          capture_output=True, text=True, check=False))
+            self.assertTrue(os.path.exists(self.started[-1][1]))
+            return follow(own, render, target)
+
+        self.replace(engine.VdbeamRenderEngine, "follow", with_another)
+        self.assertTrue(numpy.array_equal(expected, self.image(scene)))
+        self.assertEqual(results[0].returncode, 0, results[0].stdout + results[0].stderr)
+        planes = {name.split(".", 1)[1]: plane for name, plane in exr.read(other)[0].items()}
+        self.assertTrue(numpy.array_equal(expected, scenes.combined(planes)))
+        self.nothing_is_left(2)
+        left = glob.glob(os.path.join(tempfile.gettempdir(), f"{temp_folder.PREFIX}*"))
+        self.assertFalse([folder for folder in left if temp_folder.is_left(pathlib.Path(folder))])
+
+
+if __name__ == "__main__":
+    blender_runner.main(FILE)
