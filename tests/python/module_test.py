@@ -147,8 +147,18 @@ class Renders(unittest.TestCase):
                               on_image=images.append, on_note=notes.append)
         self.assertEqual([record.passes for record in records], [1, 2, 3, 4])
         self.assertGreaterEqual(len(images), 3)
-        self.assertTrue(all(image.shape == (27, 48, 3) and image.any() for image in images))
+        self.assertTrue(all(image.rgb.shape == (27, 48, 3) and image.rgb.any() for image in images))
         self.assertEqual(records[-1].error_estimate, frame.error[0])
+
+    def test_on_image_has_the_layers_of_the_frame(self):
+        images = []
+        scene = cloud(layer=[{"name": "depth"}, {"name": "volume_direct"}])
+        frame = vdbeam.render(scene, on_image=images.append)
+        self.assertIn("depth.Z", frame.layers)
+        self.assertEqual(sorted(images[0].layers), sorted(frame.layers))
+        for name, plane in frame.layers.items():  # the last image is the frame's, and outlives it
+            np.testing.assert_array_equal(images[-1].layers[name], plane)
+        self.assertLess(vdbeam.compare(images[-1], frame)["mrse"], 1e-12)
 
     def test_false_ends_the_render(self):
         frame = vdbeam.render(cloud(), {"render.passes": 1000}, on_pass=lambda record: record.passes < 2)

