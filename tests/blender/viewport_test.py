@@ -149,6 +149,16 @@ class Programs(unittest.TestCase):
         left = sorted(path.name for path in pathlib.Path(self.preview.folder).glob("*.ply"))
         self.assertEqual(left, [f"{number}.ply" for number in range(2, viewport.KEPT_SCENES + 2)])
 
+    def test_files_of_images_stay_while_a_scene_names_them(self):
+        names = ("image_a.png", "image_b.exr", "image_c.jpg")
+        for name in names:
+            (pathlib.Path(self.preview.folder) / name).write_bytes(b"")
+        material = {"type": "diffuse", "texture": names[0]}
+        self.preview.show_scene({"mesh": [{"file": "a.ply", "material": material}],
+                                 "light": [{"type": "environment", "image": names[1]}]}, opaque=True)
+        self.preview.sweep()
+        self.assertEqual([os.path.exists(os.path.join(self.preview.folder, name)) for name in names], [True, True, False])
+
     def test_mistakes_are_shown_and_mended(self):
         self.preview.show_scene({**SCENE, "render": {"passes": 2, "bogus": 1}}, opaque=True)
         self.preview.show_view(self.view())

@@ -1,7 +1,6 @@
 """Reads Blender's objects into tables of a scene file. Objects are what has Blender's attributes; bpy itself is not
 imported."""
 import math
-import os
 
 import numpy
 
@@ -9,7 +8,6 @@ from . import lamps, meshes, nodes, sequence, surface_shader, volume_shader
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 NEVER = -999999  # number of a file that no sequence has
-TEXTURE_ENDINGS = (".png", ".exr", ".hdr")
 
 
 def rows(matrix):
@@ -20,14 +18,6 @@ def rows(matrix):
 def transform(matrix):
     """Twelve numbers of a [[volume]] or [[mesh]]."""
     return [float(value) for row in list(matrix)[:3] for value in row]
-
-
-def image_file(image, abspath):
-    """The file of an image that vdbeam reads, or None."""
-    if image is None or image.source not in ("FILE", "SEQUENCE") or not image.filepath:
-        return None
-    path = abspath(image.filepath)
-    return path if path.lower().endswith(TEXTURE_ENDINGS) and os.path.isfile(path) else None
 
 
 def materials_of(obj):

@@ -3,7 +3,7 @@ import os
 
 import numpy
 
-from . import camera, layers, mesh_cache, objects, simulation, surface_shader, visibility, world
+from . import camera, images, layers, mesh_cache, objects, simulation, surface_shader, visibility, world
 
 
 class Options:
@@ -32,6 +32,7 @@ class SceneReader:
         self.options = options
         self.notes = notes
         self.meshes = mesh_cache.MeshCache(options.folder)
+        self.images = images.ImageFiles(options.folder, options.abspath)
         self.first_points = {}  # of deforming meshes, at the first time
         self.frame, self.view_layer = 1.0, None
         self.place = None  # of the world's volume
@@ -57,7 +58,7 @@ class SceneReader:
         fog = world.world_volume(scene.world, self.middle(scene), self.notes)
         if fog is not None:
             tables["volume"].append(fog)
-        lights = world.world_lights(scene.world, self.notes, self.image_path)
+        lights = world.world_lights(scene.world, self.notes, self.images.path)
         visibility.show_world(scene.world, lights, self.notes)
         visibility.note_scene(scene, self.notes)
         group = getattr(scene.world, "lightgroup", "")
@@ -76,10 +77,6 @@ class SceneReader:
         if self.place is None:
             self.place = [0.0] * 3 if scene.camera is None else [row[3] for row in objects.rows(scene.camera.matrix_world)[:3]]
         return self.place
-
-    def image_path(self, image):
-        """The file of an image, or None."""
-        return objects.image_file(image, self.options.abspath)
 
     def image(self, scene):
         """Keys of [image]."""
@@ -161,7 +158,7 @@ class SceneReader:
             return self.add_smoke(obj, domain, name, matrix, tables)
         shaders = {}
         for index, material in enumerate(objects.materials_of(obj) or [None]):
-            keys = objects.material_keys(obj, material, self.notes, self.image_path)
+            keys = objects.material_keys(obj, material, self.notes, self.images.path)
             if keys is not None:
                 shaders[index] = keys
         if visibility.is_holdout(obj, self.view_layer):

@@ -11,6 +11,11 @@ def image_of(node, image_path):
     return image_path(node.image)
 
 
+def has_alpha(image):
+    """Whether an image has an alpha channel, which Blender knows by its bits per pixel. Without one, its alpha is 1."""
+    return getattr(image, "depth", 32) in (32, 64, 128)
+
+
 def channel(input_socket):
     """(node, channel of a Separate Color in front of it, or None) behind a socket."""
     node, name = nodes.source(input_socket), None
@@ -36,7 +41,10 @@ def opacity(node, name, notes, subject, image_path):
     socket = nodes.socket(node, name)
     if socket is None:
         return {}
-    file = image_of(nodes.source(socket), image_path)
+    behind = nodes.source(socket)
+    file = image_of(behind, image_path)
+    if file is not None and nodes.output_name(socket) == "Alpha" and not has_alpha(behind.image):
+        return {}
     if file is not None:
         return {"opacity_texture": file}
     value = max(0.0, min(1.0, nodes.constant_number(node, notes, subject, name, default=1.0)))

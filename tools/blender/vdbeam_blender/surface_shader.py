@@ -1,7 +1,7 @@
 """From surface shaders to the material of a [[mesh]]."""
 import math
 
-from . import nodes, surface_maps
+from . import nodes, notes as notes_module, surface_maps
 
 TEXTURES = "Base Color", "Color"
 TINT = "tint"  # no key of vdbeam's: the colour of glass until its mesh is known
@@ -14,8 +14,7 @@ def with_texture(node, keys, notes, subject, image_path):
         path = image_path(behind.image)
         if path is not None:
             return {**keys, "texture": path, "albedo": [1.0] * 3}
-        notes.add(subject, "its texture has no file of the kinds .png, .exr and .hdr; its mean colour is not known, and "
-                           "0.5 is used")
+        notes.add(subject, f"its texture is left out, {notes_module.NO_IMAGE}; the albedo 0.5 is used")
         return {**keys, "albedo": [0.5] * 3}
     return {**keys, "albedo": clipped(nodes.constant_colour(node, notes, subject, *TEXTURES))}
 

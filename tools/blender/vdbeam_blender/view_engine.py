@@ -43,6 +43,7 @@ class Contents:
         options.interpolation, options.render = scene.vdbeam.interpolation, settings.viewport_keys(scene.vdbeam)
         self.reader.notes = notes.Notes()
         self.reader.meshes.forget(changed_in(depsgraph))
+        self.reader.images.forget()
         return self.reader.contents(depsgraph, float(scene.frame_current))
 
 

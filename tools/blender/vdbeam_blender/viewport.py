@@ -8,7 +8,7 @@ import time
 
 import numpy
 
-from . import exr, process, temp_folder, toml_text, view_camera
+from . import exr, images, process, temp_folder, toml_text, view_camera
 
 IMAGE = "view.exr"
 SCENE = "scene.toml"
@@ -24,6 +24,15 @@ def pixels_of(planes, opaque):
     for index, letter in enumerate("RGB" if opaque else "RGBA"):
         pixels[..., index] = planes[letter][::-1]
     return pixels
+
+
+def texts_in(value):
+    """The texts in a scene's tables, among them the names of files."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, (dict, list)):
+        for entry in value.values() if isinstance(value, dict) else value:
+            yield from texts_in(entry)
 
 
 def status_text(event):
@@ -51,7 +60,7 @@ class Preview:
         self.lock = threading.Lock()
         self.render = None
         self.scene = None  # text without the tables of the view
-        self.shown_files, self.last_files = set(), []  # of meshes: of this scene, and of the last ones written
+        self.shown_files, self.last_files = set(), []  # names in this scene, and in the last ones written
         self.view = None
         self.opaque = True
         self.written = None  # text of the scene file
@@ -72,7 +81,7 @@ class Preview:
     def show_scene(self, tables, opaque):
         """Takes another scene, without [image] and [camera]."""
         self.scene, self.opaque = toml_text.scene_text(tables), opaque
-        self.shown_files = {mesh["file"] for mesh in tables.get("mesh", []) if "file" in mesh}
+        self.shown_files = set(texts_in(tables))
         self.update()
 
     def show_view(self, view):
@@ -113,11 +122,11 @@ class Preview:
             self.wrote_at, self.edit_seen = time.monotonic(), False
 
     def sweep(self):
-        """Removes files of meshes that no scene names of those that the program may still read."""
+        """Removes files of meshes and images that no scene names of those that the program may still read."""
         self.last_files = [*self.last_files[-KEPT_SCENES + 1:], self.shown_files]
         kept = set().union(*self.last_files)
         for name in os.listdir(self.folder):
-            if name.endswith(".ply") and name not in kept:
+            if (name.endswith(".ply") or name.startswith(images.PREFIX)) and name not in kept:
                 os.remove(os.path.join(self.folder, name))
 
     def is_busy(self):

@@ -1,7 +1,7 @@
 """From the world's nodes to [[light]]: a constant colour, an environment image, a clear sky."""
 import math
 
-from . import nodes, volume_shader
+from . import nodes, notes as notes_module, volume_shader
 
 # Irradiance of the sun above the air, and optical depth of haze at a dust density of 1, with which an atmosphere has
 # the sunlight and the skylight of Cycles' Nishita sky at the strength 1. Fitted at elevations of 17, 46 and 80 degrees;
@@ -31,7 +31,7 @@ def picture(texture, strength, notes, subject, image_path):
         return []
     path = image_path(texture.image)
     if path is None:
-        notes.add(subject, "its image has no file of the kinds .exr and .hdr and is left out")
+        notes.add(subject, f"its image is left out, {notes_module.NO_IMAGE}")
         return []
     return [{"type": "environment", "image": path, "radiance": [strength] * 3,
              "rotation": 90.0 + turn_of(texture, notes, subject)}]
