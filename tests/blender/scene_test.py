@@ -1,40 +1,11 @@
 #!/usr/bin/env python3
 """What Blender's nodes, lamps, cameras and sequences become in a scene file, without Blender."""
 import math
-import pathlib
-import sys
 import types
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools" / "blender"))
-
-from vdbeam_blender import (animate, camera, lamps, nodes, notes, sequence, surface_shader, toml_text,  # noqa: E402
-                            volume_shader, world)
-
-
-class Socket:
-    """A socket of a node."""
-
-    def __init__(self, name, value=0.0):
-        self.name, self.default_value, self.links = name, value, []
-
-    @property
-    def is_linked(self):
-        return bool(self.links)
-
-
-def node(kind, inputs=(), **more):
-    """A node with sockets by name and value."""
-    return types.SimpleNamespace(type=kind, bl_label=kind.title(), inputs=[Socket(*pair) for pair in dict(inputs).items()],
-                                 outputs=[Socket("Out")], **more)
-
-
-def link(source, target, name):
-    """Connects a node with a socket of another."""
-    socket = nodes.socket(target, name)
-    socket.links = [types.SimpleNamespace(from_node=source, from_socket=source.outputs[0])]
-    return target
+from fake_nodes import link, node
+from vdbeam_blender import animate, camera, lamps, notes, sequence, toml_text, volume_shader, world
 
 
 def principled_volume(**values):
@@ -108,88 +79,6 @@ class VolumeShaders(unittest.TestCase):
         self.assertIn("Density is driven by a Valtorgb", self.notes.lines[0])
         self.assertIsNone(self.keys(node("BSDF_HAIR")))
         self.assertIn("has no counterpart", self.notes.lines[0])
-
-
-class Surfaces(unittest.TestCase):
-    def keys(self, shader):
-        self.notes = notes.Notes()
-        return surface_shader.surface_keys(shader, self.notes, "stone", lambda image: image)
-
-    def principled(self, **values):
-        inputs = {"Base Color": (0.8, 0.8, 0.8, 1), "Metallic": 0.0, "Specular": 0.0, "Roughness": 0.5, "IOR": 1.45,
-                  "Transmission": 0.0, "Emission": (0, 0, 0, 1), "Emission Strength": 1.0}
-        return node("BSDF_PRINCIPLED", {**inputs, **{key.replace("_", " "): value for key, value in values.items()}})
-
-    def test_principled_takes_the_strongest_part(self):
-        self.assertEqual(self.keys(self.principled()), {"type": "diffuse", "albedo": [0.8] * 3})
-        metal = self.keys(self.principled(Metallic=1.0, Roughness=0.2))
-        self.assertEqual((metal["type"], metal["metal"], metal["roughness"]), ("standard", 1.0, 0.2))
-        self.assertEqual(self.keys(self.principled(Transmission=1.0, Base_Color=(1, 1, 1, 1))),
-                         {"type": "dielectric", "ior": 1.45, "roughness": 0.5})
-        self.assertEqual(self.keys(self.principled(Emission=(1, 0.5, 0, 1), Emission_Strength=4.0)),
-                         {"type": "emissive", "radiance": [4.0, 2.0, 0.0], "two_sided": True})
-
-    def test_names_of_blender_4(self):
-        shader = node("BSDF_PRINCIPLED", {"Base Color": (1, 1, 1, 1), "Metallic": 0.0, "Specular IOR Level": 0.0,
-                                          "Roughness": 0.0, "IOR": 1.33, "Transmission Weight": 1.0,
-                                          "Emission Color": (1, 1, 1, 1), "Emission Strength": 0.0})
-        self.assertEqual(self.keys(shader), {"type": "dielectric", "ior": 1.33, "roughness": 0.0})
-
-    def test_gloss_and_coat(self):
-        self.assertEqual(self.keys(self.principled(Specular=0.5)),
-                         {"type": "standard", "metal": 0.0, "ior": 1.5, "roughness": 0.5, "albedo": [0.8] * 3})
-        coated = self.keys(self.principled(Clearcoat=0.7, Clearcoat_Roughness=0.1))
-        self.assertEqual((coated["ior"], coated["coat"], coated["coat_roughness"]), (1, 0.7, 0.1))
-        self.assertEqual(self.notes.lines, [])
-        newer = node("BSDF_PRINCIPLED", {"Base Color": (1, 1, 1, 1), "Metallic": 0.3, "Specular IOR Level": 0.5,
-                                         "Roughness": 0.2, "IOR": 1.33, "Emission Strength": 0.0, "Coat Weight": 0.0})
-        self.assertEqual(self.keys(newer), {"type": "standard", "metal": 0.3, "ior": 1.33, "roughness": 0.2,
-                                            "albedo": [1.0] * 3})
-
-    def test_transparent_is_not_there(self):
-        self.assertIsNone(self.keys(node("BSDF_TRANSPARENT")))
-
-    def test_texture(self):
-        shader = link(node("TEX_IMAGE", image="bricks.png"), self.principled(), "Base Color")
-        self.assertEqual(self.keys(shader), {"type": "diffuse", "texture": "bricks.png", "albedo": [1.0] * 3})
-
-
-    def test_maps_of_opacity_roughness_and_normal(self):
-        shader = self.principled(Specular=0.5, Alpha=1.0)
-        shader.inputs.append(Socket("Normal"))
-        picture = node("TEX_IMAGE", image="packed.png")
-        apart = node("SEPARATE_COLOR", {"Color": None})
-        apart.outputs[0].name = "Green"
-        link(picture, apart, "Color")
-        link(apart, shader, "Roughness")
-        link(node("TEX_IMAGE", image="metal.png"), shader, "Metallic")
-        link(node("TEX_IMAGE", image="leaf.png"), shader, "Alpha")
-        bumps = node("NORMAL_MAP", {"Strength": 0.5, "Color": None}, space="TANGENT")
-        link(node("TEX_IMAGE", image="bumps.png"), bumps, "Color")
-        link(bumps, shader, "Normal")
-        self.assertEqual(self.keys(shader), {
-            "type": "standard", "metal": 1.0, "metal_texture": "metal.png", "ior": 1.5, "roughness": 1.0,
-            "roughness_texture": "packed.png", "opacity_texture": "leaf.png", "normal_texture": "bumps.png",
-            "normal_scale": 0.5, "albedo": [0.8] * 3})
-        self.assertEqual(self.notes.lines, [])
-        apart.outputs[0].name = "Red"  # no channel of roughness
-        self.assertNotIn("roughness_texture", self.keys(shader))
-        self.assertEqual(len(self.notes.lines), 1)
-
-    def test_mixture_with_nothing_has_an_opacity(self):
-        def mixture(factor, first, second):
-            both = node("MIX_SHADER", {"Fac": factor, "1": None, "2": None})
-            link(first, both, "1")
-            return link(second, both, "2")
-
-        clear, matt = node("BSDF_TRANSPARENT"), node("BSDF_DIFFUSE", {"Color": (1, 1, 1, 1)})
-        self.assertEqual(self.keys(mixture(0.25, clear, matt)), {"type": "diffuse", "albedo": [1.0] * 3, "opacity": 0.25})
-        self.assertEqual(self.keys(mixture(0.25, matt, clear))["opacity"], 0.75)
-        leaf = link(node("TEX_IMAGE", image="leaf.png"), mixture(0.5, clear, matt), "Fac")
-        self.assertEqual(self.keys(leaf)["opacity_texture"], "leaf.png")
-        self.assertEqual(self.notes.lines, [])
-        self.assertEqual(self.keys(mixture(0.5, matt, matt))["type"], "diffuse")
-        self.assertEqual(len(self.notes.lines), 1)
 
 
 class Worlds(unittest.TestCase):
@@ -286,24 +175,6 @@ class Lamps(unittest.TestCase):
         portal = self.lamp(type="AREA", shape="SQUARE", size=2.0, size_y=2.0, portal=True)
         self.assertIsNone(lamps.lamp_keys(portal, found))
         self.assertIn("lamp: a portal has no counterpart", found.lines[0])
-
-
-class Glass(unittest.TestCase):
-    def test_colour_becomes_absorption(self):
-        found = notes.Notes()
-        glass = node("BSDF_GLASS", {"Color": (1.0, 0.5, 0.25, 1.0), "IOR": 1.45, "Roughness": 0.0})
-        keys = surface_shader.surface_keys(glass, found, "glass", None)
-        inside = surface_shader.tinted_inside(keys, 2.0, found, "glass")
-        for value, colour in zip(inside["absorption"], (1.0, 0.5, 0.25)):
-            self.assertAlmostEqual(math.exp(-2.0 * value), colour * colour)
-        self.assertEqual(set(inside), {"type", "ior", "roughness", "absorption"})
-        self.assertNotIn("absorption", surface_shader.tinted_inside(keys, 0.0, found, "glass"))
-        self.assertIn("not closed", found.lines[-1])
-
-    def test_clear_glass_is_clear(self):
-        glass = node("BSDF_GLASS", {"Color": (1.0, 1.0, 1.0, 1.0), "IOR": 1.45, "Roughness": 0.0})
-        keys = surface_shader.surface_keys(glass, notes.Notes(), "glass", None)
-        self.assertEqual(surface_shader.tinted_inside(keys, 1.0, notes.Notes(), "glass"), keys)
 
 
 class Cameras(unittest.TestCase):

@@ -68,6 +68,21 @@ class Tables(unittest.TestCase):
         self.assertEqual((hidden.get("visible"), hidden["material"]["type"]), (False, "diffuse"))
         self.assertEqual((plain.get("visible"), plain["material"]["type"]), (None, "diffuse"))
 
+    def test_a_surface_that_emits_little_stays_a_surface(self):
+        scene = scenes.empty_scene()
+        scenes.add_camera(scene, (0, -5, 5), (0, 0, 0))
+        scenes.set_world(scene, (1, 1, 1))
+        for strength in (0.1, 5.0):
+            plane = scenes.add_plane(scene, 1)
+            plane.lightgroup = "glow"
+            scenes.shader(plane.data.materials[0], "ShaderNodeBsdfPrincipled", Emission=(1, 1, 1, 1),
+                          Emission_Strength=strength)
+        found, lines = self.exported(scene)
+        dim, bright = found["mesh"]
+        self.assertEqual((dim["material"]["type"], dim.get("group")), ("standard", None))
+        self.assertEqual((bright["material"]["type"], bright["group"]), ("emissive", "glow"))
+        self.assertEqual(len([line for line in lines if "is left out on objects that reflect" in line]), 2, lines)
+
     def test_a_metaball_is_exported_once(self):
         scene = scenes.empty_scene()
         scenes.add_camera(scene, (0, -5, 5), (0, 0, 0))

@@ -3,7 +3,7 @@ import os
 
 import numpy
 
-from . import camera, images, layers, mesh_cache, objects, simulation, surface_shader, visibility, world
+from . import camera, glow, images, layers, mesh_cache, objects, simulation, surface_shader, visibility, world
 
 
 class Options:
@@ -33,6 +33,7 @@ class SceneReader:
         self.notes = notes
         self.meshes = mesh_cache.MeshCache(options.folder)
         self.images = images.ImageFiles(options.folder, options.abspath)
+        self.emissive = {}  # choices of glow.py
         self.first_points = {}  # of deforming meshes, at the first time
         self.frame, self.view_layer = 1.0, None
         self.place = None  # of the world's volume
@@ -68,6 +69,7 @@ class SceneReader:
             if scene.render.film_transparent:
                 light["visible"] = False
         tables["light"] += lights
+        glow.choose(tables, self.emissive, self.notes)
         tables["layer"] = layers.layer_tables(self.options.passes)
         tables["render"] = dict(self.options.render)
         return {name: table for name, table in tables.items() if table}
@@ -178,7 +180,8 @@ class SceneReader:
                     "transform": objects.transform(matrix), "material": shaders[index]}
             if not visibility.is_seen(obj, self.view_layer):
                 keys["visible"] = False
-            if shaders[index]["type"] == "emissive" and getattr(obj, "lightgroup", ""):
+            emits = shaders[index]["type"] == "emissive" or glow.GLOW in shaders[index]
+            if emits and getattr(obj, "lightgroup", ""):
                 keys["group"] = obj.lightgroup
             tables["mesh"].append(keys)
         return None

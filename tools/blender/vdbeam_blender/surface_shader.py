@@ -1,9 +1,10 @@
 """From surface shaders to the material of a [[mesh]]."""
 import math
 
-from . import nodes, notes as notes_module, surface_maps
+from . import glow, nodes, notes as notes_module, surface_maps
 
 TEXTURES = "Base Color", "Color"
+WITH_OPACITY = {"diffuse", "standard", "conductor", "holdout"}
 TINT = "tint"  # no key of vdbeam's: the colour of glass until its mesh is known
 
 
@@ -72,11 +73,17 @@ def gloss_ior(node, notes, subject):
 
 
 def principled(node, notes, subject, image_path):
-    """A Principled BSDF: emission or glass where it has them, else a standard surface."""
+    """A Principled BSDF: its surface, with what it emits, until glow.py chooses between them."""
+    surface = principled_surface(node, notes, subject, image_path)
     colour = nodes.constant_colour(node, notes, subject, "Emission Color", "Emission")
     strength = nodes.constant_number(node, notes, subject, "Emission Strength", default=1.0)
     if strength * max(colour) > 0:
-        return emission(colour, strength)
+        return {**surface, glow.GLOW: {"radiance": emission(colour, strength)["radiance"], "subject": subject}}
+    return surface
+
+
+def principled_surface(node, notes, subject, image_path):
+    """A Principled BSDF without its emission: glass or a standard surface."""
     transmission = nodes.constant_number(node, notes, subject, "Transmission Weight", "Transmission")
     metal_keys = surface_maps.number(node, "metal", notes, subject, image_path, "Metallic")
     metallic = metal_keys["metal"]
@@ -113,6 +120,9 @@ def cut_out(node, notes, subject, image_path):
                 notes.add(subject, "an image of transparency has no counterpart, only one of opacity; it is left out")
                 return keys
             share = {"opacity": 1 - share.get("opacity", 1.0)}
+        if share and keys is not None and keys["type"] not in WITH_OPACITY:
+            notes.add(subject, f"the opacity of a surface of the type {keys['type']} has no counterpart; it is left out")
+            return keys
         return None if keys is None else {**keys, **share}
     return None
 

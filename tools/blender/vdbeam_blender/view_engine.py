@@ -44,6 +44,7 @@ class Contents:
         self.reader.notes = notes.Notes()
         self.reader.meshes.forget(changed_in(depsgraph))
         self.reader.images.forget()
+        self.reader.emissive.clear()
         return self.reader.contents(depsgraph, float(scene.frame_current))
 
 
