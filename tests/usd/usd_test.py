@@ -286,6 +286,42 @@ def {light}
                      "note: /world/ground: a subdivision surface (catmullClark) has no counterpart"):
             self.assertIn(line, self.notes)
 
+    def faces_with(self, *lines, old="texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1)]"):
+        """The normals and the face of the ground's OBJ, with these lines in place of its texture coordinates."""
+        scene = self.variant((old, "\n".join(lines)))
+        ground = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/world/ground")
+        text = pathlib.Path(self.file(ground["file"])).read_text(encoding="ascii")
+        return [line for line in text.splitlines() if line.startswith(("vn", "f"))]
+
+    def test_normals_go_with_the_mesh(self):
+        """The corners of the ground are its points 4 to 1. USD interpolates normals over points if not said otherwise."""
+        four = "normals = [(0, 1, 0), (0, 1, 0.5), (0.5, 1, 0), (1, 0, 0)]"
+        lines = ["vn 0 1 0", "vn 0 1 0.5", "vn 0.5 1 0", "vn 1 0 0"]
+        by_point, by_corner = "f 4//4 3//3 2//2 1//1", "f 4//1 3//2 2//3 1//4"
+        self.assertEqual(self.faces_with(f'normal3f[] {four} (interpolation = "vertex")'), [*lines, by_point])
+        self.assertEqual(self.faces_with(f'normal3f[] {four} (interpolation = "faceVarying")'), [*lines, by_corner])
+        self.assertEqual(self.faces_with(f"normal3f[] {four}"), [*lines, by_point])
+        self.assertEqual(self.faces_with('normal3f[] normals = [(0, 1, 0)] (interpolation = "uniform")'),
+                         ["vn 0 1 0", "f 4//1 3//1 2//1 1//1"])
+        self.assertEqual(self.faces_with(f"normal3f[] {four}", 'normal3f[] primvars:normals = [(0, 2, 0), (0, 3, 0)] '
+                                         '(interpolation = "faceVarying")', "int[] primvars:normals:indices = [1, 0, 0, 1]"),
+                         ["vn 0 2 0", "vn 0 3 0", "f 4//2 3//1 2//1 1//2"])
+        result = subprocess.run([BINARY, "info", next(pathlib.Path(self.folder.name).glob("*.obj"))], capture_output=True,
+                                text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.faces_with("normal3f[] normals = [(0, 1, 0), (0, 1, 0)]"), ["f 4 3 2 1"])
+        self.assertIn("note: /world/ground: its normals fit neither its corners, points nor faces", self.notes)
+
+    def test_a_surface_that_emits_reflects_nothing(self):
+        diffuse = "color3f inputs:diffuseColor = (0.4, 0.3, 0.2)"
+        note = "note: /world/ground: a surface that both emits and reflects has no counterpart"
+        scene = self.variant((diffuse, f"{diffuse}\ncolor3f inputs:emissiveColor = (0, 0.01, 0)"))
+        ground = next(mesh for mesh in scene["mesh"] if mesh["name"] == "/world/ground")
+        self.assertEqual(ground["material"], {"type": "emissive", "radiance": [0, 0.01, 0], "two_sided": True})
+        self.assertIn(note, self.notes)
+        self.variant((diffuse, "color3f inputs:diffuseColor = (0, 0, 0)\ncolor3f inputs:emissiveColor = (0, 0.01, 0)"))
+        self.assertNotIn(note, self.notes)
+
     def test_vdbeam_renders_it(self):
         self.convert()
         for name, source in (("smoke.0012.vdb", "smoke/smoke.0012.vdb"), ("smoke.0024.vdb", "smoke/smoke.0024.vdb"),

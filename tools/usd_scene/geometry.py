@@ -7,33 +7,56 @@ from vdbeam_blender import sequence
 from . import values
 
 
-def obj_text(points, counts, indices, uvs=None, left_handed=False):
-    """An OBJ of polygons. `uvs`: one for each corner, or None."""
+def obj_text(points, counts, indices, uvs=None, normals=None, left_handed=False):
+    """An OBJ of polygons. `uvs` and `normals`: (values, place of each corner's among them), or None."""
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points]
-    if uvs is not None:
-        lines += [f"vt {u:.9g} {v:.9g}" for u, v in uvs]
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in (uvs or ([],))[0]]
+    lines += [f"vn {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (normals or ([],))[0]]
     place = 0
     for count in counts:
-        corners = [f"{indices[k] + 1}/{k + 1}" if uvs is not None else f"{indices[k] + 1}"
-                   for k in range(place, place + count)]
+        corners = []
+        for k in range(place, place + count):
+            numbers = [str(indices[k] + 1)] + [str(given[1][k] + 1) if given else "" for given in (uvs, normals)]
+            corners.append("/".join(numbers).rstrip("/"))
         lines.append("f " + " ".join(reversed(corners) if left_handed else corners))
         place += count
     return "\n".join(lines) + "\n"
 
 
-def corner_uvs(prim, time, indices, points):
-    """The texture coordinates of the corners, from primvars:st; None without any."""
-    found = values.value(prim, "primvars:st", time)
-    if found is None:
+def corner_places(number, interpolation, counts, indices, points):
+    """For each corner of the polygons, the place of its value among a number of them; None where they fit in no way."""
+    faces = [face for face, count in enumerate(counts) for _ in range(count)]
+    ways = {"faceVarying": (len(indices), list(range(len(indices)))), "vertex": (points, indices),
+            "varying": (points, indices), "uniform": (len(counts), faces), "constant": (1, [0] * len(indices))}
+    named = [ways[interpolation]] if interpolation in ways else []
+    # Files that name no interpolation, or a wrong one, are read by the number of values.
+    return next((places for size, places in named + list(ways.values()) if size == number), None)
+
+
+def corner_data(prim, name, time, polygons, fallback=None):
+    """(values, place of each corner's) of a primvar or attribute; None without any, or where they do not fit.
+    `polygons`: counts, indices and the number of points; `fallback`: the interpolation if none is authored."""
+    found = values.value(prim, name, time)
+    if not found:
         return None
-    order = values.value(prim, "primvars:st:indices", time)
-    uvs = [found[k] for k in order] if order is not None else list(found)
-    if len(uvs) == len(indices):
-        return uvs
-    return [uvs[k] for k in indices] if len(uvs) == points else None
+    order = values.value(prim, f"{name}:indices", time)
+    interpolation = prim.GetAttribute(name).GetMetadata("interpolation") or fallback
+    places = corner_places(len(found if order is None else order), interpolation, *polygons)
+    if places is None:
+        return None
+    return found, places if order is None else [order[place] for place in places]
 
 
-def write_mesh(prim, time, folder):
+def corner_normals(prim, time, polygons, notes):
+    """The normals of the corners, from primvars:normals, else normals; None without any."""
+    name = next((name for name in ("primvars:normals", "normals") if values.value(prim, name, time)), None)
+    normals = name and corner_data(prim, name, time, polygons, "vertex")
+    if name and normals is None:
+        notes.add(str(prim.GetPath()), f"its {name} fit neither its corners, points nor faces and are left out")
+    return normals
+
+
+def write_mesh(prim, time, folder, notes):
     """Writes a mesh under a name with the hash of its content, and returns the name; None without polygons."""
     points = values.value(prim, "points", time)
     counts = values.value(prim, "faceVertexCounts", time)
@@ -41,7 +64,9 @@ def write_mesh(prim, time, folder):
     if not points or not counts or not indices:
         return None
     left = values.value(prim, "orientation", time, "rightHanded") == "leftHanded"
-    text = obj_text(points, counts, indices, corner_uvs(prim, time, indices, len(points)), left)
+    polygons = counts, indices, len(points)
+    text = obj_text(points, counts, indices, corner_data(prim, "primvars:st", time, polygons),
+                    corner_normals(prim, time, polygons, notes), left)
     name = f"{sequence.safe_name(prim.GetName())}_{hashlib.sha256(text.encode()).hexdigest()[:12]}.obj"
     path = os.path.join(folder, name)
     if not os.path.exists(path):
@@ -126,6 +151,14 @@ def standard_keys(surface, stage, subject, time, notes):
     return keys
 
 
+def note_unreflected(surface, subject, time, notes):
+    """Notes that an emissive mesh reflects nothing, unless its surface is black."""
+    diffuse = values.colour(surface, "diffuseColor", time, (0.18, 0.18, 0.18))
+    if max(diffuse) > 0 or values.source(surface, "diffuseColor") is not None:
+        notes.add(subject, "a surface that both emits and reflects has no counterpart: it emits its emissiveColor and "
+                           "reflects nothing")
+
+
 def material_keys(surface, stage, prim, time, notes):
     """The material of a mesh: of a UsdPreviewSurface, else of displayColor."""
     subject = str(prim.GetPath())
@@ -138,6 +171,7 @@ def material_keys(surface, stage, prim, time, notes):
             notes.add(subject, f"the texture of {name} has no counterpart and is left out")
     emitted = values.colour(surface, "emissiveColor", time, (0.0, 0.0, 0.0))
     if max(emitted) > 0:
+        note_unreflected(surface, subject, time, notes)
         return {"type": "emissive", "radiance": emitted, "two_sided": True}
     if values.source(surface, "opacity") is None and values.number(surface, "opacity", time, 1.0) < 0.5:
         return {"type": "dielectric", "ior": values.number(surface, "ior", time, 1.5),

@@ -114,7 +114,7 @@ class StageReader:
 
     def mesh(self, prim, matrix, time):
         """Keys of a mesh, or None."""
-        file = geometry.write_mesh(prim, time, self.options.folder)
+        file = geometry.write_mesh(prim, time, self.options.folder, self.notes)
         if file is None:
             return None
         geometry.note_unknown(prim, time, self.notes)

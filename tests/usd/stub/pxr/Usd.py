@@ -13,8 +13,9 @@ DEFAULT_TIME = object()
 class Attribute:
     """An attribute: a value, or samples that hold until the next (numbers are interpolated)."""
 
-    def __init__(self, name, value=None, samples=None, fallback=None, connections=()):
+    def __init__(self, name, value=None, samples=None, fallback=None, connections=(), metadata=None):
         self.name, self.value, self.samples = name, value, samples
+        self.metadata = metadata or {}
         self.connections = [Path(path) for path in connections]
         self.fallback = fallback  # of the schema
 
@@ -29,6 +30,9 @@ class Attribute:
 
     def GetName(self):
         return self.name
+
+    def GetMetadata(self, key):
+        return self.metadata.get(key)
 
     def GetNumTimeSamples(self):
         return len(self.samples or {})
@@ -109,7 +113,8 @@ class Prim:
 
     def GetAttribute(self, name):
         return Attribute(name, self.spec.attributes.get(name), self.spec.samples.get(name),
-                         FALLBACKS.get((self.spec.kind, name)), self.spec.connections.get(name, ()))
+                         FALLBACKS.get((self.spec.kind, name)), self.spec.connections.get(name, ()),
+                         self.spec.property_metadata.get(name))
 
     def GetAttributes(self):
         return [self.GetAttribute(name) for name in {**self.spec.attributes, **self.spec.samples}]

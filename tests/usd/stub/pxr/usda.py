@@ -18,7 +18,7 @@ class Spec:
     def __init__(self, kind, name):
         self.kind, self.name = kind, name
         self.attributes, self.samples, self.relations, self.children = {}, {}, {}, []
-        self.connections, self.metadata = {}, {}
+        self.connections, self.metadata, self.property_metadata = {}, {}, {}
 
 
 class Parser:
@@ -107,8 +107,7 @@ class Parser:
                 spec.samples[name[:-len(".timeSamples")]] = self.time_samples()
             else:
                 spec.attributes[name] = self.value()
-        self.metadata()
-
+        spec.property_metadata[name] = self.metadata()
 
     def time_samples(self):
         """{ time: value, ... }"""
