@@ -38,14 +38,18 @@ json.dump({"passes": passes, "versions": {"vdbeam": "1.2.3"},
 """
 
 
+DATE = "2026:03:14 15:09:26"
+
+
 def tiny_exr(brightness):
-    """An uncompressed EXR of 2 x 1 pixels: R, G, B as floats."""
+    """An uncompressed EXR of 2 x 1 pixels: R, G, B as floats, and when it was rendered."""
     def attribute(name, kind, data):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
 
     channels = b"".join(name + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in (b"B", b"G", b"R"))
     window = struct.pack("<4i", 0, 0, 1, 0)
-    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute(b"channels", b"chlist", channels + b"\0")
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute(b"capDate", b"string", DATE.encode())
+              + attribute(b"channels", b"chlist", channels + b"\0")
               + attribute(b"compression", b"compression", b"\0")
               + attribute(b"dataWindow", b"box2i", window)
               + attribute(b"displayWindow", b"box2i", window)

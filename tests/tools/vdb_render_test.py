@@ -2,6 +2,7 @@
 """How tools/error_curves/vdb_render.py puts a scene into the program's words; the program is not needed."""
 
 import copy
+import json
 import sys
 import tempfile
 import unittest
@@ -14,8 +15,9 @@ from requirements import import_failed
 
 try:
     import numpy as np
-    from error_curves import exr, vdb_render
+    from error_curves import exr, page, vdb_render
     from error_curves.peers import NotWithinMeans
+    from error_curves.report import Run
 except ModuleNotFoundError as problem:
     import_failed(problem)
 
@@ -87,6 +89,20 @@ class CommandLine(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             exr.write_rgb(f"{folder}/a.exr", small)
             np.testing.assert_array_equal(exr.read_rgb(f"{folder}/a.exr"), small)
+
+    def test_the_page_names_the_versions_of_other_renderers(self):
+        reports = {"beam": {"versions": {"vdbeam": "1.2.3"}, "settings": {"image": {}}},
+                   "cycles": {"settings": {"renderer": "Cycles, Blender 3.4.1"}},
+                   "vdb_render": {"settings": {"renderer": "vdb_render, OpenVDB of unknown version"}}}
+        runs = [Run("cloud", name, seed) for name in reports for seed in (1, 2)]
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "runs").mkdir()
+            for run in runs:
+                path = Path(folder) / "runs" / f"cloud.{run.estimator}.{run.seed}.json"
+                path.write_text(json.dumps(reports[run.estimator]), encoding="utf-8")
+            # Without an image the date is that of the report.
+            self.assertRegex(page._conditions(Path(folder), runs),
+                             r"^Measured \d{4}-\d\d-\d\d; vdbeam 1.2.3; Cycles, Blender 3.4.1\.$")
 
 
 if __name__ == "__main__":

@@ -87,6 +87,15 @@ def _decode(data):
     return image
 
 
+def capture_date(path):
+    """The day on which an image was written, as YYYY-MM-DD, from its capDate; None without one."""
+    try:
+        with open(path, "rb") as file:
+            return _attributes(file.read())[0]["capDate"][:10].decode("ascii").replace(":", "-")
+    except (OSError, ValueError, KeyError, IndexError, struct.error):
+        return None
+
+
 def write_rgb(path, image):
     """Writes an array [height, width, 3] as floats, without compression."""
     height, width, _ = image.shape

@@ -5,6 +5,7 @@ import datetime
 import html
 import io
 import json
+import re
 from pathlib import Path
 from string import Template
 
@@ -63,15 +64,29 @@ def _settings(report_path):
     return json.dumps(report, indent=2, sort_keys=True)
 
 
+def _report(folder, run):
+    """The report of a run, and its path."""
+    path = folder / "runs" / f"{run.scene}.{run.estimator}.{run.seed}.json"
+    return json.loads(path.read_text(encoding="utf-8")), path
+
+
+def _peers(folder, runs):
+    """The other renderers with their versions, where these are known."""
+    settings = [_report(folder, run)[0].get("settings") or {} for run in runs]
+    return list(dict.fromkeys(one["renderer"] for one in settings if re.search(r"\d", one.get("renderer", ""))))
+
+
 def _conditions(folder, runs):
-    """One line: when, where and with what the runs were made, from the reports."""
-    path = folder / "runs" / f"{runs[0].scene}.{runs[0].estimator}.{runs[0].seed}.json"
-    report = json.loads(path.read_text(encoding="utf-8"))
+    """One line: when, where and with what the runs were made, from the images and reports."""
+    report, path = _report(folder, runs[0])
     machine = report.get("machine", {})
-    parts = [datetime.date.fromtimestamp(path.stat().st_mtime).isoformat()]
+    # A copied report is younger than the measurement; the image holds when it was rendered.
+    parts = [exr.capture_date(path.with_suffix(".exr"))
+             or datetime.date.fromtimestamp(path.stat().st_mtime).isoformat()]
     if "cpu" in machine:
         parts.append(f"{machine['cpu']}, {machine.get('cores')} cores, {machine.get('threads')} threads")
     parts += [f"{name} {version}" for name, version in report.get("versions", {}).items()]
+    parts += _peers(folder, runs)
     return html.escape("Measured " + "; ".join(parts) + ".")
 
 
