@@ -376,7 +376,7 @@ bpy.context.preferences.addons["vdbeam_blender"].preferences.program = {os.envir
 scene.render.resolution_x, scene.render.resolution_y, own.passes = 32, 18, 1
 bpy.ops.render.render()
 bpy.ops.preferences.addon_disable(module="vdbeam_blender")
-assert not hasattr(bpy.types.Scene, "vdbeam")
+assert not hasattr(bpy.types.Scene, "vdbeam") and not hasattr(bpy.types.ViewLayer, "vdbeam")
 assert "VDBEAM" not in bpy.types.WORLD_PT_context_world.COMPAT_ENGINES
 print("all is well")
 """

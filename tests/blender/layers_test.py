@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 FILE = os.path.abspath(__file__)
@@ -19,7 +20,7 @@ if blender_runner.inside_blender():
     import bpy
     import numpy
     import scenes
-    from vdbeam_blender import engine, exr, temp_folder, viewport
+    from vdbeam_blender import engine, exr, notes, read_scene, temp_folder, viewport
 
 
 def plain_scene():
@@ -70,6 +71,55 @@ class ViewLayers(InFolder):
             self.assertTrue(numpy.array_equal(planes[f"{first}.Combined.{letter}"], planes[f"second.Combined.{letter}"]))
         self.assertGreater(planes["second.Depth.Z"].max(), 5)
         self.assertNotIn(f"{first}.Depth.Z", planes)
+
+    def test_data_for_denoisers(self):
+        """By the setting of vdbeam or by that of Cycles. A soft shadow, aside, has noise; the normals point up."""
+        scene = plain_scene()
+        scenes.add_plane(scene, 0.5, location=(-1.5, 0, 1))
+        scenes.add_lamp(scene, "SUN", 3, angle=0.5)
+        layer = scene.view_layers[0]
+        layer.vdbeam.denoising_data = layer.vdbeam.error = True
+        scene.vdbeam.passes = 8
+        planes = self.planes(scene)
+        name = layer.name
+        layer.vdbeam.denoising_data = layer.vdbeam.error = False
+        self.assertLess(abs(planes[f"{name}.Denoising Normal.Z"][9, 16] - 1), 1e-3)
+        self.assertLess(abs(planes[f"{name}.Denoising Albedo.R"][9, 16] - 0.6), 1e-3)
+        error = planes[f"{name}.Error.R"]
+        self.assertTrue(0 < error.max() < 0.2 * planes[f"{name}.Combined.R"].max())
+        layer.cycles.denoising_store_passes = layer.cycles.use_pass_volume_direct = True
+        scene.vdbeam.passes = 1
+        planes = self.planes(scene)
+        layer.cycles.denoising_store_passes = layer.cycles.use_pass_volume_direct = False
+        self.assertEqual({channel.split(".")[1] for channel in planes},
+                         {"Combined", "Denoising Normal", "Denoising Albedo", "VolumeDir", "VolumeInd"})
+        self.assertEqual({channel.split(".")[1] for channel in self.planes(scene)}, {"Combined"})
+
+    def test_passes_without_a_counterpart_are_noted(self):
+        scene = plain_scene()
+        layer = scene.view_layers[0]
+        found = notes.Notes()
+        reader = read_scene.SceneReader(read_scene.Options(str(self.folder), bpy.path.abspath, 32, 18), found)
+        reader.read(bpy.context.evaluated_depsgraph_get(), 1.0)
+        self.assertEqual(found.lines, [])
+        layer.use_pass_normal = layer.use_pass_mist = layer.use_pass_diffuse_color = True
+        reader.read(bpy.context.evaluated_depsgraph_get(), 1.0)
+        layer.use_pass_normal = layer.use_pass_mist = layer.use_pass_diffuse_color = False
+        self.assertEqual(found.lines, [
+            f"{layer.name}: the passes Mist, Diffuse Color have no counterpart and are left out",
+            f"{layer.name}: the pass Normal has no counterpart and is left out; Denoising Data has normals"])
+
+    def test_panels_of_passes(self):
+        """The panels show what the engine renders: no pass of EEVEE, and the light groups of Cycles."""
+        shown = [panel for panel in bpy.types.Panel.__subclasses__() + [bpy.types.VIEWLAYER_PT_layer_passes_lightgroups]
+                 if "VDBEAM" in getattr(panel, "COMPAT_ENGINES", ()) and "passes" in panel.__name__]
+        self.assertEqual({panel.__name__ for panel in shown},
+                         {"VDBEAM_PT_passes", "VIEWLAYER_PT_layer_passes", "VIEWLAYER_PT_layer_passes_lightgroups"})
+        drawn = []
+        column = types.SimpleNamespace(prop=lambda owner, name: drawn.append(getattr(owner, name)))
+        panel = types.SimpleNamespace(layout=types.SimpleNamespace(column=lambda heading: column))
+        bpy.types.VDBEAM_PT_passes.draw(panel, bpy.context)
+        self.assertEqual(len(drawn), 9)
 
     def test_a_view_layer_that_fails_is_reported(self):
         scene = plain_scene()

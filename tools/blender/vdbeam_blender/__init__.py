@@ -17,8 +17,8 @@ bl_info = {
 def classes():
     """Everything that Blender registers, in order."""
     from . import engine, farm, panels, settings
-    return [settings.VdbeamSettings, panels.VdbeamPreferences, engine.VdbeamRenderEngine, panels.VDBEAM_PT_settings,
-            farm.VDBEAM_OT_write_farm_job]
+    return [settings.VdbeamSettings, settings.VdbeamLayerSettings, panels.VdbeamPreferences, engine.VdbeamRenderEngine, panels.VDBEAM_PT_settings,
+            panels.VDBEAM_PT_passes, farm.VDBEAM_OT_write_farm_job]
 
 
 def register():
@@ -29,6 +29,7 @@ def register():
     for one in classes():
         bpy.utils.register_class(one)
     bpy.types.Scene.vdbeam = bpy.props.PointerProperty(type=settings.VdbeamSettings)
+    bpy.types.ViewLayer.vdbeam = bpy.props.PointerProperty(type=settings.VdbeamLayerSettings)
     panels.register_panels()
 
 
@@ -39,5 +40,6 @@ def unregister():
     from . import panels
     panels.unregister_panels()
     del bpy.types.Scene.vdbeam
+    del bpy.types.ViewLayer.vdbeam
     for one in reversed(classes()):
         bpy.utils.unregister_class(one)

@@ -35,9 +35,34 @@ OPTIONAL = {
     "emit": [colour("Emit", "volume_emission")],
     "environment": [colour("Env", "background")],
     "volume": [colour("VolumeDir", "volume_direct"), colour("VolumeInd", "volume_indirect")],
+    # Their names in Cycles, which templates of compositors expect.
+    "denoising": [Pass("Denoising Normal", "XYZ", "VECTOR", "denoising_normal", plain("denoising_normal", "XYZ")),
+                  colour("Denoising Albedo", "denoising_albedo")],
+    "error": [colour("Error", "error")],
     "cryptomatte": [Pass(f"CryptoObject{index:02d}", "RGBA", "COLOR", "cryptomatte" if index == 0 else "",
                          plain(f"CryptoObject{index:02d}", "RGBA")) for index in range(3)],
 }
+
+# Passes of Blender without a counterpart, by the property of the view layer, and of its settings of Cycles.
+UNMATCHED = {"use_pass_mist": "Mist", "use_pass_uv": "UV", "use_pass_object_index": "Object Index",
+             "use_pass_material_index": "Material Index", "use_pass_shadow": "Shadow",
+             "use_pass_ambient_occlusion": "Ambient Occlusion", "use_pass_cryptomatte_material": "Cryptomatte Material",
+             "use_pass_cryptomatte_asset": "Cryptomatte Asset",
+             **{f"use_pass_{kind}_{part}": f"{kind.title()} {part.title()}"
+                for kind in ("diffuse", "glossy", "transmission", "subsurface") for part in ("direct", "indirect", "color")}}
+UNMATCHED_OF_CYCLES = {"use_pass_shadow_catcher": "Shadow Catcher", "pass_debug_sample_count": "Sample Count"}
+
+
+def note_unmatched(view_layer, notes):
+    """Notes the passes that a view layer asks for and does not get."""
+    cycles = getattr(view_layer, "cycles", None)
+    names = [name for owner, known in ((view_layer, UNMATCHED), (cycles, UNMATCHED_OF_CYCLES))
+             for key, name in known.items() if getattr(owner, key, False)]
+    names += [one.name for one in getattr(view_layer, "aovs", [])]
+    if names:
+        notes.add(view_layer.name, f"the passes {', '.join(names)} have no counterpart and are left out")
+    if getattr(view_layer, "use_pass_normal", False):
+        notes.add(view_layer.name, "the pass Normal has no counterpart and is left out; Denoising Data has normals")
 
 
 def passes(wanted, groups=()):

@@ -7,7 +7,14 @@ from . import engine
 SHARED_WITH = {"BLENDER_RENDER", "BLENDER_EEVEE", "BLENDER_EEVEE_NEXT"}
 # Panels of these engines about what the engine does not read.
 NOT_SHARED = {"RENDER_PT_simplify", "RENDER_PT_gpencil", "DATA_PT_EEVEE_light_distance", "DATA_PT_EEVEE_shadow",
-              "DATA_PT_EEVEE_shadow_contact", "DATA_PT_EEVEE_shadow_cascaded_shadow_map"}
+              "DATA_PT_EEVEE_shadow_contact", "DATA_PT_EEVEE_shadow_cascaded_shadow_map",
+              "VIEWLAYER_PT_eevee_layer_passes_data", "VIEWLAYER_PT_eevee_next_layer_passes_data",
+              "VIEWLAYER_PT_eevee_layer_passes_light", "VIEWLAYER_PT_eevee_layer_passes_effects",
+              "VIEWLAYER_PT_layer_passes_cryptomatte"}
+# Panels of Cycles that Blender itself defines.
+ALSO_SHARED = ("VIEWLAYER_PT_layer_passes_lightgroups",)
+PASSES = ("use_pass_z", "use_pass_position", "use_pass_vector", "use_pass_emit", "use_pass_environment",
+          "use_pass_cryptomatte_object")
 
 
 class VdbeamPreferences(bpy.types.AddonPreferences):
@@ -51,6 +58,34 @@ class VDBEAM_PT_settings(bpy.types.Panel):
         layout.operator("vdbeam.write_farm_job", icon="FILE_SCRIPT")
 
 
+class VDBEAM_PT_passes(bpy.types.Panel):
+    """The passes of a view layer."""
+
+    bl_label = "vdbeam"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+    COMPAT_ENGINES = {"VDBEAM"}
+
+    @classmethod
+    def poll(cls, context):
+        """Shows the panel with this engine only."""
+        return context.engine in cls.COMPAT_ENGINES
+
+    def draw(self, context):
+        """Draws the panel."""
+        layout, layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(heading="Include")
+        for name in PASSES:
+            column.prop(layer, name)
+        column.prop(context.scene.vdbeam, "volume_layers")
+        for name in ("denoising_data", "error"):
+            column.prop(layer.vdbeam, name)
+
+
 def shared_panels():
     """Panels of Blender that the engine shows too."""
     panels = []
@@ -58,7 +93,7 @@ def shared_panels():
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines and engines & SHARED_WITH and panel.__name__ not in NOT_SHARED:
             panels.append(panel)
-    return panels
+    return panels + [getattr(bpy.types, name) for name in ALSO_SHARED if hasattr(bpy.types, name)]
 
 
 def register_panels():
@@ -69,5 +104,6 @@ def register_panels():
 
 def unregister_panels():
     """Takes back register_panels."""
-    for panel in bpy.types.Panel.__subclasses__():
+    also = [getattr(bpy.types, name) for name in ALSO_SHARED if hasattr(bpy.types, name)]
+    for panel in bpy.types.Panel.__subclasses__() + also:
         getattr(panel, "COMPAT_ENGINES", set()).discard("VDBEAM")

@@ -44,6 +44,7 @@ class SceneReader:
         scene = depsgraph.scene
         if scene.camera is None:
             raise ValueError("the scene has no camera")
+        layers.note_unmatched(depsgraph.view_layer, self.notes)
         return {"image": self.image(scene), "camera": self.camera(scene, depsgraph, frame),
                 **self.contents(depsgraph, frame)}
 

@@ -9,6 +9,11 @@ ESTIMATORS = [("auto", "Automatic", "gather, beam or path: the one with the smal
               ("path", "Path tracing", "Unbiased path tracing, the reference")]
 
 
+def update_passes(_settings, context):
+    """Lets the compositor know that the passes have changed."""
+    context.view_layer.update_render_passes()
+
+
 class VdbeamSettings(bpy.types.PropertyGroup):
     """Settings of a scene, scene.vdbeam."""
 
@@ -29,11 +34,20 @@ class VdbeamSettings(bpy.types.PropertyGroup):
         items=[("linear", "Linear", ""), ("cubic", "Cubic", "Smooth, with ten times the memory")])
     missing: bpy.props.EnumProperty(name="Missing Files", items=MISSING, default="hold",
                                     description="What a frame does whose VDB file is missing")
-    volume_layers: bpy.props.BoolProperty(name="Volume Layers", default=False,
+    volume_layers: bpy.props.BoolProperty(name="Volume Layers", default=False, update=update_passes,
                                           description="Also write single and multiple scattering of the volumes as the "
                                                       "passes VolumeDir and VolumeInd")
     update_interval: bpy.props.FloatProperty(name="Update Interval", default=1, min=0.1, max=600, subtype="TIME",
                                              unit="TIME_ABSOLUTE", description="Seconds between images in the editor")
+
+
+class VdbeamLayerSettings(bpy.types.PropertyGroup):
+    """Passes of a view layer that Blender has no setting for, view_layer.vdbeam."""
+
+    denoising_data: bpy.props.BoolProperty(name="Denoising Data", default=False, update=update_passes,
+                                           description="Also write normals and albedo for a denoiser")
+    error: bpy.props.BoolProperty(name="Error", default=False, update=update_passes,
+                                  description="Also write the standard error of each pixel")
 
 
 def render_keys(settings):
@@ -52,12 +66,19 @@ def viewport_keys(settings):
 
 
 def wanted_passes(scene, view_layer):
-    """Options of layers.passes that the view layer asks for, and its light groups."""
+    """Options of layers.passes that the view layer asks for, by its settings, by ours and by those of Cycles, and its
+    light groups."""
     wanted = {option for option, name in (("depth", "use_pass_z"), ("position", "use_pass_position"),
                                           ("vector", "use_pass_vector"), ("emit", "use_pass_emit"),
                                           ("environment", "use_pass_environment"),
                                           ("cryptomatte", "use_pass_cryptomatte_object"))
               if getattr(view_layer, name, False)}
-    if scene.vdbeam.volume_layers:
+    own, cycles = view_layer.vdbeam, getattr(view_layer, "cycles", None)
+    if scene.vdbeam.volume_layers or any(getattr(cycles, f"use_pass_volume_{part}", False)
+                                         for part in ("direct", "indirect")):
         wanted.add("volume")
+    if own.denoising_data or getattr(cycles, "denoising_store_passes", False):
+        wanted.add("denoising")
+    if own.error:
+        wanted.add("error")
     return wanted, [group.name for group in getattr(view_layer, "lightgroups", [])]
