@@ -332,8 +332,12 @@ class Engine(unittest.TestCase):
             scene.camera.location.x = x
             scene.camera.keyframe_insert("location", frame=frame)
         scenes.add_plane(scene, 2, location=(1, 1, -0.2)).keyframe_insert("location", frame=1)
+        scene.view_settings.exposure = 1.5
         self.assertEqual(bpy.ops.vdbeam.write_farm_job(directory=str(self.folder), preview=True), {"FINISHED"})
-        self.assertIn("sbatch", (self.folder / "job.sbatch").read_text(encoding="utf-8"))
+        scene.view_settings.exposure = 0
+        job = (self.folder / "job.sbatch").read_text(encoding="utf-8")
+        for word in ("sbatch", "--view=filmic", "--exposure=1.5"):
+            self.assertIn(word, job)
         scene.frame_set(2)
         expected = self.render(scene)
         subprocess.run([os.environ["VDBEAM_BINARY"], "render", "scene.toml", "-f", "2", "-o", "f.exr", "-q"],

@@ -5,7 +5,7 @@ import types
 import unittest
 
 from fake_nodes import link, node
-from vdbeam_blender import animate, camera, lamps, notes, sequence, toml_text, volume_shader, world
+from vdbeam_blender import animate, camera, lamps, notes, sequence, toml_text, view_transform, volume_shader, world
 
 
 def principled_volume(**values):
@@ -249,6 +249,27 @@ class Animation(unittest.TestCase):
                                found)
         self.assertEqual(merged["mesh"], [{"name": "a", "file": "x"}])
         self.assertEqual(len(found.lines), 3)
+
+
+class Views(unittest.TestCase):
+    def words(self, **more):
+        self.notes = notes.Notes()
+        settings = {"view_transform": "Filmic", "look": "None", "gamma": 1.0, "exposure": 0.0, "use_curve_mapping": False}
+        return view_transform.view_words(types.SimpleNamespace(**{**settings, **more}), self.notes)
+
+    def test_view_and_exposure(self):
+        self.assertEqual(self.words(), ["--view=filmic"])
+        self.assertEqual(self.words(view_transform="Standard", exposure=-1.5), ["--view=srgb", "--exposure=-1.5"])
+        self.assertEqual(self.notes.lines, [])
+
+    def test_what_has_no_counterpart_is_noted(self):
+        self.assertEqual(self.words(view_transform="AgX", look="AgX - Punchy", gamma=1.2, use_curve_mapping=True),
+                         ["--view=filmic"])
+        for line, text in zip(self.notes.lines, ("view transform AgX has no counterpart; filmic", "look AgX - Punchy",
+                                                 "gamma 1.2", "curves"), strict=True):
+            self.assertIn(text, line)
+        self.assertEqual(self.words(view_transform="Raw"), ["--view=srgb"])
+        self.assertEqual(len(self.notes.lines), 1)
 
 
 class SceneText(unittest.TestCase):

@@ -4,20 +4,18 @@ import subprocess
 
 import bpy
 
-from . import engine, export, layers, process, read_scene, settings
-
-VIEWS = {"Filmic": "filmic", "AgX": "filmic", "Standard": "srgb", "Raw": "srgb"}
+from . import engine, export, layers, notes, process, read_scene, settings, view_transform
 
 
-def job_words(program, own, scene, folder):
-    """The command that writes the job file."""
+def job_words(program, own, scene, folder, found):
+    """The command that writes the job file, and its path. `found`: gets what has no counterpart."""
     frames = f"{scene.frame_start}-{scene.frame_end}" + (f"x{scene.frame_step}" if scene.frame_step > 1 else "")
-    view = VIEWS.get(scene.view_settings.view_transform, "filmic")
     suffix = "json" if own.engine == "openjd" else "sbatch"
     words = [program, "farm", own.engine, "scene.toml", f"--frames={frames}", "-o", "frames/image.####.exr", "--job",
              f"job.{suffix}", "--chunk", str(own.chunk), f"--also=--missing={scene.vdbeam.missing}"]
     if own.preview:
-        words += ["--also=--preview=frames/image.####.png", f"--also=--view={view}"]
+        words += [f"--also={word}" for word in ("--preview=frames/image.####.png",
+                                                *view_transform.view_words(scene.view_settings, found))]
     os.makedirs(os.path.join(folder, "frames"), exist_ok=True)
     return words, os.path.join(folder, f"job.{suffix}")
 
@@ -47,9 +45,10 @@ class VDBEAM_OT_write_farm_job(bpy.types.Operator):
         try:
             program = process.find_program(engine.program_path())
             os.makedirs(folder, exist_ok=True)
-            for line in self.write_scene(context, folder):
+            found = notes.Notes()
+            words, job = job_words(program, self, context.scene, folder, found)
+            for line in [*self.write_scene(context, folder), *found.lines]:
                 self.report({"INFO"}, f"vdbeam: {line}")
-            words, job = job_words(program, self, context.scene, folder)
             result = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
         except (process.ProgramMissing, ValueError, OSError) as problem:
             self.report({"ERROR"}, f"vdbeam: {problem}")
