@@ -17,6 +17,7 @@ if blender_runner.inside_blender():
     import scenes
 
 TOLERANCE = 0.01  # the bias of Cycles' ray marching in smoke
+LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def mean_and_error(first, second):
@@ -69,6 +70,20 @@ class AgainstCycles(unittest.TestCase):
         scenes.use_cycles(scene, 64, 1)
         theirs = self.blocks(scene, "cycles", 1).mean((0, 1))
         self.assertLess(numpy.abs(mine / theirs - 1).max(), 0.02)
+
+    def test_clear_skies(self):
+        """The luminance of a plane by the light of the sky is within 8 %, by that of the sun within 5 %."""
+        for elevation in (17, 46, 80):
+            light = {}
+            for sun in (False, True):
+                scene = scenes.clear_sky(elevation, sun)
+                scene.vdbeam.estimator, scene.vdbeam.passes = "path", 4
+                mine = self.blocks(scene, "vdbeam", 1).mean((0, 1)) @ LUMINANCE
+                scenes.use_cycles(scene, 32, 1)
+                light[sun] = numpy.array([mine, self.blocks(scene, "cycles", 1).mean((0, 1)) @ LUMINANCE])
+            for part, most in ((light[False], 0.08), (light[True] - light[False], 0.05)):
+                print(f"elevation {elevation}: {part[0] / part[1] - 1:.3f}")
+                self.assertLess(abs(part[0] / part[1] - 1), most)
 
     def test_environment_image(self):
         self.check(scenes.surroundings(self.folder), 12, 16)

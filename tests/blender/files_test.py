@@ -48,6 +48,14 @@ class Facts(unittest.TestCase):
         self.assertFalse(objects.casts_shadow(cycles(use_shadow=False)))
         self.assertTrue(objects.casts_shadow(cycles()))
 
+    def test_colour_of_a_lamp_by_its_temperature(self):
+        lamp = types.SimpleNamespace(color=(1.0, 0.5, 0.25))
+        self.assertEqual(objects.lamp_colour(lamp), [1.0, 0.5, 0.25])
+        lamp.use_temperature, lamp.temperature_color = True, (1.0, 0.5, 0.0)
+        self.assertEqual(objects.lamp_colour(lamp), [1.0, 0.25, 0.0])
+        lamp.use_temperature = False
+        self.assertEqual(objects.lamp_colour(lamp), [1.0, 0.5, 0.25])
+
     def test_lights_without_a_group_have_a_pass(self):
         chosen = layers.passes(set(), ["key", "sky"])
         self.assertEqual([one.name for one in chosen], ["Combined", "Combined_key", "Combined_sky", "Combined_rest"])

@@ -20,7 +20,7 @@ if blender_runner.inside_blender():
     import bpy
     import numpy
     import scenes
-    from vdbeam_blender import engine, exr, notes, read_scene, temp_folder, viewport
+    from vdbeam_blender import engine, exr, notes, read_scene, temp_folder, view_engine, viewport
 
 
 def plain_scene():
@@ -221,6 +221,23 @@ class Renders(InFolder):
         self.assertIsNotNone(live.wait(60))
         self.started = still
         self.nothing_is_left(1)
+
+    def test_the_end_of_an_engine_reaches_blender(self):
+        """Blender 4.4 has a __del__ of its own, which must be called; Blender 3.4 has none."""
+        ended = []
+
+        class Engine:
+            def __del__(self):
+                ended.append("Blender")
+
+        class Later(view_engine.Viewport, Engine):
+            pass
+
+        later = Later()
+        later.preview = types.SimpleNamespace(close=lambda: ended.append("viewport"))
+        del later
+        self.assertEqual(ended, ["viewport", "Blender"])
+        view_engine.Viewport().__del__()
 
     def test_two_blenders_at_once(self):
         """A second Blender renders and ends while the first one does, whose folder it leaves alone."""

@@ -170,6 +170,12 @@ class Lamps(unittest.TestCase):
         self.assertIn("without shadows", found.lines[0])
         self.assertIn("radius of a spot lamp", found.lines[1])
 
+    def test_a_strength_that_is_not_normalized_is_reported(self):
+        found = notes.Notes()
+        lamps.lamp_keys(self.lamp(type="SUN", angle=0.0, normalized=False), found)
+        self.assertEqual(len(found.lines), 1)
+        self.assertIn("lamp: a strength that is not normalized", found.lines[0])
+
     def test_a_portal_is_no_lamp(self):
         found = notes.Notes()
         portal = self.lamp(type="AREA", shape="SQUARE", size=2.0, size_y=2.0, portal=True)

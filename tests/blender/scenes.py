@@ -228,6 +228,18 @@ def surroundings(folder):
     return scene
 
 
+def clear_sky(elevation, sun):
+    """A matt plane, seen from above, under a Nishita sky, with its sun only if `sun` says so."""
+    scene = empty_scene()
+    add_camera(scene, (0, 0, 6), (0, 0, 0), lens=40)
+    add_plane(scene)
+    tree, background = set_world(scene, (0, 0, 0), 0.1)
+    sky = tree.nodes.new("ShaderNodeTexSky")
+    sky.sky_type, sky.sun_elevation, sky.sun_disc = "NISHITA", math.radians(elevation), sun
+    tree.links.new(sky.outputs[0], background.inputs["Color"])
+    return scene
+
+
 def lens():
     """Lamps of a pixel and more, out of focus, through a shifted lens with a vertical sensor."""
     scene = empty_scene()

@@ -86,6 +86,8 @@ def lamp_keys(lamp, notes):
         return None
     if lamp.get("nodes"):
         notes.add(lamp["name"], "the nodes of a lamp have no counterpart; its colour and strength are exported")
+    if not lamp.get("normalized", True):
+        notes.add(lamp["name"], "a strength that is not normalized by the lamp's area has no counterpart; it is normalized")
     if not lamp.get("casts_shadow", True):
         notes.add(lamp["name"], "a lamp without shadows has no counterpart; it casts them")
     if kind == "SUN":

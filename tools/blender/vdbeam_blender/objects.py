@@ -85,15 +85,24 @@ def casts_shadow(data):
     return bool(getattr(data, "use_shadow", True))
 
 
+def lamp_colour(data):
+    """The colour of a lamp, from Blender 4.5 on times that of its temperature."""
+    colour = [float(value) for value in data.color]
+    if getattr(data, "use_temperature", False):
+        colour = [value * float(factor) for value, factor in zip(colour, data.temperature_color)]
+    return colour
+
+
 def lamp_facts(obj, matrix, data):
     """What lamps.py needs to know of a lamp."""
-    return {"name": obj.name, "type": data.type, "matrix": rows(matrix), "colour": [float(c) for c in data.color],
+    return {"name": obj.name, "type": data.type, "matrix": rows(matrix), "colour": lamp_colour(data),
             "energy": float(data.energy) * 2 ** float(getattr(data, "exposure", 0.0)),
             "nodes": bool(data.use_nodes and data.node_tree and len(data.node_tree.nodes) > 2),
             "group": getattr(obj, "lightgroup", ""), "radius": float(getattr(data, "shadow_soft_size", 0.0)),
             "angle": float(getattr(data, "angle", 0.0)), "spot_size": float(getattr(data, "spot_size", 0.0)),
             "spot_blend": float(getattr(data, "spot_blend", 0.0)), "shape": getattr(data, "shape", ""),
             "size": float(getattr(data, "size", 0.0)), "size_y": float(getattr(data, "size_y", 0.0)),
+            "normalized": bool(getattr(data, "normalize", True)),  # Blender 4.5
             "spread": float(getattr(data, "spread", math.pi)), "casts_shadow": casts_shadow(data),
             "portal": data.type == "AREA" and bool(getattr(getattr(data, "cycles", None), "is_portal", False))}
 

@@ -116,3 +116,6 @@ class Viewport:
         preview = self.__dict__.get("preview") if hasattr(self, "__dict__") else None
         if preview is not None:
             preview.close()
+        parent = getattr(super(), "__del__", None)  # from Blender 4.4 on, which needs the call
+        if parent is not None:
+            parent()
