@@ -59,7 +59,8 @@ class Files(InFolder):
         return values.reshape(loaded.size[1], loaded.size[0], -1)[::-1]
 
     def test_files_that_vdbeam_reads_are_used_where_they_are(self):
-        for name, kind in (("a.png", "PNG"), ("a.jpg", "JPEG"), ("a.jpeg", "JPEG"), ("a.exr", "OPEN_EXR"), ("a.hdr", "HDR")):
+        for name, kind in (("a.png", "PNG"), ("a.jpg", "JPEG"), ("a.jpeg", "JPEG"), ("a.exr", "OPEN_EXR"),
+                           ("a.hdr", "HDR")):
             self.assertEqual(self.path(self.saved(name, kind)), self.folder / name)
         other = self.path(self.saved("a.tif", "TIFF"))
         self.assertEqual(other.suffix, ".png")

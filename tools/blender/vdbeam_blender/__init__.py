@@ -17,8 +17,8 @@ bl_info = {
 def classes():
     """Everything that Blender registers, in order."""
     from . import engine, farm, panels, settings
-    return [settings.VdbeamSettings, settings.VdbeamLayerSettings, panels.VdbeamPreferences, engine.VdbeamRenderEngine, panels.VDBEAM_PT_settings,
-            panels.VDBEAM_PT_passes, farm.VDBEAM_OT_write_farm_job]
+    return [settings.VdbeamSettings, settings.VdbeamLayerSettings, panels.VdbeamPreferences, engine.VdbeamRenderEngine,
+            panels.VDBEAM_PT_settings, panels.VDBEAM_PT_passes, farm.VDBEAM_OT_write_farm_job]
 
 
 def register():

@@ -59,12 +59,12 @@ def emits_more(material, glow, light, notes):
     """Whether a surface emits at least what it reflects; what is left out is noted unless it is black."""
     emitted = max(glow["radiance"])
     if emitted < reflected(material, light):
-        notes.add(glow["subject"], f"its emission, of the radiance {emitted:.2g}, is left out on objects that reflect more; "
-                                   "a material does one or the other")
+        notes.add(glow["subject"], f"its emission, of the radiance {emitted:.2g}, is left out on objects that reflect "
+                                   "more; a material does one or the other")
         return False
     if reflected(material, 1.0) > 0 or material["type"] == "standard":
-        notes.add(glow["subject"], f"its surface is left out on objects that reflect less than the radiance {emitted:.2g} "
-                                   "that it emits; a material does one or the other")
+        notes.add(glow["subject"], f"its surface is left out on objects that reflect less than the radiance "
+                                   f"{emitted:.2g} that it emits; a material does one or the other")
     return True
 
 

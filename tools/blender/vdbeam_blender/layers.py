@@ -49,7 +49,8 @@ UNMATCHED = {"use_pass_mist": "Mist", "use_pass_uv": "UV", "use_pass_object_inde
              "use_pass_ambient_occlusion": "Ambient Occlusion", "use_pass_cryptomatte_material": "Cryptomatte Material",
              "use_pass_cryptomatte_asset": "Cryptomatte Asset",
              **{f"use_pass_{kind}_{part}": f"{kind.title()} {part.title()}"
-                for kind in ("diffuse", "glossy", "transmission", "subsurface") for part in ("direct", "indirect", "color")}}
+                for kind in ("diffuse", "glossy", "transmission", "subsurface")
+                for part in ("direct", "indirect", "color")}}
 UNMATCHED_OF_CYCLES = {"use_pass_shadow_catcher": "Shadow Catcher", "pass_debug_sample_count": "Sample Count"}
 
 

@@ -121,7 +121,8 @@ def cut_out(node, notes, subject, image_path):
                 return keys
             share = {"opacity": 1 - share.get("opacity", 1.0)}
         if share and keys is not None and keys["type"] not in WITH_OPACITY:
-            notes.add(subject, f"the opacity of a surface of the type {keys['type']} has no counterpart; it is left out")
+            notes.add(subject, f"the opacity of a surface of the type {keys['type']} has no counterpart; it is left "
+                               "out")
             return keys
         return None if keys is None else {**keys, **share}
     return None
