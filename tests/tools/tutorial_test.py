@@ -47,8 +47,12 @@ class Pages(unittest.TestCase):
         lines = commands("docs/tutorial.md")
         self.assertGreater(len(lines), 10)
         output = self.type(lines)
-        self.assertIn('rendered      grid "density", with extinction 37', output)  # as the page quotes it
-        self.assertIn("looks wrong   flame: is empty", output)
+        page = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+        quoted = re.findall(r"^    (  (?:  )?[a-z].*|\S+: \d+ grids)$", page, re.MULTILINE)
+        self.assertGreater(len(quoted), 10)
+        factor = re.compile(r"\d+(?= times)")  # the pilot's prediction changes with the methods
+        for line in quoted:
+            self.assertIn(factor.sub("N", line), factor.sub("N", output))
         self.has("first.png", "look.0012.png", "dense.exr", "shot.0001.exr", "shot.sh", "element.exr", "comp.exr")
 
     def test_five_minutes_of_the_readme(self):
