@@ -39,8 +39,7 @@ float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const 
   }
   RadiusSettings radii = radius_settings(input, plan.neighbours);
   const double photons =
-      plan.stored_per_path *
-      static_cast<double>(choose_paths(input, plan.stored_per_path, plan.collisions_per_path));
+      plan.stored_per_path * static_cast<double>(choose_paths(input.settings, plan));
   radii.neighbours *= static_cast<float>(static_cast<double>(sample.size()) / photons);
   return PhotonMap::build(std::move(sample), 1, radii, KernelShape::biweight).mean_radius();
 }
@@ -160,14 +159,16 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
   PhotonPlan& plan = choices.photons;
   plan = default_photon_plan(input);
   if (!input.plan.needs(Stage::photons)) {
-    if (input.plan.needs(Stage::surface_photons))
-      plan.paths = choose_paths(input, 1, 1);
+    if (input.plan.needs(Stage::surface_photons)) {
+      look_at_rays(input, plan);
+      plan.paths = choose_paths(input.settings, plan);
+    }
     return;
   }
   TracedPhotons pilot = trace_pilot(input, plan);
   if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
     follow_view(input, kind, std::move(pilot), plan);
-  plan.paths = choose_paths(input, plan.stored_per_path, plan.collisions_per_path);
+  plan.paths = choose_paths(input.settings, plan);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= tuning::fewest_for_trial)
     try_kernels(input, kind, choices);

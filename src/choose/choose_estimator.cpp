@@ -102,7 +102,7 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
        tuning::time_of_walk * static_cast<double>(path_counts.camera_walks) +
        tuning::time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
           rays;
-  const double paths_per_ray = static_cast<double>(plan.paths) / count_hits(photon_input);
+  const double paths_per_ray = static_cast<double>(plan.paths) / plan.hits;
   const double beam_time =
       tuning::time_of_camera_ray +
       tuning::time_of_photon_pass *

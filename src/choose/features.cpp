@@ -197,6 +197,8 @@ bool has_surfaces(const Facts& facts) {
   return facts.input.world.surfaces != nullptr;
 }
 constexpr FeatureCondition edges_conditions[] = {
+    {[](const Facts& facts) { return !facts.kind.shoots_photons(); },
+     "path divides its rays among pixels by their noise"},
     {[](const Facts& facts) { return gathers_along_rays(facts) && !has_surfaces(facts); },
      "render.estimator names another method, and there are no surfaces"}};
 } // namespace
@@ -204,7 +206,7 @@ const Feature edges_feature{
     .name = "refined edges",
     .key = "",
     .help = "pixels on edges of opacity, depth or light get several camera rays",
-    .stage = Stage::photons,
+    .stage = std::nullopt, // outlines of surfaces are refined where there is no medium, too
     .conditions = edges_conditions,
     .used = [](const Facts& facts,
                const Choices& choices) { return choices.gather || has_surfaces(facts); },
@@ -212,16 +214,17 @@ const Feature edges_feature{
 
 namespace {
 constexpr FeatureCondition branches_conditions[] = {
-    {[](const Facts& facts) { return facts.kind.shoots_photons(); },
+    {[](const Facts& facts) { return facts.kind.shoots_photons() && !has_surfaces(facts); },
      "photons carry the light; only bias probes are path traced"},
     {has_nothing_to_branch_for,
      "no phase function has a sharp enough peak, and no lamp stands in the medium"},
     {has_no_narrow_light, "no sun, lamp or spot has shadow rays"}};
 }
-const Feature branches_feature{.name = "branches",
-                               .key = "",
-                               .help = "paths branch towards lights of small angular size",
-                               .stage = std::nullopt,
-                               .conditions = branches_conditions};
+const Feature branches_feature{
+    .name = "branches",
+    .key = "",
+    .help = "paths, and walks from surfaces, branch towards lights of small angular size",
+    .stage = std::nullopt,
+    .conditions = branches_conditions};
 
 } // namespace vdbeam

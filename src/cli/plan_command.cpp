@@ -102,7 +102,7 @@ std::string schedule_text(const RenderPlan& plan) {
 
 std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPlan& memory) {
   std::string text = fmt::format("{}\n\nestimator\n  {:<18} {}\n", scene.path, plan.estimator,
-                                 estimator_kind(scene.render.estimator).help);
+                                 estimator_kind({plan.estimator}).help);
   if (!plan.choice.empty())
     text += fmt::format("  {:<18} {}\n", "chosen", plan.choice);
   for (const bool needed : {true, false}) {

@@ -73,6 +73,7 @@ void PhotonPass::make_maps(const PassSpec& spec, const RadiusSettings& radii,
                            RenderStatistics& statistics) {
   const EstimatorInput input = input_.in(*world_);
   PhotonPassSettings settings = pass_settings(input, plan_, static_cast<std::uint64_t>(spec.pass));
+  settings.paths = spec.light_paths;
   const bool on_surfaces = input_.plan.needs(Stage::surface_photons);
   if (on_surfaces)
     settings.surface_photon_lights = lights_of_surfaces(input);

@@ -49,13 +49,13 @@ double total_power(const PhotonList& photons) {
   return sum;
 }
 
-/// What a coarse sample of the camera rays meets.
-struct SeenRays {
-  double hits = 0; ///< rays of a pass that show photons' light, by their effort
-  float full_opacity = 0;
-};
+} // namespace
 
-SeenRays look_at_rays(const EstimatorInput& input) {
+int PhotonPlan::direct_samples_of(float depth) const {
+  return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
+}
+
+void look_at_rays(const EstimatorInput& input, PhotonPlan& plan) {
   constexpr int samples = 48;
   const Camera& camera = input.camera;
   const bool caustics =
@@ -77,21 +77,10 @@ SeenRays look_at_rays(const EstimatorInput& input) {
         squares += opacities.back() * opacities.back();
       }
     }
-  PhotonPlan plan;
   plan.full_opacity = sum > 0 ? tuning::faint_opacity * static_cast<float>(squares / sum) : 0;
   for (const float opacity : opacities)
     hits += plan.effort_of(opacity);
-  return {hits / (samples * samples) * camera.width() * camera.height(), plan.full_opacity};
-}
-
-} // namespace
-
-int PhotonPlan::direct_samples_of(float depth) const {
-  return std::clamp(samples_for(depth), direct_samples, most_direct_samples);
-}
-
-double count_hits(const EstimatorInput& input) {
-  return look_at_rays(input).hits;
+  plan.hits = hits / (samples * samples) * camera.width() * camera.height();
 }
 
 PhotonPlan default_photon_plan(const EstimatorInput& input) {
@@ -114,7 +103,7 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = tuning::pilot_paths;
   pass.caustic_lights = caustic_lights(input.world);
-  plan.full_opacity = look_at_rays(input).full_opacity;
+  look_at_rays(input, plan);
   TracedPhotons pilot = trace_photons(input.world, pass);
   if (const double power = total_power(pilot.photons); power > 0)
     plan.caustic_share = total_power(pilot.caustics) / power;
@@ -133,12 +122,11 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   return pilot;
 }
 
-std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
-                           double collisions_per_path) {
-  const std::optional<std::uint64_t>& photons = input.settings.photons;
+std::uint64_t choose_paths(const RenderSettings& settings, const PhotonPlan& plan) {
+  const std::optional<std::uint64_t>& photons = settings.photons;
   return static_cast<std::uint64_t>(std::ceil(
-      photons ? paths_for_photons(static_cast<double>(*photons), stored_per_path)
-              : automatic_paths(count_hits(input), stored_per_path, collisions_per_path)));
+      photons ? paths_for_photons(static_cast<double>(*photons), plan.stored_per_path)
+              : automatic_paths(plan.hits, plan.stored_per_path, plan.collisions_per_path)));
 }
 
 double automatic_paths(double hits, double stored_per_path, double collisions_per_path) {

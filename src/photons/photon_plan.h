@@ -30,10 +30,13 @@ struct PhotonPlan {
   std::shared_ptr<const CellTables> store_probability_by_cell;
   /// Where light paths begin, end and split; null: emission by power, no windows.
   std::shared_ptr<const PathGuide> guide;
-  double stored_per_path = 0;     ///< expected photons of a light path
+  /// Camera rays of a pass that show photons' light: those that meet the medium, by their effort
+  /// (effort_of), and surfaces where photons bring caustics.
+  double hits = 0;
+  double stored_per_path = 1;     ///< expected photons of a light path
   double neighbours = 0;          ///< photons in the sphere of an adaptive kernel's radius
   double caustic_share = 0;       ///< of photons of caustic_lights() in the power of all
-  double collisions_per_path = 0; ///< of light paths as they are sent in the end
+  double collisions_per_path = 1; ///< of light paths as they are sent in the end
   /// Where probabilities are given by cell: they are min(1, view_factor times view_importance with
   /// the fall-off `view_reach` [render units]).
   float view_reach = 0, view_factor = 0;
@@ -63,16 +66,15 @@ PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// photons to store, everywhere with the same probability. Only for a render that needs photons.
 /// The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
-/// Camera rays of a pass that show photons' light, from a coarse sample: those that meet the
-/// medium, by their effort (PhotonPlan::effort_of), and surfaces where photons bring caustics.
-double count_hits(const EstimatorInput& input);
-/// Light paths per pass, from the photons that one of them stores and its tentative collisions.
-std::uint64_t choose_paths(const EstimatorInput& input, double stored_per_path,
-                           double collisions_per_path);
-/// The same, from the camera rays that meet the medium, where the scene asks for no number. Thin
-/// media get more, up to tuning::most_paths_in_thin_media times that number.
+/// Sees what a coarse sample of the camera rays meets: `hits` and `full_opacity` of the plan.
+void look_at_rays(const EstimatorInput& input, PhotonPlan& plan);
+/// Light paths per pass: by the scene's number of photons or, where it asks for none, by the camera
+/// rays that show their light.
+std::uint64_t choose_paths(const RenderSettings& settings, const PhotonPlan& plan);
+/// Where the scene asks for no number. Thin media get more, up to tuning::most_paths_in_thin_media
+/// times that number.
 double automatic_paths(double hits, double stored_per_path, double collisions_per_path);
-/// The same, where the scene asks for a number of photons.
+/// Where the scene asks for a number of photons.
 double paths_for_photons(double photons, double stored_per_path);
 
 /// The pilots' pass numbers count down from here, far from those of the picture.

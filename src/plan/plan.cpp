@@ -167,7 +167,7 @@ private:
               {{!needs_.photons, no_photons},
                {!runs(stage), other_estimator},
                {stage == Stage::march, "photons are gathered step by step along each camera ray"},
-               {true, "photons are gathered along each camera ray"}}));
+               {true, "photons are gathered along camera rays, or where walks from them end"}}));
     const bool paths = runs(Stage::paths);
     add(Stage::paths, needs_.scatters && paths,
         first_reason({{!paths, other_estimator},

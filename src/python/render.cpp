@@ -160,7 +160,8 @@ void bind_render(py::module_& module) {
       .def_readonly("bias_estimate", &PassRecord::bias_estimate,
                     "Mean brightness over the true one, less 1.")
       .def_readonly("mrse", &PassRecord::mrse, "Error against the reference, where there is one.")
-      .def_readonly("has_reference", &PassRecord::has_reference);
+      .def_readonly("has_reference", &PassRecord::has_reference,
+                    "Whether the render was compared with a reference image.");
   py::class_<Session>(module, "Session").def(py::init<>());
   py::class_<Frame, std::shared_ptr<Frame>>(module, "Frame")
       .def_property_readonly("planes",

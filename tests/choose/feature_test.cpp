@@ -2,6 +2,7 @@
 // and what the plan describes is what passes do.
 #include "choose/feature.h"
 #include "support/lumpy_cloud.h"
+#include "support/surface_scene.h"
 #include "support/test_frame.h"
 
 #include <gtest/gtest.h>
@@ -88,6 +89,7 @@ const std::vector<Exclusion>& exclusions() {
        }},
       {"boundary correction", "photons of scattered flux need no boundary correction",
        store_scattered_flux},
+      {"refined edges", "path divides its rays among pixels by their noise", name_path},
       {"refined edges", "render.estimator names another method, and there are no surfaces",
        name_beam},
       {"branches", "photons carry the light; only bias probes are path traced",
@@ -110,6 +112,20 @@ TEST(Features, ACloudInTheSunUsesThem) {
     const FeatureChoice feature = feature_of(cloud(), name);
     EXPECT_TRUE(feature.on) << name << ": " << feature.reason;
   }
+}
+
+/// What the features are called is what passes do: outlines get more rays, and walks from surfaces
+/// branch.
+TEST(Features, SurfacesAreRefinedAndTheirWalksBranch) {
+  MemoryScene scene = cloud();
+  scene.scene.volumes[0].phase = henyey_greenstein(0.97);
+  name_beam(scene);
+  EXPECT_FALSE(feature_of(scene, "refined edges").on);
+  EXPECT_FALSE(feature_of(scene, "branches").on);
+  surfaces::add_surface(scene, SurfaceShape::sphere, surfaces::scaled(0.1),
+                        surfaces::diffuse(0.5f));
+  EXPECT_TRUE(feature_of(scene, "refined edges").on);
+  EXPECT_TRUE(feature_of(scene, "branches").on);
 }
 
 TEST(Features, EachConditionExcludesItsFeatureAndSaysWhy) {

@@ -270,8 +270,7 @@ std::shared_ptr<const PathGuide> fit_path_guide(const EstimatorInput& input, Pho
   const World& world = input.world;
   PhotonPassSettings pass = pass_settings(input, plan, guide_pass);
   const double wanted =
-      std::clamp(tuning::guide_share * static_cast<double>(choose_paths(input, plan.stored_per_path,
-                                                                        plan.collisions_per_path)),
+      std::clamp(tuning::guide_share * static_cast<double>(choose_paths(input.settings, plan)),
                  tuning::fewest_guide_paths, tuning::most_guide_paths);
   pass.paths = static_cast<std::uint64_t>(
       std::ceil(std::min(wanted, tuning::most_guide_photons / std::max(1.0, mean_collisions))));
