@@ -28,6 +28,8 @@ struct LiveEdit {
   bool mixed = false; ///< nothing is rendered anew: strengths of lights, or outputs, have changed
   /// Counts what was read and built for it; everything else was kept.
   std::uint64_t grids_read = 0, meshes_read = 0, trees_built = 0;
+  /// What was kept of the scene before and why, a clause each.
+  std::vector<std::string> kept;
 };
 
 /// Callbacks of a LiveSession, on threads of its own, never two at a time; all optional.

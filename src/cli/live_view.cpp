@@ -3,6 +3,7 @@
 #include "console/events.h"
 #include "console/streams.h"
 #include "console/terminal.h"
+#include "machine/memory.h"
 #include "text/text.h"
 
 #include <algorithm>
@@ -59,6 +60,17 @@ std::string keys_of(const LiveEdit& edit) {
   if (edit.changed.size() > most_keys)
     keys += fmt::format(" and {} more", edit.changed.size() - most_keys);
   return keys;
+}
+
+/// What was read and built for an edit, and what was kept.
+std::string work_of(const LiveEdit& edit) {
+  if (edit.grids_read + edit.meshes_read + edit.trees_built == 0 && !edit.kept.empty())
+    return fmt::format("kept {}", fmt::join(edit.kept, "; "));
+  const std::string read =
+      fmt::format("read {} and {}, built {}", count(edit.grids_read, "grid"),
+                  edit.meshes_read == 1 ? "1 mesh" : fmt::format("{} meshes", edit.meshes_read),
+                  count(edit.trees_built, "tree"));
+  return edit.kept.empty() ? read : fmt::format("{}, kept {}", read, fmt::join(edit.kept, "; "));
 }
 
 } // namespace
@@ -118,7 +130,8 @@ void LiveView::report(const LiveEdit& edit) {
                       {"mixed", edit.mixed},
                       {"grids_read", edit.grids_read},
                       {"meshes_read", edit.meshes_read},
-                      {"trees_built", edit.trees_built}});
+                      {"trees_built", edit.trees_built},
+                      {"kept", edit.kept}});
   const std::lock_guard lock(mutex_);
   const bool goes_on = edit.mixed && !finished_;
   finished_ = finished_ && edit.mixed;
@@ -128,10 +141,7 @@ void LiveView::report(const LiveEdit& edit) {
     print(fmt::format("edit {}: {}; shown at once{}", edit.edit, keys_of(edit),
                       goes_on ? ", the render goes on" : ""));
   else
-    print(fmt::format("edit {}: {}; read {} and {}, built {}{}", edit.edit, keys_of(edit),
-                      count(edit.grids_read, "grid"),
-                      edit.meshes_read == 1 ? "1 mesh" : fmt::format("{} meshes", edit.meshes_read),
-                      count(edit.trees_built, "tree"), edit.edit > 1 ? ", kept the rest" : ""));
+    print(fmt::format("edit {}: {}; {}", edit.edit, keys_of(edit), work_of(edit)));
 }
 
 void LiveView::report_end(int edit) {
@@ -162,8 +172,10 @@ void LiveView::report_repaired() {
 nlohmann::ordered_json LiveView::image_event(const LiveImage& shown) const {
   nlohmann::ordered_json event{{"edit", shown.edit},
                                {"passes", shown.passes},
+                               {"stage", shown.passes > 0 ? "pass" : "look"},
                                {"mixed", shown.mixed},
-                               {"seconds", shown.seconds}};
+                               {"seconds", shown.seconds},
+                               {"peak_memory", peak_memory()}};
   if (shown.record) {
     event["error"] = number(shown.record->error_estimate);
     event["error_low"] = number(shown.record->error_low);

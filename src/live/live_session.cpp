@@ -20,6 +20,19 @@ using Clock = std::chrono::steady_clock;
 /// How often images are shown: developing one takes time, and an eye sees no more.
 constexpr double seconds_between_images = 0.25;
 
+std::vector<std::string> what_was_kept(const PreparedScene& now, const PreparedScene* before) {
+  if (!before)
+    return {};
+  if (now.world == before->world)
+    return {"medium, lights and surfaces, since no key that shapes them has changed"};
+  std::vector<std::string> kept;
+  if (!now.volumes.empty() && now.grids_read == 0)
+    kept.emplace_back("grids, since no file and no edit of a volume has changed");
+  if (now.world->surfaces && now.facts.surfaces.trees_built == 0)
+    kept.emplace_back("trees over meshes, since no shape has changed");
+  return kept;
+}
+
 } // namespace
 
 /// A thread renders `base_`, the last scene that could not be mixed from images of lights; `shown_`
@@ -107,12 +120,14 @@ private:
   }
 
   void render(const Scene& scene, LiveEdit edit) {
-    prepared_ = prepare_scene(scene, prepared_, &stop_);
+    const PreparedScenePtr before =
+        std::exchange(prepared_, prepare_scene(scene, prepared_, &stop_));
     RenderStatistics work;
     add_work(work, *prepared_);
     edit.grids_read = work.grids_read;
     edit.meshes_read = work.meshes_read;
     edit.trees_built = work.trees_built;
+    edit.kept = what_was_kept(*prepared_, before.get());
     {
       std::unique_lock lock(mutex_);
       call(lock, hooks_.on_edit, edit);

@@ -75,6 +75,12 @@ std::uint64_t free_memory() {
                    left(address_space_limit(), used.address_space)});
 }
 
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
 void return_freed_memory() {
   malloc_trim(0);
 }

@@ -251,7 +251,8 @@ void bind_live_image(py::module_& module) {
       .def_readonly("mixed", &LiveEdit::mixed, "Whether nothing is rendered anew.")
       .def_readonly("grids_read", &LiveEdit::grids_read, "Grids read for it.")
       .def_readonly("meshes_read", &LiveEdit::meshes_read, "Meshes read for it.")
-      .def_readonly("trees_built", &LiveEdit::trees_built, "Trees over meshes built for it.");
+      .def_readonly("trees_built", &LiveEdit::trees_built, "Trees over meshes built for it.")
+      .def_readonly("kept", &LiveEdit::kept, "What was kept of the scene before, and why.");
 }
 
 } // namespace

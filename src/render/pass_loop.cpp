@@ -4,6 +4,7 @@
 #include "film/layers.h"
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
+#include "machine/memory.h"
 #include "machine/threads.h"
 #include "rays/make_deep_layout.h"
 #include "render/arithmetic.h"
@@ -20,7 +21,6 @@
 #include "vdbeam/scene_file.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,12 +32,6 @@ namespace vdbeam {
 namespace {
 
 constexpr int no_limit = std::numeric_limits<int>::max(); // of passes
-
-std::uint64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 } // namespace
 

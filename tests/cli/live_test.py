@@ -131,7 +131,10 @@ class LiveTest(InTempFolder):
         self.save(scene(distance=6))
         edit = live.wait("edit")
         self.assertEqual((edit["mixed"], edit["grids_read"], edit["changed"]), (False, 0, ["camera.position"]))
-        live.wait("image", edit=2, passes=4)
+        self.assertEqual(edit["kept"], ["medium, lights and surfaces, since no key that shapes them has changed"])
+        image = live.wait("image", edit=2, passes=4)
+        self.assertEqual(image["stage"], "pass")
+        self.assertGreater(image["peak_memory"], 1 << 20)
 
     def test_reads_a_volume_that_was_written_anew(self):
         live = self.start()

@@ -29,8 +29,10 @@ def blocks(page, language):
 
 
 def without_figures(line):
-    """A line of output with its spaces, numbers and units of memory made equal: times and memory vary."""
-    return re.sub(r"[-+]?\d[\d.e+-]*|-(?= |$)", "0", re.sub(r"[KMG]iB", "MiB", " ".join(line.split())))
+    """A line of output with its spaces, numbers, lists of numbers and units of memory made equal: times and memory
+    vary, and with them the frames that a task renders before another takes over."""
+    line = re.sub(r"[KMG]iB", "MiB", " ".join(line.split()))
+    return re.sub(r"0(,0)+", "0", re.sub(r"[-+]?\d[\d.e+-]*|-(?= |$)", "0", line))
 
 
 class Tutorials(unittest.TestCase):

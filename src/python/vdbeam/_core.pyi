@@ -59,6 +59,7 @@ class LiveEdit:
     grids_read: int
     meshes_read: int
     trees_built: int
+    kept: list[str]
 
 class LiveSession:
     latest: Optional[LiveImage]
