@@ -165,7 +165,7 @@ VDBEAM_TUNED(double, blur_of_walks, 1.5);
 /// Final gathering is used unless its forecast error is this factor above that without, times the
 /// share of light that does not come from lamps in the medium: its forecast comes from few pixels,
 /// and leaves out that walks even out other noise, too.
-VDBEAM_TUNED(double, preference_for_gather, 2);
+VDBEAM_TUNED(double, preference_for_gather, 4);
 
 // Forward peaks (delta-M): bias against noise.
 
