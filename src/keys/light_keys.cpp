@@ -75,7 +75,8 @@ void add_light_keys(KeyTable& table) {
   table.add("sun", &L::sun, "add the sun's disc, as a light of its own");
   table
       .add("image", &L::image,
-           "EXR, HDR, PNG or JPEG image: of an environment a lat-long one, empty: constant; of a spot "
+           "EXR, HDR, PNG or JPEG image: of an environment a lat-long one, empty: constant; of a "
+           "spot "
            "light one that it projects, its shorter side as wide as the cone")
       .file(InputKind::picture);
   table
