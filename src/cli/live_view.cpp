@@ -62,7 +62,7 @@ std::string keys_of(const LiveEdit& edit) {
   return keys;
 }
 
-/// What was read and built for an edit, and what was kept.
+/// Describes the work for an edit: it lists what was read, built and kept.
 std::string work_of(const LiveEdit& edit) {
   if (edit.grids_read + edit.meshes_read + edit.trees_built == 0 && !edit.kept.empty())
     return fmt::format("kept {}", fmt::join(edit.kept, "; "));

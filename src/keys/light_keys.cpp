@@ -75,9 +75,8 @@ void add_light_keys(KeyTable& table) {
   table.add("sun", &L::sun, "add the sun's disc, as a light of its own");
   table
       .add("image", &L::image,
-           "EXR, HDR, PNG or JPEG image: of an environment a lat-long one, empty: constant; of a "
-           "spot "
-           "light one that it projects, its shorter side as wide as the cone")
+           "EXR, HDR, PNG or JPEG image: an environment shows it all around (lat-long), and is "
+           "constant without one; a spot light projects it, its shorter side as wide as the cone")
       .file(InputKind::picture);
   table
       .add("rotation", &L::rotation,

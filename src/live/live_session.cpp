@@ -6,6 +6,7 @@
 #include "prepare/prepared_scene.h"
 #include "vdbeam/error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -20,13 +21,16 @@ using Clock = std::chrono::steady_clock;
 /// How often images are shown: developing one takes time, and an eye sees no more.
 constexpr double seconds_between_images = 0.25;
 
-std::vector<std::string> what_was_kept(const PreparedScene& now, const PreparedScene* before) {
-  if (!before)
-    return {};
-  if (now.world == before->world)
+/// Clauses of what a scene has from the one before it; `same_world`: all of that one's world.
+std::vector<std::string> describe_kept(const Scene& scene, const PreparedScene& now,
+                                       bool same_world) {
+  if (same_world)
     return {"medium, lights and surfaces, since no key that shapes them has changed"};
+  const bool has_files =
+      std::any_of(scene.volumes.begin(), scene.volumes.end(),
+                  [](const VolumeSettings& volume) { return !volume.file.empty(); });
   std::vector<std::string> kept;
-  if (!now.volumes.empty() && now.grids_read == 0)
+  if (has_files && now.grids_read == 0)
     kept.emplace_back("grids, since no file and no edit of a volume has changed");
   if (now.world->surfaces && now.facts.surfaces.trees_built == 0)
     kept.emplace_back("trees over meshes, since no shape has changed");
@@ -120,14 +124,18 @@ private:
   }
 
   void render(const Scene& scene, LiveEdit edit) {
-    const PreparedScenePtr before =
-        std::exchange(prepared_, prepare_scene(scene, prepared_, &stop_));
+    // The old scene is released before the render, so that two are not in memory.
+    PreparedScenePtr prepared = prepare_scene(scene, prepared_, &stop_);
+    const bool is_first = !prepared_;
+    const bool same_world = !is_first && prepared->world == prepared_->world;
+    prepared_ = std::move(prepared);
     RenderStatistics work;
     add_work(work, *prepared_);
     edit.grids_read = work.grids_read;
     edit.meshes_read = work.meshes_read;
     edit.trees_built = work.trees_built;
-    edit.kept = what_was_kept(*prepared_, before.get());
+    if (!is_first)
+      edit.kept = describe_kept(scene, *prepared_, same_world);
     {
       std::unique_lock lock(mutex_);
       call(lock, hooks_.on_edit, edit);

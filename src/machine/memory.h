@@ -13,7 +13,7 @@ std::uint64_t granted_memory();
 /// a file is bounded by this.
 std::uint64_t free_memory();
 
-/// The most memory that the process has held at once so far [bytes].
+/// Returns the most memory that the process has held at once so far [bytes].
 std::uint64_t peak_memory();
 
 /// Gives back to the system what was freed and the C library still holds: after steps that take

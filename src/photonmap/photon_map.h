@@ -68,7 +68,7 @@ public:
 
   /// The same map once more.
   PhotonMap copy() const;
-  /// Changes every kernel, or but some where `stop` says so.
+  /// Changes every kernel. Where `stop` says so it ends early, and some stay as they were.
   void fit(const KernelFit& fit, const StopToken* stop = nullptr);
   /// The same map with the radius of every kernel multiplied by `factor`.
   PhotonMap resized(float factor) const;

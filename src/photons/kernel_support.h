@@ -57,8 +57,8 @@ private:
   bool by_medium_;
 };
 
-/// Makes the kernels of a map what they are to be in the input's world (KernelSupport), or
-/// but some of them where the input's `stop` says so.
+/// Makes the kernels of a map what they are to be in the input's world (KernelSupport). Where the
+/// input's `stop` says so it ends early, and some stay as they were.
 void fit_kernels(const EstimatorInput& input, KernelDomain domain, bool by_medium, PhotonMap& map);
 
 } // namespace vdbeam

@@ -30,19 +30,24 @@ class VdbeamPreferences(bpy.types.AddonPreferences):
         self.layout.prop(self, "program")
 
 
-class VDBEAM_PT_settings(bpy.types.Panel):
-    """The ten settings."""
+class OwnPanel:
+    """A panel of the properties editor that is there with this engine only."""
 
     bl_label = "vdbeam"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
-    bl_context = "render"
     COMPAT_ENGINES = {"VDBEAM"}
 
     @classmethod
     def poll(cls, context):
         """Shows the panel with this engine only."""
         return context.engine in cls.COMPAT_ENGINES
+
+
+class VDBEAM_PT_settings(OwnPanel, bpy.types.Panel):
+    """The ten settings."""
+
+    bl_context = "render"
 
     def draw(self, context):
         """Draws the panel."""
@@ -58,20 +63,11 @@ class VDBEAM_PT_settings(bpy.types.Panel):
         layout.operator("vdbeam.write_farm_job", icon="FILE_SCRIPT")
 
 
-class VDBEAM_PT_passes(bpy.types.Panel):
+class VDBEAM_PT_passes(OwnPanel, bpy.types.Panel):
     """The passes of a view layer."""
 
-    bl_label = "vdbeam"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "view_layer"
     bl_parent_id = "VIEWLAYER_PT_layer_passes"
-    COMPAT_ENGINES = {"VDBEAM"}
-
-    @classmethod
-    def poll(cls, context):
-        """Shows the panel with this engine only."""
-        return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
         """Draws the panel."""
