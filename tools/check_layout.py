@@ -9,8 +9,8 @@ import sys
 
 # A folder of src includes only from itself and from the folders before it.
 LAYERS = ["text", "math", "tuning", "machine", "image", "volume", "vdb", "grids", "geometry", "phase", "materials", "lights",
-          "photonmap", "medium", "camera", "transport", "layers", "errors", "film", "compare", "keys", "scene",
-          "rays", "photons", "estimators", "choose", "report", "prepare", "plan", "render", "live", "farm", "page", "console", "batch", "cli", "python"]
+          "photonmap", "medium", "camera", "transport", "walks", "layers", "errors", "film", "compare", "keys", "scene",
+          "rays", "photons", "shading", "estimators", "choose", "report", "prepare", "plan", "render", "live", "farm", "page", "console", "batch", "cli", "python"]
 LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
 # Source files of one folder: whoever looks for one reads that many names.

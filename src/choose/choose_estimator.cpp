@@ -5,7 +5,7 @@
 #include "estimators/estimator_table.h"
 
 #include "estimators/path/path.h"
-#include "estimators/tile_shading.h"
+#include "shading/tile_shading.h"
 #include "transport/similar_medium.h"
 #include "tuning/constants.h"
 

@@ -1,5 +1,5 @@
 #include "choose/feature.h"
-#include "estimators/path/light_branches.h"
+#include "walks/light_branches.h"
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include "choose/gather_plan.h"
 
 #include "estimators/gather/regression.h"
+#include "math/pixel_fit.h"
 #include "tuning/constants.h"
 
 namespace vdbeam {
@@ -15,7 +16,7 @@ int walks_of(float radius) {
 } // namespace
 
 double RegressionTrial::blur_of(std::size_t radius) const {
-  return blur * PixelRegression::blur(radii[radius]) / PixelRegression::blur(radii.back());
+  return blur * fit_blur(radii[radius]) / fit_blur(radii.back());
 }
 
 double GatherPlan::error_after(double passes_along, std::size_t radius) const {

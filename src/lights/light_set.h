@@ -39,6 +39,11 @@ public:
   const LightTraits& traits(std::size_t i) const { return traits_[i]; }
   int group_count() const { return group_count_; }
   int group(std::size_t i) const { return traits_[i].group; }
+  /// Whether the plate that a shadow catcher stands for has the light: it is one of the scene's
+  /// [[light]] tables. Surfaces that shine and glowing volumes are added to the plate.
+  bool in_plate(std::size_t i) const {
+    return lights_[i]->surface() < 0 && !traits_[i].is_emission;
+  }
   /// Group of the medium's emission.
   int group_of_emission() const { return group_of_emission_; }
   /// Some light may be met at a finite distance.

@@ -1,13 +1,13 @@
 #include "plan/plan.h"
 
 #include "estimators/gather/gather_pass.h"
-#include "estimators/surface_fit.h"
 #include "film/cryptomatte.h"
 #include "film/film.h"
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
 #include "photonmap/photon_map.h"
 #include "plan/plan_needs.h"
+#include "shading/surface_fit.h"
 #include "transport/camera_ray.h"
 #include "volume/emission_field.h"
 

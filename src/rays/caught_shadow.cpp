@@ -81,7 +81,7 @@ CaughtShadow caught_shadow(const World& world, const CameraRay& camera, Rng& rng
   const Vec3f normal = hit.normal * std::copysign(1.0f, -dot(hit.normal, direction));
   Irradiance all;
   for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    if (!in_plate(world.lights, i))
+    if (!world.lights.in_plate(i))
       continue;
     const Irradiance light = irradiance_of(world, world.lights[i], hit, normal, rng);
     all.whole += light.whole;

@@ -4,12 +4,6 @@
 
 namespace vdbeam {
 
-/// A light that is in the plate that the shadow catcher stands for: one of the scene's [[light]]
-/// tables. Surfaces that shine and glowing volumes are added to the plate.
-inline bool in_plate(const LightSet& lights, std::size_t light) {
-  return lights[light].surface() < 0 && !lights.traits(light).is_emission;
-}
-
 struct CaughtShadow {
   float mean = 0;    ///< share of the light, over all channels, that is kept away, in [0, 1]
   Rgb left = Rgb(1); ///< per channel, the share of the light that arrives, in [0, 1]

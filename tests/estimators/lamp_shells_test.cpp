@@ -4,7 +4,7 @@
 #include "support/statistics.h"
 #include "support/test_frame.h"
 
-#include "rays/lamp_directions.h"
+#include "walks/lamp_directions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Walks of the path tracer that branch towards narrow lights: the picture is the same, with less
 // noise where a phase function has a sharp peak.
-#include "estimators/path/light_branches.h"
+#include "walks/light_branches.h"
 
 #include "support/render_passes.h"
 #include "support/surface_scene.h"

@@ -1,5 +1,5 @@
 // Matt surfaces take more samples where those around are noisy, and by nothing else.
-#include "estimators/matt_effort.h"
+#include "shading/matt_effort.h"
 
 #include "support/render_passes.h"
 #include "support/surface_scene.h"

@@ -1,7 +1,7 @@
 // What matt surfaces show of light that came by other ways than straight is fitted over pixels:
 // even light and light that changes steadily stay as they are, other surfaces do not count, noise
 // falls.
-#include "estimators/surface_fit.h"
+#include "shading/surface_fit.h"
 
 #include "support/render_passes.h"
 #include "support/surface_scene.h"

@@ -3,6 +3,7 @@
 
 #include "choose/gather_plan.h"
 #include "estimators/beam/beam.h"
+#include "math/pixel_fit.h"
 #include "render/pass_window.h"
 #include "support/render_passes.h"
 
@@ -92,11 +93,10 @@ TEST(PixelRegression, BlursSmoothLightAsItsMeanSquareDistanceSquared) {
   const auto bend = [](int px, int py) { return 100 + (px - 4) * (px - 4) + (py - 4) * (py - 4); };
   const auto bias = [&](float radius) { return square.shared(radius, 4, 4, bend) - 100; };
   const double squared = std::pow(bias(0.05f) / bias(0.25f), 2);
-  EXPECT_NEAR(PixelRegression::blur(0.05f) / PixelRegression::blur(0.25f), squared, 0.15 * squared);
-  EXPECT_EQ(PixelRegression::blur(0), 0);
+  EXPECT_NEAR(fit_blur(0.05f) / fit_blur(0.25f), squared, 0.15 * squared);
+  EXPECT_EQ(fit_blur(0), 0);
   for (std::size_t i = 1; i < RegressionTrial::radii.size(); ++i)
-    EXPECT_GT(PixelRegression::blur(RegressionTrial::radii[i]),
-              PixelRegression::blur(RegressionTrial::radii[i - 1]));
+    EXPECT_GT(fit_blur(RegressionTrial::radii[i]), fit_blur(RegressionTrial::radii[i - 1]));
 }
 
 TEST(PixelRegression, IsNotAcrossDepths) {

@@ -1,11 +1,11 @@
 #include "choose/pilot/trial_tile.h"
 
 #include "estimators/beam/beam_weights.h"
-#include "estimators/path/path_walk.h"
 #include "rays/direct_light.h"
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
 #include "tuning/constants.h"
+#include "walks/path_walk.h"
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 #include "estimators/beam/beam_ray.h"
 #include "estimators/beam/deep_tile.h"
 #include "estimators/estimator_table.h"
-#include "estimators/tile_shading.h"
 #include "photons/blur_probe.h"
+#include "shading/tile_shading.h"
 
 namespace vdbeam {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "estimators/surface_lighting.h"
 #include "layers/ray_sink.h"
 #include "photons/photon_plan.h"
-#include "rays/lamp_directions.h"
+#include "shading/surface_lighting.h"
+#include "walks/lamp_directions.h"
 
 namespace vdbeam {
 

@@ -2,6 +2,7 @@
 
 #include "estimators/beam/beam_ray.h"
 #include "estimators/gather/final_gather.h"
+#include "math/pixel_fit.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
 
@@ -30,9 +31,8 @@ GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, c
     : wide_(input), window_(wanted(input)), photons_(photons),
       surfaces_(surface_lighting(input, photons)),
       regression_(input.camera, input.world.space.scale, spec.regression_radius),
-      narrow_(input.camera, input.world.space.scale,
-              PixelRegression::narrower(regression_.radius())),
-      blur_over_difference_(PixelRegression::blur_over_difference(regression_.radius())),
+      narrow_(input.camera, input.world.space.scale, narrower_fit(regression_.radius())),
+      blur_over_difference_(vdbeam::blur_over_difference(regression_.radius())),
       walks_(spec.gather_walks) {
   wide_.window = widened(window_, regression_.reach(), input.camera);
   const auto pixels = static_cast<std::size_t>(input.camera.width()) *

@@ -2,8 +2,8 @@
 
 #include "estimators/gather/final_gather.h"
 #include "estimators/gather/regression.h"
-#include "estimators/tile_shading.h"
 #include "photons/photon_pass.h"
+#include "shading/tile_shading.h"
 #include "vdbeam/pass_spec.h"
 
 #include <span>

@@ -1,5 +1,6 @@
 #include "estimators/gather/regression.h"
 
+#include "math/pixel_fit.h"
 #include "math/plane_fit.h"
 #include "tuning/constants.h"
 
@@ -8,38 +9,8 @@
 
 namespace vdbeam {
 
-namespace {
-
-int reach_of(float radius) {
-  return radius > 0 ? static_cast<int>(std::ceil(radius)) : 0;
-}
-
-float weight_at(float dx, float dy, float radius) {
-  return std::max(0.0f, 1 - (dx * dx + dy * dy) / ((radius + 1) * (radius + 1)));
-}
-
-} // namespace
-
 PixelRegression::PixelRegression(const Camera& camera, double world_scale, float radius)
-    : camera_(camera), world_scale_(world_scale), radius_(radius), reach_(reach_of(radius)) {}
-
-double PixelRegression::blur(float radius) {
-  const int reach = reach_of(radius);
-  PlaneFit moments;
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx)
-      moments.add(
-          static_cast<double>(weight_at(static_cast<float>(dx), static_cast<float>(dy), radius)),
-          dx, dy);
-  const double mean_square = (moments.xx + moments.yy) / moments.one;
-  return mean_square * mean_square / std::sqrt(1 + mean_square * mean_square);
-}
-
-float PixelRegression::blur_over_difference(float radius) {
-  if (!(radius > 0))
-    return 0;
-  return static_cast<float>(1 / (1 - std::sqrt(blur(narrower(radius)) / blur(radius))));
-}
+    : camera_(camera), world_scale_(world_scale), radius_(radius), reach_(fit_reach(radius)) {}
 
 float PixelRegression::deepest(const SeenMedium& seen, int x, int y, float distance) const {
   const double pixel = camera_.pixel_width(seen.x0 + x + 0.5, seen.y0 + y + 0.5,
@@ -73,7 +44,7 @@ std::span<const PixelRegression::Share> PixelRegression::shares(const SeenMedium
         continue;
       const auto dx = static_cast<float>(px - x), dy = static_cast<float>(py - y);
       const float off = (seen.depth[pixel] / own - distance) / deepest;
-      const float weight = weight_at(dx, dy, radius_) * std::max(0.0f, 1 - off * off);
+      const float weight = fit_weight(dx, dy, radius_) * std::max(0.0f, 1 - off * off);
       if (!(weight > 0))
         continue;
       // The variance of light per opacity goes as one over the opacity.

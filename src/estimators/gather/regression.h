@@ -35,18 +35,6 @@ public:
   /// By how many pixels it reaches to each side.
   int reach() const { return reach_; }
 
-  /// Growth of the squared bias with the radius, as measured on clouds: m^2 / sqrt(1 + m^2), m
-  /// [pixels^2] being the mean square distance of what is shared. It is m^2 for narrow radii, as
-  /// for any light that is smooth, but m for wide ones, since light is rough at the scale of
-  /// pixels.
-  static double blur(float radius);
-  /// The radius of a narrow fit, which shows how much one of this radius blurs: half of it, so that
-  /// both have much of their noise in common; 0, the pixel's own light, where half would change
-  /// little.
-  static float narrower(float radius) { return radius <= 1 ? 0 : radius / 2; }
-  /// All that the fit blurs over what it blurs beyond the narrow one; 0 where nothing is fitted.
-  static float blur_over_difference(float radius);
-
 private:
   /// A distance of a neighbour in depth at which it does not count [world]: this many times the
   /// reach.

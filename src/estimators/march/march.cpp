@@ -1,8 +1,8 @@
 #include "estimators/march/march.h"
 
 #include "estimators/estimator_table.h"
-#include "estimators/tile_shading.h"
 #include "layers/ray_sink.h"
+#include "shading/tile_shading.h"
 
 namespace vdbeam {
 

@@ -2,10 +2,10 @@
 
 #include "estimators/estimator.h"
 #include "estimators/path/path_effort.h"
-#include "estimators/path/path_walk.h"
 #include "medium/distance_sampling.h"
 #include "rays/profile_shading.h"
 #include "transport/camera_ray.h"
+#include "walks/path_walk.h"
 
 namespace vdbeam {
 

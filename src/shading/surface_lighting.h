@@ -1,8 +1,8 @@
 #pragma once
 
-#include "estimators/path/path_walk.h"
 #include "photonmap/photon_map.h"
 #include "rays/estimator_input.h"
+#include "walks/path_walk.h"
 
 namespace vdbeam {
 

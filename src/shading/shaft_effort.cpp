@@ -1,4 +1,4 @@
-#include "estimators/shaft_effort.h"
+#include "shading/shaft_effort.h"
 
 #include "medium/depth_profile.h"
 #include "rays/shaft_light.h"

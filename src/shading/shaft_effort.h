@@ -1,8 +1,8 @@
 #pragma once
 
-#include "estimators/matt_effort.h"
 #include "math/rng.h"
 #include "rays/tile_rays.h"
+#include "shading/matt_effort.h"
 
 #include <array>
 #include <vector>

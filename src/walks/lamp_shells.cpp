@@ -1,4 +1,4 @@
-#include "rays/lamp_shells.h"
+#include "walks/lamp_shells.h"
 
 #include "medium/equi_angular.h"
 #include "medium/optical_depth.h"

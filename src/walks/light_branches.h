@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rays/lamp_directions.h"
 #include "transport/world.h"
+#include "walks/lamp_directions.h"
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "estimators/matt_effort.h"
+#include "shading/matt_effort.h"
 
-#include "estimators/surface_fit.h"
+#include "shading/surface_fit.h"
 #include "tuning/constants.h"
 
 #include <algorithm>

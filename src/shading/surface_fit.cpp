@@ -1,6 +1,6 @@
-#include "estimators/surface_fit.h"
+#include "shading/surface_fit.h"
 
-#include "estimators/gather/regression.h"
+#include "math/pixel_fit.h"
 #include "math/plane_fit.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
@@ -259,10 +259,9 @@ void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) cons
     if (!probe)
       continue;
     Shares buffer;
-    const Rgb narrower =
-        sum_of(shares(x, y, PixelRegression::narrower(narrow_), 1, buffer), part.own.light);
+    const Rgb narrower = sum_of(shares(x, y, narrower_fit(narrow_), 1, buffer), part.own.light);
     const Rgb of_narrow =
-        (part.narrow.light[i] - narrower) * narrow * PixelRegression::blur_over_difference(narrow_);
+        (part.narrow.light[i] - narrower) * narrow * blur_over_difference(narrow_);
     probe->radiance += of_narrow * factor;
     if (wide > 0)
       probe->radiance += (part.wide.light[i] - part.narrow.light[i]) * (narrow * wide) * factor;

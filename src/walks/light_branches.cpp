@@ -1,4 +1,4 @@
-#include "estimators/path/light_branches.h"
+#include "walks/light_branches.h"
 
 #include "tuning/constants.h"
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "estimators/path/light_branches.h"
 #include "math/grouped_light.h"
 #include "medium/flight.h"
 #include "medium/optical_depth.h"
-#include "rays/lamp_shells.h"
 #include "transport/world.h"
 #include "tuning/constants.h"
+#include "walks/lamp_shells.h"
+#include "walks/light_branches.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "estimators/matt_shading.h"
+#include "shading/matt_shading.h"
 
 #include "math/mean_of_light.h"
 

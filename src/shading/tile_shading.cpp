@@ -1,7 +1,7 @@
-#include "estimators/tile_shading.h"
+#include "shading/tile_shading.h"
 
-#include "estimators/shaft_effort.h"
-#include "estimators/surface_fit.h"
+#include "shading/shaft_effort.h"
+#include "shading/surface_fit.h"
 
 #include "machine/stopwatch.h"
 #include "rays/direct_light.h"

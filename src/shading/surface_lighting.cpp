@@ -1,4 +1,4 @@
-#include "estimators/surface_lighting.h"
+#include "shading/surface_lighting.h"
 
 #include "photons/photon_plan.h"
 #include "photons/surface_photons.h"

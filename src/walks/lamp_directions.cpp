@@ -1,4 +1,4 @@
-#include "rays/lamp_directions.h"
+#include "walks/lamp_directions.h"
 
 #include "math/sampling.h"
 #include "tuning/constants.h"

@@ -1,6 +1,5 @@
-#include "estimators/path/path_walk.h"
-#include "rays/caught_shadow.h"
 #include "transport/next_event.h"
+#include "walks/path_walk.h"
 
 #include <utility>
 
@@ -165,7 +164,7 @@ GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng
                                            GroupedLight* matt) const {
   GroupedLight sum;
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
-    if (!shadow_rays_[i] || (in_plate && vdbeam::in_plate(world_.lights, i)))
+    if (!shadow_rays_[i] || (in_plate && world_.lights.in_plate(i)))
       continue;
     const auto shadow_ray = sample_shadow_ray(
         world_.lights[i], Vec3f(vertex.hit().position), rng, [&](const Vec3f& wi) {

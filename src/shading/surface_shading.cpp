@@ -1,4 +1,4 @@
-#include "estimators/surface_shading.h"
+#include "shading/surface_shading.h"
 
 #include "math/mean_of_light.h"
 #include "medium/emission.h"

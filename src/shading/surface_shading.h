@@ -1,9 +1,9 @@
 #pragma once
 
-#include "estimators/matt_shading.h"
-#include "estimators/surface_lighting.h"
 #include "photons/photon_pass.h"
 #include "rays/profile_shading.h"
+#include "shading/matt_shading.h"
+#include "shading/surface_lighting.h"
 #include "transport/camera_ray.h"
 
 #include <functional>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "estimators/surface_lighting.h"
 #include "photons/photon_plan.h"
 #include "rays/profile_shading.h"
+#include "shading/surface_lighting.h"
 
 namespace vdbeam {
 

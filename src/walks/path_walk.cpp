@@ -1,4 +1,4 @@
-#include "estimators/path/path_walk.h"
+#include "walks/path_walk.h"
 
 #include "medium/emission.h"
 #include "transport/next_event.h"

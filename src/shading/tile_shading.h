@@ -1,11 +1,11 @@
 #pragma once
 
-#include "estimators/matt_effort.h"
-#include "estimators/surface_shading.h"
 #include "rays/estimator_input.h"
 #include "rays/profile_shading.h"
 #include "rays/tile_rays.h"
 #include "rays/uneven_pixels.h"
+#include "shading/matt_effort.h"
+#include "shading/surface_shading.h"
 
 namespace vdbeam {
 

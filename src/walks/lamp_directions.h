@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rays/lamp_shells.h"
+#include "walks/lamp_shells.h"
 
 #include <optional>
 #include <vector>
