@@ -221,20 +221,24 @@ private:
     const Light& light = world_.lights[index];
     const bool surrounds = world_.lights.traits(index).surrounds;
     const PhaseFunction& phase = single.phase;
+    const MediumVertex vertex{point, direction, phase};
+    struct Arriving {
+      Rgb through, phase; ///< transmittance of the shadow ray, and how much of it is scattered
+    };
+    const auto arriving = [&](const Segment& shadow) -> Arriving {
+      const float cosine = dot(direction, shadow.ray.direction);
+      ++shadow_rays_;
+      Rgb taken_out;
+      const Rgb through =
+          estimate_transmittance(world_.medium, shadow, rng_.uniform(), &taken_out, certain_depth);
+      return {through, single.weight(surrounds, phase.evaluate(cosine), cosine, taken_out)};
+    };
     Rgb sum;
-    if (const auto shadow_ray = sample_shadow_ray(light, point, rng_, [&](const Vec3f& wi) {
+    if (const auto direct = sample_direct_light(world_, light, vertex, rng_, [&](const Vec3f& wi) {
           return phase.evaluate(dot(direction, wi));
         })) {
-      const Vec3f& wi = shadow_ray->direction;
-      const float cosine = dot(direction, wi), p = phase.evaluate(cosine), mis = shadow_ray->weight;
-      if (p * mis > 0 && unoccluded(world_, Vec3d(point), wi, shadow_ray->distance)) {
-        ++shadow_rays_;
-        Rgb taken_out;
-        const Rgb through =
-            estimate_transmittance(world_.medium, {{point, wi}, 0, shadow_ray->distance},
-                                   rng_.uniform(), &taken_out, certain_depth);
-        sum += shadow_ray->light * (single.weight(surrounds, p, cosine, taken_out) * mis) * through;
-      }
+      const auto [through, scattered] = arriving(direct->segment);
+      sum += direct->light * (scattered * direct->weight) * through;
     }
     if (light.is_delta())
       return sum;
@@ -242,13 +246,9 @@ private:
     const Vec3f wi = phase.sample(direction, u_lobe, u2, v2);
     const LightHit hit = light.emitted_radiance({{point, wi}});
     if (max_component(hit.radiance) > 0 && unoccluded(world_, Vec3d(point), wi, hit.distance)) {
-      const float cosine = dot(direction, wi), p = phase.evaluate(cosine);
-      ++shadow_rays_;
-      Rgb taken_out;
-      const Rgb through = estimate_transmittance(world_.medium, {{point, wi}, 0, hit.distance},
-                                                 rng_.uniform(), &taken_out, certain_depth);
-      sum += hit.radiance * through * single.weight(surrounds, p, cosine, taken_out) /
-             (p + light.incident_pdf(point, wi));
+      const auto [through, scattered] = arriving({{point, wi}, 0, hit.distance});
+      sum += hit.radiance * through * scattered /
+             (phase.evaluate(dot(direction, wi)) + light.incident_pdf(point, wi));
     }
     return sum;
   }

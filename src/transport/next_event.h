@@ -1,34 +1,65 @@
 #pragma once
 
-#include "lights/light.h"
-#include "math/rng.h"
+#include "transport/world.h"
 
 #include <optional>
 
 namespace vdbeam {
 
-/// A shadow ray from a vertex of a path to a light.
-struct ShadowRay {
-  Rgb light;       ///< radiance from there over the density with which the ray was drawn
-  float weight;    ///< against drawing the direction as the path goes on (balance heuristic)
-  Vec3f direction; ///< unit, from the vertex
-  float distance;  ///< to the light
+/// A vertex of a path in the medium. Vertices on surfaces are SurfaceVertex, which has the same
+/// `position`, `leave` and `evaluate`.
+struct MediumVertex {
+  const Vec3f& point;
+  const Vec3f& arriving; ///< unit, along which the path comes
+  const PhaseFunction& phase;
+
+  const Vec3f& position() const { return point; }
+  /// Where a ray begins that leaves in the direction wi.
+  Vec3d leave(const Vec3f&) const { return Vec3d(point); }
+  Rgb evaluate(const Vec3f& wi) const { return Rgb(phase.evaluate(dot(arriving, wi))); }
 };
 
-/// Next-event estimation: draws a shadow ray from `point` to a light, none where no light comes
-/// from there. pdf(wi): the density [1/sr] with which the path itself draws the direction wi to go
-/// on, 0 where the light is found in no other way. The two are combined by multiple importance
-/// sampling (Veach and Guibas 1995). What the vertex scatters, and the transmittance on the way, is
-/// left to the caller.
-template <class Pdf>
-std::optional<ShadowRay> sample_shadow_ray(const Light& light, const Vec3f& point, Rng& rng,
-                                           const Pdf& pdf) {
+/// Light that a shadow ray brings from a light to a vertex of a path.
+struct ShadowRay {
+  Rgb light;       ///< radiance from there over the density with which the direction was drawn
+  Rgb scattered;   ///< factor by which the vertex scatters it on: p, or f |cos|
+  float weight;    ///< against drawing the direction as the path goes on (balance heuristic)
+  Segment segment; ///< from the vertex to the light
+
+  const Vec3f& direction() const { return segment.ray.direction; }
+  /// What the vertex scatters on, but for the transmittance of the segment.
+  Rgb radiance() const { return light * (scattered * weight); }
+};
+
+/// Next-event estimation, the only one of the renderer: draws a shadow ray from a vertex in the
+/// medium or on a surface to a light. None where no light comes from there, a surface hides it, or
+/// the vertex scatters none of it. pdf(wi): the density [1/sr] with which the path itself draws the
+/// direction wi to go on, 0 where the light is found in no other way. The two are combined by
+/// multiple importance sampling (Veach and Guibas 1995). The transmittance of the segment is left
+/// to the caller: estimated at once, or a collision at a time beside other walks.
+template <class Vertex, class Pdf>
+std::optional<ShadowRay> sample_direct_light(const World& world, const Light& light,
+                                             const Vertex& vertex, Rng& rng, const Pdf& pdf) {
   const float u = rng.uniform(), v = rng.uniform();
-  const IncidentSample sample = light.sample_incident(point, u, v);
+  const IncidentSample sample = light.sample_incident(vertex.position(), u, v);
   if (!(max_component(sample.value) > 0))
     return std::nullopt;
-  const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + pdf(sample.wi)) : 1;
-  return ShadowRay{sample.value, weight, sample.wi, sample.distance};
+  const Vec3f& wi = sample.wi;
+  const float weight = sample.pdf > 0 ? sample.pdf / (sample.pdf + pdf(wi)) : 1;
+  const Rgb scattered = vertex.evaluate(wi);
+  if (scattered == Rgb() || !(weight > 0)) // a truncated phase function may be negative
+    return std::nullopt;
+  const Vec3d origin = vertex.leave(wi);
+  if (!unoccluded(world, origin, wi, sample.distance))
+    return std::nullopt;
+  return ShadowRay{sample.value, scattered, weight, {{Vec3f(origin), wi}, 0, sample.distance}};
+}
+
+/// The same for lights that paths find in no other way.
+template <class Vertex>
+std::optional<ShadowRay> sample_direct_light(const World& world, const Light& light,
+                                             const Vertex& vertex, Rng& rng) {
+  return sample_direct_light(world, light, vertex, rng, [](const Vec3f&) { return 0.0f; });
 }
 
 } // namespace vdbeam

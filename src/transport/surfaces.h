@@ -80,6 +80,9 @@ public:
   SurfaceVertex(const Surfaces& surfaces, const SurfaceHit& hit, const Vec3f& direction);
 
   const SurfaceHit& hit() const { return hit_; }
+  Vec3f position() const { return Vec3f(hit_.position); }
+  /// Where a ray begins that leaves in the direction wi.
+  Vec3d leave(const Vec3f& wi) const { return hit_.leave(wi); }
   const Material& material() const { return material_; }
   /// The path came to the side to which the normal points.
   bool front() const { return wo_.z > 0; }

@@ -20,19 +20,29 @@ float extinction_at(const Medium& medium, const Vec3f& point) {
   return sum;
 }
 
-/// Scattering coefficient times phase function, of all volumes at a point.
-Rgb scattering_at(const Medium& medium, const Vec3f& point, float cosine) {
-  Rgb sum;
-  medium.for_each_at(point, [&](std::size_t v) {
-    const Volume& volume = medium.volumes[v];
-    if (const float density = volume.density(point); density > 0)
-      sum +=
-          volume.albedo_at(point) * volume.channel_scale *
-          (density * volume.extinction *
-           medium.gathered_phases()[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
-  });
-  return sum;
-}
+/// A vertex (MediumVertex) that all volumes at a point scatter from: by their scattering
+/// coefficients times their phase functions.
+struct MixedVertex {
+  const Medium& medium;
+  const Vec3f& point;
+  const Vec3f& arriving;
+
+  const Vec3f& position() const { return point; }
+  Vec3d leave(const Vec3f&) const { return Vec3d(point); }
+  Rgb evaluate(const Vec3f& wi) const {
+    const float cosine = dot(arriving, wi);
+    const std::vector<PhaseFunction>& phases = medium.gathered_phases();
+    Rgb sum;
+    medium.for_each_at(point, [&](std::size_t v) {
+      const Volume& volume = medium.volumes[v];
+      if (const float density = volume.density(point); density > 0)
+        sum += volume.albedo_at(point) * volume.channel_scale *
+               (density * volume.extinction *
+                phases[static_cast<std::size_t>(volume.phase_index)].evaluate(cosine));
+    });
+    return sum;
+  }
+};
 
 /// The part of the segment inside of a ball; empty where it misses.
 Segment part_in_ball(const Segment& segment, const Vec3d& center, double radius) {
@@ -99,19 +109,14 @@ Rgb LampShells::sample(const Shell& shell, const Segment& crossing, Rng& rng) co
                               medium.angles.get());
   const float t = distances.sample(rng.uniform()), density = distances.pdf(t);
   const Vec3f point = crossing.ray.at(t);
-  const auto shadow_ray = // these lights are found in no other way
-      sample_shadow_ray(world_.lights[shell.light], point, rng, [](const Vec3f&) { return 0.0f; });
-  if (!shadow_ray || !(density > 0))
-    return {};
-  const Vec3f& wi = shadow_ray->direction;
-  const Rgb scattered = scattering_at(medium, point, dot(crossing.ray.direction, wi));
-  if (scattered == Rgb() || !unoccluded(world_, Vec3d(point), wi, shadow_ray->distance))
+  const auto direct = sample_direct_light(world_, world_.lights[shell.light],
+                                          MixedVertex{medium, point, crossing.ray.direction}, rng);
+  if (!direct || !(density > 0))
     return {};
   Rgb through = estimate_transmittance(medium, {crossing.ray, 0, t}, rng.uniform());
   if (max_component(through) > 0)
-    through *=
-        estimate_transmittance(medium, {{point, wi}, 0, shadow_ray->distance}, rng.uniform());
-  return shadow_ray->light * scattered * through / density;
+    through *= estimate_transmittance(medium, direct->segment, rng.uniform());
+  return direct->radiance() * through / density;
 }
 
 } // namespace vdbeam

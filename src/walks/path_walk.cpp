@@ -82,16 +82,13 @@ void WalkTracer::sample_lights(PathWalk& walk) const {
     if (!shadow_rays_[walk.light] || shells_.holds(walk.light, ray.origin) ||
         (!walk.all_light && world_.lights[walk.light].is_near()))
       continue;
-    const auto shadow_ray =
-        sample_shadow_ray(world_.lights[walk.light], ray.origin, walk.rng,
-                          [&](const Vec3f& wi) { return flight_density(walk, wi); });
-    if (!shadow_ray ||
-        !unoccluded(world_, Vec3d(ray.origin), shadow_ray->direction, shadow_ray->distance))
+    const auto direct = sample_direct_light(
+        world_, world_.lights[walk.light], MediumVertex{ray.origin, ray.direction, *walk.phase},
+        walk.rng, [&](const Vec3f& wi) { return flight_density(walk, wi); });
+    if (!direct)
       continue;
-    const Vec3f& wi = shadow_ray->direction;
-    const float p = walk.phase->evaluate(dot(ray.direction, wi));
-    walk.shadow_value = shadow_ray->light * (p * shadow_ray->weight) * walk.throughput;
-    walk.shadow.emplace(world_.medium, Segment{{ray.origin, wi}, 0, shadow_ray->distance});
+    walk.shadow_value = direct->radiance() * walk.throughput;
+    walk.shadow.emplace(world_.medium, direct->segment);
     if (walk.shadow->advance(walk.rng))
       return;
     walk.indirect.add(walk.shadow_value, world_.lights.group(walk.light));

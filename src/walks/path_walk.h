@@ -68,7 +68,7 @@ struct ReflectedLight {
 
 /// Unbiased path tracing in media and among surfaces, a collision at a time: flights by delta
 /// tracking end at surfaces, which scatter by their materials; next-event estimation at every
-/// vertex that is not specular (sample_shadow_ray), through the medium by ratio tracking, combined
+/// vertex that is not specular (sample_direct_light), through the medium by ratio tracking, combined
 /// with the directions drawn by multiple importance sampling; Russian roulette. The medium's own
 /// emission is added along every flight up to its end (track-length estimator). Walks branch
 /// towards narrow lights where phase functions have a sharp peak (LightBranches). Light of point

@@ -166,24 +166,17 @@ GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng
   for (std::size_t i = 0; i < world_.lights.size(); ++i) {
     if (!shadow_rays_[i] || (in_plate && world_.lights.in_plate(i)))
       continue;
-    const auto shadow_ray = sample_shadow_ray(
-        world_.lights[i], Vec3f(vertex.hit().position), rng, [&](const Vec3f& wi) {
+    const auto direct =
+        sample_direct_light(world_, world_.lights[i], vertex, rng, [&](const Vec3f& wi) {
           return goes_on_as_walk ? surface_density(vertex, wi) : vertex.pdf(wi);
         });
-    if (!shadow_ray)
-      continue;
-    const Vec3f& wi = shadow_ray->direction;
-    const Rgb value = vertex.evaluate(wi);
-    const Vec3d origin = vertex.hit().leave(wi);
-    if (!(max_component(value) > 0) || !unoccluded(world_, origin, wi, shadow_ray->distance))
+    if (!direct)
       continue;
     const Rgb light =
-        shadow_ray->light * value * shadow_ray->weight *
-        estimate_transmittance(world_.medium, {{Vec3f(origin), wi}, 0, shadow_ray->distance},
-                               rng.uniform());
+        direct->radiance() * estimate_transmittance(world_.medium, direct->segment, rng.uniform());
     sum.add(light, world_.lights.group(i));
     if (matt)
-      matt->add(light * vertex.matt_share(wi), world_.lights.group(i));
+      matt->add(light * vertex.matt_share(direct->direction()), world_.lights.group(i));
   }
   return sum;
 }

@@ -207,19 +207,16 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
   for (std::size_t l = 0; l < world_.lights.size(); ++l) {
     if (!plan_.sampled_lights[l] || shells_.holds(l, flight.origin))
       continue;
-    const auto shadow_ray = // these lights are found in no other way
-        sample_shadow_ray(world_.lights[l], flight.origin, walk.rng,
-                          [](const Vec3f&) { return 0.0f; });
-    if (!shadow_ray ||
-        !unoccluded(world_, Vec3d(flight.origin), shadow_ray->direction, shadow_ray->distance))
+    const auto direct = sample_direct_light(
+        world_, world_.lights[l], MediumVertex{flight.origin, flight.direction, phase}, walk.rng);
+    if (!direct)
       continue;
     ++walk.counts.shadow_rays;
-    const Vec3f& wi = shadow_ray->direction;
-    RatioTracking shadow(world_.medium, {{flight.origin, wi}, 0, shadow_ray->distance});
+    RatioTracking shadow(world_.medium, direct->segment);
     while (shadow.advance(walk.rng) && shadow.attenuate(walk.rng))
       continue;
-    walk.found.indirect.add(shadow_ray->light * shadow.transmittance() * walk.throughput *
-                                phase.evaluate(dot(flight.direction, wi)),
+    walk.found.indirect.add(direct->light * shadow.transmittance() * walk.throughput *
+                                direct->scattered,
                             world_.lights.group(l));
   }
 }
