@@ -7,6 +7,8 @@ import pathlib
 import re
 import sys
 
+from cpp_functions import find_functions
+
 # A folder of src includes only from itself and from the folders before it.
 LAYERS = ["text", "math", "tuning", "machine", "image", "volume", "vdb", "grids", "geometry", "phase", "materials", "lights",
           "photonmap", "medium", "camera", "transport", "walks", "layers", "errors", "film", "compare", "keys", "scene",
@@ -15,6 +17,13 @@ LINE_LIMIT = 400
 PUBLIC_LINE_LIMIT = 150
 # Source files of one folder: whoever looks for one reads that many names.
 FOLDER_LIMIT = 40
+# The same for those that hold the way of a pass, and for all of a folder with its own folders.
+FOLDER_LIMITS = {"choose": 20, "errors": 20, "layers": 20, "photons": 20, "rays": 20, "shading": 20, "walks": 20}
+FAMILY_LIMITS = {"estimators": 30}
+FUNCTION_LIMIT = 60
+# Functions that are tables: a line or more for each key.
+TABLES = {"keys"}
+PARAMETER_LIMIT = 7
 CODE = {".h", ".cpp", ".py", ".sh", ".cmake"}
 
 # The one header that has Embree's types; only source files of its folder include it.
@@ -75,6 +84,29 @@ def check_include(path, quote, name):
     return None
 
 
+def check_functions(path, text):
+    """Functions that are too long, or take too much, as (line number, message)."""
+    for number, lines, parameters in find_functions(text):
+        if lines > FUNCTION_LIMIT and path.parts[1] not in TABLES:
+            yield number, f"a function of {lines} lines, the limit is {FUNCTION_LIMIT}"
+        if parameters > PARAMETER_LIMIT:
+            yield number, f"a function of {parameters} parameters, the limit is {PARAMETER_LIMIT}"
+
+
+def check_folders(root):
+    """Folders of src that hold too many files, as "folder:1: message"."""
+    def count(files):
+        return sum(file.suffix in CODE for file in files)
+
+    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir()):
+        limit = FOLDER_LIMITS.get(folder.name, FOLDER_LIMIT)
+        if (files := count(folder.iterdir())) > limit:
+            yield f"{folder.relative_to(root)}:1: {files} files, the limit is {limit}"
+    for name, limit in FAMILY_LIMITS.items():
+        if (files := count((root / "src" / name).rglob("*"))) > limit:
+            yield f"src/{name}:1: {files} files in all, the limit is {limit}"
+
+
 def check_file(path, text):
     """Violations of one file as (line number, message); `path` is relative to the root."""
     lines = text.splitlines()
@@ -86,6 +118,8 @@ def check_file(path, text):
     # Headers that Highway includes once per instruction set guard themselves in another way.
     if path.suffix == ".h" and not path.name.endswith("-inl.h") and "#pragma once" not in text:
         found.append((1, "a header begins with #pragma once"))
+    if path.suffix in {".h", ".cpp"} and path.parts[0] in {"include", "src"}:
+        found += check_functions(path, text)
     library = public or (path.parts[0] == "src" and path.parts[1] not in PROGRAM)
     for number, line in enumerate(lines, 1):
         include = INCLUDE.match(line)
@@ -113,11 +147,7 @@ def check_file(path, text):
 
 def check_tree(root):
     """Every violation below `root` as "file:line: message"."""
-    result = []
-    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir()):
-        count = sum(file.suffix in CODE for file in folder.iterdir())
-        if count > FOLDER_LIMIT:
-            result.append(f"{folder.relative_to(root)}:1: {count} files, the limit is {FOLDER_LIMIT}")
+    result = list(check_folders(root))
     for folder in ("include", "src", "tests", "benchmarks", "tools", "cmake"):
         for file in sorted((root / folder).rglob("*")):
             if file.suffix in CODE and file.is_file():

@@ -11,32 +11,45 @@
 
 namespace vdbeam {
 
-Image Film::develop() const {
+namespace {
+
+/// The channels of every image, in their order.
+enum Channel : std::size_t {
+  rgb = 0,
+  alpha = 3,
+  volume = 4,
+  volume_alpha = 7,
+  direct = 8,
+  indirect = 11,
+  depth = 14,
+  emission = 15 ///< where something glows
+};
+
+/// An image with these channels, and room for them.
+Image make_image(int width, int height, bool glows) {
   Image image;
-  image.width = width_;
-  image.height = height_;
+  image.width = width;
+  image.height = height;
   // Blender reads a layer's channel only where its last part is one of R G B A X Y Z V U.
   for (const char* name : {"R", "G", "B", "A", "volume.R", "volume.G", "volume.B", "volume.A",
                            "volume_direct.R", "volume_direct.G", "volume_direct.B",
                            "volume_indirect.R", "volume_indirect.G", "volume_indirect.B"})
     image.channels.push_back({name, {}});
   image.channels.push_back({"depth.Z", {}, false});
-  if (glows_)
+  if (glows)
     for (const char* name : {"volume_emission.R", "volume_emission.G", "volume_emission.B"})
       image.channels.push_back({name, {}});
   // New memory costs more time than what is done with it, so all threads share that.
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   tbb::parallel_for(std::size_t{0}, image.channels.size(),
-                    [&](std::size_t c) { image.channels[c].data.resize(pixels()); });
+                    [&](std::size_t c) { image.channels[c].data.resize(pixels); });
+  return image;
+}
 
-  enum : std::size_t {
-    rgb = 0,
-    alpha = 3,
-    volume = 4,
-    volume_alpha = 7,
-    direct = 8,
-    indirect = 11
-  };
-  constexpr std::size_t depth = 14, emission = 15;
+} // namespace
+
+Image Film::develop() const {
+  Image image = make_image(width_, height_, glows_);
   const double passes = std::max(passes_, 1);
   for_each_block(pixels(), [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto set = [&](std::size_t channel, std::size_t i, double sum, double count) {
@@ -60,6 +73,12 @@ Image Film::develop() const {
         image.channels[depth].data[i] = empty_depth;
     }
   });
+  develop_parts(passes, image);
+  return image;
+}
+
+/// Adds the channels of light groups, of the planes that layers ask for, and of objects.
+void Film::develop_parts(double passes, Image& image) const {
   for (std::size_t g = 0; g < groups_.size(); ++g)
     for (std::size_t c = 0; c < 3; ++c) {
       std::vector<float> data(pixels());
@@ -78,7 +97,6 @@ Image Film::develop() const {
           return static_cast<float>(std::min(1.0, coverage_[object].high(pixel) / passes));
         },
         image);
-  return image;
 }
 
 std::vector<float> Film::develop_plane(std::size_t plane) const {

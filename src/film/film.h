@@ -110,6 +110,7 @@ public:
 
 private:
   std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
+  void develop_parts(double passes, Image& image) const;
   std::vector<float> develop_plane(std::size_t plane) const;
   std::uint64_t add_pixels(const PassImage& pass, std::size_t begin, std::size_t end);
   void check_size(int width, int height) const;

@@ -12,15 +12,18 @@ class DeepRay {
 public:
   DeepRay() = default;
   DeepRay(const World& world, const CameraRay& camera, std::size_t pixel, PassImage& image)
-      : deep_(image.deep_layout ? &image.deep : nullptr) {
+      : DeepRay(pixel, image) {
+    scale_ = world.space.scale;
+    shift_ = camera.shift;
+  }
+  /// Without the ray: pieces are known by their numbers alone.
+  DeepRay(std::size_t pixel, PassImage& image) : deep_(image.deep_layout ? &image.deep : nullptr) {
     if (!deep_)
       return;
     const DeepLayout& layout = *image.deep_layout;
     first_ = layout.first[pixel];
     count_ = layout.count(pixel);
     edges_ = layout.edges_of(pixel);
-    scale_ = world.space.scale;
-    shift_ = camera.shift;
     if (count_ == 0)
       deep_ = nullptr;
   }

@@ -5,26 +5,64 @@
 
 namespace vdbeam {
 
-/// Where light goes that is scattered into a ray of the picture, beyond the pixel's own sums: to
-/// the pieces of the deep pixel, by how deep it was scattered, and to the layers of volumes, by
-/// which of them scattered it. Everything that sorts light by its place goes through here; without
-/// deep picture and layers it does nothing.
-struct RaySink {
+/// Sorts what a ray of a pixel brings by its place, beside the sum that PassImage::add takes: into
+/// the pieces of the deep pixel, by how deep it was scattered, and into the layers of volumes, by
+/// which of them scattered it. All that is sorted by place is written here; without a deep image
+/// and layers it does nothing.
+class RaySink {
+public:
   RaySink() = default;
-  RaySink(const DeepRay& deep_ray, const VolumeLights& lights) : deep(deep_ray), volumes(lights) {}
-  /// Takes the light of a camera ray of `pixel`. `layers`: the layers to fill; null: none.
+  /// `layers`: the layers to fill; null: none.
   RaySink(const World& world, const CameraRay& camera, const RayLayers* layers, std::size_t pixel,
           PassImage& image)
-      : deep(world, camera, pixel, image), volumes(layers, pixel, image) {}
+      : RaySink(world, camera, layers, pixel, image, image) {}
+  /// Pieces of one image, layers of another.
+  RaySink(const World& world, const CameraRay& camera, const RayLayers* layers, std::size_t pixel,
+          PassImage& of_pieces, PassImage& of_layers)
+      : deep_(world, camera, pixel, of_pieces), volumes_(layers, pixel, of_layers) {}
+  /// For light whose piece is known.
+  RaySink(const RayLayers* layers, std::size_t pixel, PassImage& image)
+      : deep_(pixel, image), volumes_(layers, pixel, image) {}
+
+  bool sorts_by_depth() const { return static_cast<bool>(deep_); }
+  bool sorts_by_volume() const { return static_cast<bool>(volumes_); }
 
   /// Light that volume `setting` of the scene scatters into the ray at the distance t.
   void add(float t, std::size_t setting, const Rgb& light) const {
-    deep.add_light_at(t, light);
-    volumes.add(setting, light);
+    deep_.add_light_at(t, light);
+    volumes_.add(setting, light);
+  }
+  /// The same, where several volumes scatter it, each of which is added by itself.
+  void add_at(float t, const Rgb& light) const { deep_.add_light_at(t, light); }
+  void add_of_volume(std::size_t setting, const Rgb& light) const { volumes_.add(setting, light); }
+
+  /// The pieces of the pixel; none where it has no deep layout.
+  std::size_t pieces() const { return deep_ ? deep_.count() : 0; }
+  /// The piece that holds a place on the ray.
+  std::size_t piece_at(float t) const { return deep_ ? deep_.piece(t) : 0; }
+  /// Where a piece begins and ends on the ray; the first and the last have no end to that side.
+  float begin(std::size_t piece) const { return deep_.begin(piece); }
+  float end(std::size_t piece) const { return deep_.end(piece); }
+  void add_to_piece(std::size_t piece, const Rgb& light) const {
+    if (deep_)
+      deep_.add_light(piece, light);
   }
 
-  DeepRay deep;
-  VolumeLights volumes;
+  /// Opacity, from the profile of all of the medium, which may be empty.
+  void add_opacity(const Medium& medium, const DepthProfile& profile) const {
+    if (deep_)
+      deep_.add_opacity(medium, profile);
+  }
+  /// Light that the medium itself sends out.
+  void add_emission(const Medium& medium, const Segment& segment, const DepthProfile& profile,
+                    float cutoff) const {
+    if (deep_)
+      deep_.add_emission(medium, segment, profile, cutoff);
+  }
+
+private:
+  DeepRay deep_;
+  VolumeLights volumes_;
 };
 
 } // namespace vdbeam

@@ -255,14 +255,15 @@ QueryCounts ray_on_target(const MapView& map, const PhotonMap::RayProfile& profi
   return walk.counts;
 }
 
-/// At most phases_at_once phase functions.
-QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f& towards,
-                            const PhaseFunction* phases, std::size_t count, LaneSums* sums,
+/// In-scattered light at the origin of `at`, into its direction; at most phases_at_once phase
+/// functions.
+QueryCounts point_on_target(const MapView& map, const Ray& at,
+                            std::span<const PhaseFunction> phases, LaneSums* sums,
                             LaneSums* first_flight, GroupSums& groups) {
   const D16 d;
   const KernelPolynomial kernel = ball_polynomial(map.shape);
-  const float x[3] = {point.x, point.y, point.z};
-  const float direction[3] = {towards.x, towards.y, towards.z};
+  const float x[3] = {at.origin.x, at.origin.y, at.origin.z};
+  const float direction[3] = {at.direction.x, at.direction.y, at.direction.z};
   QueryCounts counts;
   const auto add_photons = [&](const PhotonLanes& photons) HWY_ATTR {
     auto square = hn::Zero(d);
@@ -282,7 +283,7 @@ QueryCounts point_on_target(const MapView& map, const Vec3f& point, const Vec3f&
     const auto k = hn::NegMulAdd(square, inverse_area, one);
     const auto value =
         hn::IfThenElseZero(hit, hn::Mul(kernel_value(kernel, k), hn::Mul(inverse_area, inverse)));
-    for (std::size_t g = 0; g < count; ++g) {
+    for (std::size_t g = 0; g < phases.size(); ++g) {
       const auto scattered = hn::Mul(value, phase_lanes(photons, phases[g], direction));
       for (int c = 0; c < photons.blocks.channels(); ++c) {
         photons.add(scattered, c, sums[g]);
@@ -352,8 +353,8 @@ QueryCounts query_point(const MapView& map, const Vec3f& point, const Vec3f& dir
     LaneSums sums[phases_at_once], first_sums[phases_at_once];
     GroupSums group_sums = make_group_sums(map, groups);
     if (!map.tree.levels.empty())
-      counts = HWY_DYNAMIC_DISPATCH(point_on_target)(map, point, direction, phases.data() + first,
-                                                     count, sums, first_sums, group_sums);
+      counts = HWY_DYNAMIC_DISPATCH(point_on_target)(
+          map, {point, direction}, {phases.data() + first, count}, sums, first_sums, group_sums);
     for (std::size_t i = 0; i < count; ++i) {
       in_scattered[first + i] = sums[i].total(grey);
       if (first_flight)

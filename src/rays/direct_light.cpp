@@ -86,7 +86,7 @@ public:
       const float other = light.near ? light.near->pdf(point.t) : 0;
       add(sum, light, scattered(point, light.index, point.pdf / (point.pdf + other)));
     }
-    sink_.deep.add_light_at(point.t, sum.sum() * share_);
+    sink_.add_at(point.t, sum.sum() * share_);
     return sum;
   }
 
@@ -189,7 +189,7 @@ private:
 
   /// Light of one of the samples, which adds so much to the deep picture.
   const Rgb& take_down(const ScatterPoint& point, const Rgb& light) {
-    sink_.deep.add_light_at(point.t, light * share_);
+    sink_.add_at(point.t, light * share_);
     return light;
   }
 
@@ -207,7 +207,7 @@ private:
       const Rgb radiance =
           weight * scattered_light(light, single_phase(medium.volumes[v].phase_index, point.t),
                                    point.position, certain_depth);
-      sink_.volumes.add(medium.volumes[v].setting, radiance * (factor * share_));
+      sink_.add_of_volume(medium.volumes[v].setting, radiance * (factor * share_));
       sum += radiance;
     }
     return sum * factor;

@@ -64,7 +64,8 @@ void add_light_of_air(const EstimatorInput& input, const CameraRay& camera,
     return;
   const World& world = input.world;
   const RaySink sink(world, camera, input.layers, pixel, image);
-  const float longest = sink.deep ? 0 : (profile.back() - profile.front()) / pieces_of_ray;
+  const float longest =
+      sink.sorts_by_depth() ? 0 : (profile.back() - profile.front()) / pieces_of_ray;
   Stretch stretch(world.medium, profile);
   Rgb sum;
   float begin = profile.front();

@@ -1,7 +1,7 @@
 #include "rays/profile_shading.h"
 
-#include "layers/deep_ray.h"
 #include "layers/opacity_pieces.h"
+#include "layers/ray_sink.h"
 #include "medium/emission.h"
 #include "rays/light_of_air.h"
 
@@ -134,8 +134,7 @@ OpacityAndDepth shade_profile(const EstimatorInput& input, const CameraRay& came
                          {tr, seen.depth, surface.caught.mean, surface.caught.left,
                           camera.air ? surface.added * air_to_end(camera).left : surface.added},
                          pixel, image);
-  if (const DeepRay deep(world, camera, pixel, image); deep)
-    deep.add_opacity(world.medium, profile);
+  RaySink(world, camera, nullptr, pixel, image).add_opacity(world.medium, profile);
   add_light_of_air(input, camera, profile, pixel, image);
   return medium;
 }
@@ -147,15 +146,14 @@ void shade_emission(const EstimatorInput& input, const World& world, const Camer
     return;
   ++emission_rays;
   const auto cutoff = static_cast<float>(input.settings.cutoff);
-  const VolumeLights volumes(input.layers, pixel, image);
+  const RaySink sink(world, camera, input.layers, pixel, image);
   std::vector<Rgb> of_emitters;
   const Rgb emission = emission_along(world.medium, camera.segment, profile, cutoff,
-                                      volumes ? &of_emitters : nullptr);
+                                      sink.sorts_by_volume() ? &of_emitters : nullptr);
   image.add(&PassImage::emission, pixel, {emission, world.lights.group_of_emission()});
   for (std::size_t i = 0; i < of_emitters.size(); ++i)
-    volumes.add(world.medium.emitters[i].setting, of_emitters[i]);
-  if (const DeepRay deep(world, camera, pixel, image); deep)
-    deep.add_emission(world.medium, camera.segment, profile, cutoff);
+    sink.add_of_volume(world.medium.emitters[i].setting, of_emitters[i]);
+  sink.add_emission(world.medium, camera.segment, profile, cutoff);
 }
 
 } // namespace vdbeam

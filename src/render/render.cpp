@@ -126,6 +126,40 @@ EstimatorType type_of_passes(const Scene& scene, const EstimatorChoice& choice) 
   return choice.type == EstimatorType::path ? choice.type : scene.render.estimator;
 }
 
+/// Takes notes for the user: in the result, and to whoever hears them.
+struct Notes {
+  RenderResult& result;
+  const RenderHooks& hooks;
+
+  void add(const std::string& line) const {
+    result.notes.push_back(line);
+    if (hooks.on_note)
+      hooks.on_note(line);
+  }
+  void add(const std::vector<std::string>& lines) const {
+    for (const std::string& line : lines)
+      add(line);
+  }
+};
+
+/// Makes the choices of the first pass, whose pilot does not count as part of it, and describes
+/// them in the plan of the result.
+void describe_first_pass(const EstimatorInput& input, EstimatorType type, const PassRenderer& first,
+                         const Notes& notes) {
+  RenderPlan& plan = notes.result.plan;
+  describe_choices(input, type, first.choices(), plan);
+  if (type == EstimatorType::gather && !first.choices().gather)
+    notes.add("render.estimator = \"gather\" gathers along camera rays here: " +
+              reason_of(final_gather_feature, plan));
+}
+
+/// Describes the finished image.
+void describe_image(const Scene& scene, const Sight& sight, const Notes& notes) {
+  notes.result.picture = picture_facts(notes.result.image, sight);
+  if (!scene.lights.empty() || scene.glows()) // the scene's own note says that there is no light
+    notes.add(picture_notes(notes.result.picture));
+}
+
 } // namespace
 
 RenderPlan choose_plan(const Scene& scene) {
@@ -155,13 +189,8 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                             static_cast<std::size_t>(thread_count(scene.render)));
   RenderResult result;
-  const auto note = [&](const std::string& line) {
-    result.notes.push_back(line);
-    if (hooks.on_note)
-      hooks.on_note(line);
-  };
-  for (const std::string& line : prepared->facts.notes)
-    note(line);
+  const Notes notes{result, hooks};
+  notes.add(prepared->facts.notes);
   add_work(result.statistics, *prepared);
   if (hooks.on_step)
     hooks.on_step(RenderStep::prepare, 0);
@@ -183,7 +212,7 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
   EstimatorChoice choice = choose_for_frame(scene, setup, result.plan, result.statistics);
   const bool path = choice.type == EstimatorType::path;
   if (path && !choice.reason.empty())
-    note(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
+    notes.add(fmt::format("render.estimator = \"auto\" takes path: {}", choice.reason));
   const EstimatorInput& input = path ? path_input : setup.input;
   const EstimatorType type = type_of_passes(scene, choice);
   Shutter shutter(scene, type, prepared, input, setup.path_plan, loop.probe_pixels());
@@ -193,27 +222,17 @@ RenderResult render(const Scene& scene, const PreparedScenePtr& prepared,
     else
       shutter.follow({choice.photons->choices(), setup.world().space}, result.statistics);
   }
-  for (const std::string& line : limit_notes(scene, input))
-    note(line);
+  notes.add(limit_notes(scene, input));
   const Sight sight = look_through(setup.world(), setup.camera, window);
-  for (const std::string& line : sight_notes(scene, setup.world(), setup.camera, sight))
-    note(line);
+  notes.add(sight_notes(scene, setup.world(), setup.camera, sight));
   try {
-    // The pilot of the first pass does not count as part of it.
-    const PassRenderer& passes = shutter.at(loop.next_pass(), result.statistics).passes;
-    describe_choices(input, type, passes.choices(), result.plan);
-    if (scene.render.estimator == EstimatorType::gather && !passes.choices().gather)
-      note("render.estimator = \"gather\" gathers along camera rays here: " +
-           reason_of(final_gather_feature, result.plan));
+    describe_first_pass(input, type, shutter.at(loop.next_pass(), result.statistics).passes, notes);
   } catch (const Stopped&) { // the loop finds out why
   }
   loop.run(shutter, path_input);
   if (result.quick_look || result.draft > 0 || frame.pass_range || result.image.channels.empty())
     return result;
-  result.picture = picture_facts(result.image, sight);
-  if (!scene.lights.empty() || scene.glows()) // the scene's own note says that there is no light
-    for (const std::string& line : picture_notes(result.picture))
-      note(line);
+  describe_image(scene, sight, notes);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "shading/tile_shading.h"
 
+#include "shading/peak_light.h"
 #include "shading/shaft_effort.h"
 #include "shading/surface_fit.h"
 
@@ -15,99 +16,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Where on the ray the peak scatters light last that comes along it from behind: at the distance t
-/// the light is `radiance` times 1 - exp(-excess(t)) in all so far.
-void add_light_of_the_peak(const World& world, const DepthProfile& profile, const Rgb& radiance,
-                           const DeepRay& deep) {
-  ProfileCursor cursor(profile);
-  Rgb before;
-  for (std::size_t i = 0; i < deep.count(); ++i) {
-    cursor.move_to(std::min(deep.end(i), profile.back()));
-    Rgb after, light;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      after += world.medium.peak->excess[profile.volume(v)] * cursor.tau(v);
-    for (int c = 0; c < 3; ++c)
-      light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(after[c] - before[c]);
-    deep.add_light(i, light);
-    before = after;
-  }
-}
-
-/// The same, by the volumes that scatter it.
-void add_light_of_the_peak(const World& world, const DepthProfile& profile, const Rgb& radiance,
-                           const VolumeLights& volumes) {
-  const std::vector<Rgb>& excess = world.medium.peak->excess;
-  Rgb before;
-  for (std::size_t knot = 1; knot < profile.knots(); ++knot) {
-    Rgb after;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      after += excess[profile.volume(v)] * profile.tau(knot, v);
-    for (std::size_t v = 0; v < profile.volume_count(); ++v) {
-      const Rgb own = excess[profile.volume(v)] * (profile.tau(knot, v) - profile.tau(knot - 1, v));
-      Rgb light;
-      for (int c = 0; c < 3; ++c)
-        if (const float all = after[c] - before[c]; all > 0)
-          light[c] = radiance[c] * std::exp(-before[c]) * opacity_of(all) * own[c] / all;
-      volumes.add(world.medium.volumes[profile.volume(v)].setting, light);
-    }
-    before = after;
-  }
-}
-
-/// What the air lets through of light that the peak scatters for the last time: mean over the ray.
-Rgb air_before_peak(const World& world, const DepthProfile& profile) {
-  Rgb before, sum, left;
-  for (std::size_t knot = 1; profile.air() && knot < profile.knots(); ++knot) {
-    Rgb after;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      after += world.medium.peak->excess[profile.volume(v)] * profile.tau(knot, v);
-    const Rgb air = profile.air().left(0.5f * (profile.t(knot - 1) + profile.t(knot)));
-    for (int c = 0; c < 3; ++c) {
-      const float light = std::exp(-before[c]) * opacity_of(after[c] - before[c]);
-      sum[c] += light;
-      left[c] += air[c] * light;
-    }
-    before = after;
-  }
-  for (int c = 0; c < 3; ++c)
-    left[c] = sum[c] > 0 ? left[c] / sum[c] : 1;
-  return left;
-}
-
-/// Light of surfaces and of surrounding lights that only the peak of the phase function scattered
-/// on its way along the ray: what the medium without its peak lets through beyond what the scene's
-/// own does. Lights with shadow rays have theirs from these.
-GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray,
-                               const SeenSurface& surface, const std::vector<bool>& sampled_lights,
-                               const RaySink& sink) {
-  GroupedLight radiance;
-  if (!world.medium.peak || ray.profile.empty())
-    return radiance;
-  radiance = surface.radiance - surface.lamp;
-  radiance *= air_to_end(ray.camera).left;
-  const Rgb air = air_before_peak(world, ray.profile);
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    if (!sampled_lights[i])
-      radiance.add(world.lights[i].emitted_radiance(ray.camera.whole()).radiance * air,
-                   world.lights.group(i));
-  const std::size_t last = ray.profile.knots() - 1;
-  const Rgb tau = ray.profile.channels(world.medium, last);
-  Rgb excess;
-  for (std::size_t v = 0; v < ray.profile.volume_count(); ++v)
-    excess += world.medium.peak->excess[ray.profile.volume(v)] * ray.profile.tau(last, v);
-  Rgb through, scattered;
-  for (int c = 0; c < 3; ++c) {
-    through[c] = radiance.sum()[c] * std::exp(-tau[c]);
-    scattered[c] = std::exp(-tau[c]) * opacity_of(excess[c]);
-  }
-  radiance *= scattered;
-  if (sink.deep)
-    add_light_of_the_peak(world, ray.profile, through, sink.deep);
-  if (sink.volumes)
-    add_light_of_the_peak(world, ray.profile, through, sink.volumes);
-  return radiance;
-}
 
 /// What the rays of a tile see, row by row.
 class TileEdges {
@@ -183,57 +91,6 @@ std::array<bool, TileRays::count> uneven_pixels(const EstimatorInput& input, con
   return uneven;
 }
 
-/// The surfaces at the ends of a tile's rays, matt ones by more samples where they are noisy.
-void see_surfaces(const EstimatorInput& input, const SurfaceShading& surfaces, const RngKey& key,
-                  int pass, TileScratch& scratch) {
-  const auto for_rays = [&](const auto& work) {
-    for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
-      if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside)
-        work(ray, static_cast<std::size_t>(i));
-  };
-  scratch.seen.fill({});
-  for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
-    scratch.seen[i] = surfaces.seen(ray.camera, key, ray.stream, scratch.statistics);
-  });
-  const auto more = more_samples(input.world.medium, scratch.rays, scratch.seen, pass);
-  for_rays([&](const TileRays::PixelRay& ray, std::size_t i) {
-    if (scratch.seen[i].surface >= 0)
-      surfaces.matt().add(ray.camera, more[i], key, ray.stream, scratch.seen[i]);
-  });
-}
-
-/// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
-void refine_edges(const EstimatorInput& input, const PhotonPass& photons,
-                  const SurfaceShading* surfaces, SurfaceFit* fit, const RngKey& key,
-                  TileScratch& scratch, PassImage& image) {
-  const World& world = photons.world();
-  for (int i = 0; i < TileRays::count && !input.stopped(); ++i) {
-    if (!scratch.uneven[static_cast<std::size_t>(i)])
-      continue;
-    const std::size_t pixel = scratch.rays[i].pixel;
-    OpacityAndDepth& medium = scratch.medium[static_cast<std::size_t>(i)];
-    int rays = 1;
-    scratch.rays.refine(input.in(world), key, i);
-    for (const TileRays::PixelRay& ray : scratch.rays.more(i)) {
-      const SeenSurface surface =
-          surfaces ? surfaces->seen(ray.camera, key, ray.stream, scratch.statistics)
-                   : SeenSurface();
-      if (fit)
-        fit->add(pixel, surface,
-                 transmittance(world.medium, ray.profile) * air_to_end(ray.camera).left, rays++);
-      const OpacityAndDepth seen =
-          shade_ray(input, photons, ray, key, {pixel, image, scratch.statistics}, surface,
-                    scratch.effort[static_cast<std::size_t>(i)] / TileRays::rays_if_refined);
-      medium.opacity += seen.opacity;
-      medium.depth += seen.depth;
-    }
-    constexpr float weight = 1.0f / TileRays::rays_if_refined;
-    image.scale_pixel(pixel, weight);
-    medium = {medium.opacity * weight, medium.depth * weight};
-    scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
-  }
-}
-
 } // namespace
 
 OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons,
@@ -254,7 +111,8 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
   const PhotonPlan& plan = photons.plan();
   const RaySink sink(world, ray.camera, input.layers, target.pixel, image);
   const auto [samples, weight] = direct_samples(plan, ray, effort, rng);
-  GroupedLight light = light_of_the_peak(world, ray, surface, plan.sampled_lights, sink);
+  GroupedLight light =
+      light_of_the_peak(world, ray, surface.radiance - surface.lamp, plan.sampled_lights, sink);
   if (samples > 0)
     light += direct_light(world, ray.camera.ray(), ray.profile,
                           {plan.sampled_lights, samples, &photons.shadows(), input.stop, weight},
@@ -268,69 +126,154 @@ SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& 
   return {input, photons.world(), on_surfaces ? &photons.surface_map() : nullptr};
 }
 
-void shade_tiles(const EstimatorInput& task, const PhotonPass& photons, int pass,
-                 const TileGather& tiles, PassImage& image, RenderStatistics& statistics) {
-  const World& world = photons.world(); // of the map: rays that gather share its medium
-  EstimatorInput input = task;
-  std::optional<SurfaceFit> fit;
-  if (world.surfaces) {
-    input.window = widened(wanted(task), SurfaceFit::reach, task.camera);
-    fit.emplace(input, pass);
+namespace {
+
+/// The camera's side of one pass, tile by tile.
+class TileShader {
+public:
+  TileShader(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec,
+             const TileGather& tiles, PassImage& image)
+      : input_(input), photons_(photons), world_(photons.world()), spec_(spec), tiles_(tiles),
+        image_(image), key_{input.settings.seed, input.frame,
+                            static_cast<std::uint64_t>(spec.pass)},
+        lighting_(surface_lighting(input, photons)) {
+    if (!world_.surfaces)
+      return;
+    input_.window = widened(wanted(input), SurfaceFit::reach, input.camera);
+    fit_.emplace(input_, spec.pass);
+    surfaces_.emplace(input_, photons, lighting_, tiles.gather_along);
   }
-  input.resize(image);
-  const RngKey key{input.settings.seed, input.frame, static_cast<std::uint64_t>(pass)};
-  std::optional<SurfaceShading> surfaces;
-  const SurfaceLighting lighting = surface_lighting(input, photons);
-  if (world.surfaces)
-    surfaces.emplace(input, photons, lighting, tiles.gather_along);
-  tbb::enumerable_thread_specific<TileScratch> scratches;
-  for_each_tile(input, image, [&](int x0, int y0, int, int) {
-    TileScratch& scratch = scratches.local();
+
+  void shade(RenderStatistics& statistics) {
+    input_.resize(image_);
+    tbb::enumerable_thread_specific<TileScratch> scratches;
+    for_each_tile(input_, image_,
+                  [&](int x0, int y0, int, int) { shade_tile(x0, y0, scratches.local()); });
+    RenderStatistics sums;
+    for (const TileScratch& scratch : scratches)
+      sums += scratch.statistics;
+    // Stage seconds are processor seconds of the tiles, shared out over the threads that worked.
+    const double threads = static_cast<double>(std::max<std::size_t>(1, scratches.size()));
+    for (double* seconds : {&sums.profile, &sums.direct, &sums.query})
+      *seconds /= threads;
+    statistics += sums;
+    statistics.camera_rays += static_cast<std::uint64_t>(image_.width) * image_.height;
+  }
+  /// Replaces the light of surfaces by what is fitted over pixels.
+  void fit_surfaces(const PixelRegion& window) {
+    if (fit_ && !input_.stopped())
+      fit_->apply(window, image_, tiles_.blur);
+  }
+
+private:
+  template <class Work>
+  void for_rays(const TileScratch& scratch, const Work& work) const {
+    for (int i = 0; i < TileRays::count && !input_.stopped(); ++i)
+      if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside)
+        work(ray, static_cast<std::size_t>(i));
+  }
+
+  void shade_tile(int x0, int y0, TileScratch& scratch) {
     Stopwatch watch;
-    scratch.rays.prepare(input.in(world), key, x0, y0);
+    scratch.rays.prepare(input_.in(world_), key_, x0, y0);
     scratch.statistics.profile += watch.restart();
     const bool shows_surface = scratch.rays.show_surface();
-    if (surfaces)
-      see_surfaces(input, *surfaces, key, pass, scratch);
     scratch.effort.fill(1);
-    if (world.surfaces && photons.plan().chooses_direct_samples)
-      scratch.effort =
-          shaft_effort(world, photons.plan().sampled_lights, scratch.rays, scratch.seen, key);
-    for (int i = 0; i < TileRays::count && !input.stopped(); ++i)
-      if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
-        const SeenSurface& surface = scratch.seen[static_cast<std::size_t>(i)];
-        if (fit) {
-          const Rgb tr = transmittance(world.medium, ray.profile);
-          fit->set(ray.pixel, surface, ray.camera.air ? tr * air_to_end(ray.camera).left : tr);
-          if (shows_surface)
-            scratch.ends[static_cast<std::size_t>(i)] = {
-                mean_component(light_of_end(world, ray, surface, tr)), ray.camera.hit.has_value()};
-        }
-        scratch.medium[static_cast<std::size_t>(i)] =
-            shade_ray(input, photons, ray, key, {ray.pixel, image, scratch.statistics}, surface,
-                      scratch.effort[static_cast<std::size_t>(i)]);
-      }
-    if (tiles.refine_medium || shows_surface) {
-      scratch.uneven = uneven_pixels(input, world, scratch, tiles.refine_medium, shows_surface);
-      refine_edges(input, photons, surfaces ? &*surfaces : nullptr, fit ? &*fit : nullptr, key,
-                   scratch, image);
+    if (surfaces_)
+      see_surfaces(scratch);
+    for_rays(scratch, [&](const TileRays::PixelRay& ray, std::size_t i) {
+      const SeenSurface& surface = scratch.seen[i];
+      if (fit_)
+        set_surface(ray, surface, shows_surface ? &scratch.ends[i] : nullptr);
+      scratch.medium[i] =
+          shade_ray(input_, photons_, ray, key_, {ray.pixel, image_, scratch.statistics}, surface,
+                    scratch.effort[i]);
+    });
+    if (tiles_.refine_medium || shows_surface) {
+      scratch.uneven = uneven_pixels(input_, world_, scratch, tiles_.refine_medium, shows_surface);
+      refine_edges(scratch);
     }
     scratch.statistics.direct += watch.restart();
-    if (photons.map().size() > 0 && !input.stopped())
-      tiles.gather(scratch, key);
+    if (photons_.map().size() > 0 && !input_.stopped())
+      tiles_.gather(scratch, key_);
     scratch.statistics.query += watch.seconds();
-  });
-  if (fit && !input.stopped())
-    fit->apply(wanted(task), image, tiles.blur);
-  RenderStatistics sums;
-  for (const TileScratch& scratch : scratches)
-    sums += scratch.statistics;
-  // Stage seconds are processor seconds of the tiles, shared out over the threads that worked.
-  const double threads = static_cast<double>(std::max<std::size_t>(1, scratches.size()));
-  for (double* seconds : {&sums.profile, &sums.direct, &sums.query})
-    *seconds /= threads;
-  statistics += sums;
-  statistics.camera_rays += static_cast<std::uint64_t>(image.width) * image.height;
+  }
+
+  /// The surfaces at the ends of a tile's rays, matt ones by more samples where they are noisy, and
+  /// the effort on shafts of light before them.
+  void see_surfaces(TileScratch& scratch) const {
+    scratch.seen.fill({});
+    for_rays(scratch, [&](const TileRays::PixelRay& ray, std::size_t i) {
+      scratch.seen[i] = surfaces_->seen(ray.camera, key_, ray.stream, scratch.statistics);
+    });
+    const auto more = more_samples(input_.world.medium, scratch.rays, scratch.seen, spec_.pass);
+    for_rays(scratch, [&](const TileRays::PixelRay& ray, std::size_t i) {
+      if (scratch.seen[i].surface >= 0)
+        surfaces_->matt().add(ray.camera, more[i], key_, ray.stream, scratch.seen[i]);
+    });
+    if (photons_.plan().chooses_direct_samples)
+      scratch.effort =
+          shaft_effort(world_, photons_.plan().sampled_lights, scratch.rays, scratch.seen, key_);
+  }
+
+  /// Gives the fit what a ray sees of a surface, and `end`, unless it is null, the light there.
+  void set_surface(const TileRays::PixelRay& ray, const SeenSurface& surface, EndOfRay* end) {
+    const Rgb tr = transmittance(world_.medium, ray.profile);
+    fit_->set(ray.pixel, surface, ray.camera.air ? tr * air_to_end(ray.camera).left : tr);
+    if (end)
+      *end = {mean_component(light_of_end(world_, ray, surface, tr)), ray.camera.hit.has_value()};
+  }
+
+  /// Gives the tile's uneven pixels, which one ray each has shaded, the mean over several.
+  void refine_edges(TileScratch& scratch) {
+    for_rays(scratch, [&](const TileRays::PixelRay& own, std::size_t i) {
+      if (!scratch.uneven[i])
+        return;
+      const std::size_t pixel = own.pixel;
+      OpacityAndDepth& medium = scratch.medium[i];
+      int rays = 1;
+      const int index = static_cast<int>(i);
+      scratch.rays.refine(input_.in(world_), key_, index);
+      for (const TileRays::PixelRay& ray : scratch.rays.more(index)) {
+        const SeenSurface surface =
+            surfaces_ ? surfaces_->seen(ray.camera, key_, ray.stream, scratch.statistics)
+                      : SeenSurface();
+        if (fit_)
+          fit_->add(pixel, surface,
+                    transmittance(world_.medium, ray.profile) * air_to_end(ray.camera).left,
+                    rays++);
+        const OpacityAndDepth seen =
+            shade_ray(input_, photons_, ray, key_, {pixel, image_, scratch.statistics}, surface,
+                      scratch.effort[i] / TileRays::rays_if_refined);
+        medium.opacity += seen.opacity;
+        medium.depth += seen.depth;
+      }
+      constexpr float weight = 1.0f / TileRays::rays_if_refined;
+      image_.scale_pixel(pixel, weight);
+      medium = {medium.opacity * weight, medium.depth * weight};
+      scratch.statistics.camera_rays += TileRays::rays_if_refined - 1;
+    });
+  }
+
+  EstimatorInput input_;
+  const PhotonPass& photons_;
+  const World& world_; ///< of the map: rays that gather share its medium
+  const PassSpec& spec_;
+  const TileGather& tiles_;
+  PassImage& image_;
+  RngKey key_;
+  SurfaceLighting lighting_;
+  std::optional<SurfaceFit> fit_; ///< only among surfaces
+  std::optional<SurfaceShading> surfaces_;
+};
+
+} // namespace
+
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec,
+                 const TileGather& tiles, PassImage& image, RenderStatistics& statistics) {
+  TileShader shader(input, photons, spec, tiles, image);
+  shader.shade(statistics);
+  shader.fit_surfaces(wanted(input));
 }
 
 } // namespace vdbeam

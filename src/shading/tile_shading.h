@@ -7,6 +7,8 @@
 #include "shading/matt_effort.h"
 #include "shading/surface_shading.h"
 
+#include "vdbeam/pass_spec.h"
+
 namespace vdbeam {
 
 class BlurProbe;
@@ -56,7 +58,7 @@ SurfaceLighting surface_lighting(const EstimatorInput& input, const PhotonPass& 
 
 /// The camera side of a pass that gathers photons: rays and depth profiles tile by tile, direct
 /// light, what is seen through the medium, and the stage times.
-void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, int pass,
+void shade_tiles(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec,
                  const TileGather& tiles, PassImage& image, RenderStatistics& statistics);
 
 } // namespace vdbeam

@@ -1,22 +1,19 @@
 #pragma once
 
-#include "medium/flight.h"
-#include "transport/surfaces.h"
+#include "transport/scene_flight.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
 namespace vdbeam {
 
 /// A light path under way. Its throughput is flux.
-struct LightPath : Flight {
-  using Flight::Flight;
+struct LightPath : SceneFlight {
+  using SceneFlight::SceneFlight;
 
   std::size_t light = 0;
   std::uint32_t number = 0; ///< within the pass
   // Among surfaces:
-  std::optional<SurfaceHit> end; ///< of the present flight
   bool met_surface = false;
   bool by_mirrors = true;    ///< surfaces that it met were specular
   bool for_surfaces = false; ///< stored at surfaces: of surface_photon_lights
@@ -24,7 +21,6 @@ struct LightPath : Flight {
   /// from their light, over `flux_unit`; empty: surfaces do not aim it.
   std::span<const float> fair_fluxes;
   float flux_unit = 1;
-  SurfaceRoulette surfaces;
 
   /// The path's flux over that of paths from its light to a target.
   float relative_flux(std::size_t target) const {

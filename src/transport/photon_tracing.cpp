@@ -125,13 +125,8 @@ private:
     const Vec3f direction = path.sample_direction(phase);
     if (aimed && aimed->first_of(direction) < aimed->size())
       return false;
-    begin_flight(path, Vec3d(point), direction);
+    path.set_out(world_, Vec3d(point), direction);
     return advance_flight(path, *this);
-  }
-
-  /// Begins a flight, which ends at the first surface.
-  void begin_flight(LightPath& path, const Vec3d& origin, const Vec3f& direction) const {
-    path.start(world_.medium, flight_segment(world_, origin, direction, path.end));
   }
 
   /// False where the path ends at the surface.
@@ -153,7 +148,7 @@ private:
       return false;
     path.met_surface = true;
     path.by_mirrors = path.by_mirrors && vertex.material().is_specular();
-    begin_flight(path, vertex.hit().leave(next.wi), next.wi);
+    path.set_out(world_, vertex.hit().leave(next.wi), next.wi);
     return true;
   }
 
@@ -212,7 +207,7 @@ private:
         copy.throughput *= phase.evaluate(dot(travel, wi)) * solid_angle;
         if (!(max_component(copy.throughput) > 0))
           return;
-        begin_flight(copy, Vec3d(point), wi);
+        copy.set_out(world_, Vec3d(point), wi);
         if (advance_flight(copy, *this))
           split_.push_back(std::move(copy));
       });
@@ -241,7 +236,7 @@ private:
       return;
     copy.met_surface = true;
     copy.by_mirrors = copy.by_mirrors && vertex.material().is_specular();
-    begin_flight(copy, vertex.hit().leave(wi), wi);
+    copy.set_out(world_, vertex.hit().leave(wi), wi);
     if (advance_flight(copy, *this))
       split_.push_back(std::move(copy));
   }
@@ -284,8 +279,8 @@ private:
     path->number = static_cast<std::uint32_t>(number);
     path->fair_fluxes = photon.fluxes_to_medium;
     path->flux_unit = static_cast<float>(light_paths);
-    begin_flight(*path, beginning_of_flight(world_, world_.lights[light], photon),
-                 photon.ray.direction);
+    path->set_out(world_, beginning_of_flight(world_, world_.lights[light], photon),
+                  photon.ray.direction);
     if (!advance_flight(*path, *this))
       path.reset();
   }

@@ -1,6 +1,5 @@
 #include "walks/path_walk.h"
 
-#include "medium/emission.h"
 #include "transport/next_event.h"
 #include "tuning/constants.h"
 
@@ -118,8 +117,7 @@ void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
 /// Begins a flight, which ends at the first surface.
 void WalkTracer::set_out(PathWalk& walk, const Vec3d& origin, const Vec3f& direction) const {
   walk.scatters = false;
-  walk.gathered = 0;
-  walk.start(world_.medium, flight_segment(world_, origin, direction, walk.end));
+  walk.CameraWalk::set_out(world_, origin, direction);
 }
 
 /// Begins a flight from the walk's collision, one of those of the walk and its branches.
@@ -154,42 +152,24 @@ bool WalkTracer::outlives_roulette(PathWalk& walk) const {
 
 /// The flight has left the medium; it may end at a surface.
 bool WalkTracer::leave(PathWalk& walk) const {
-  const float t_end = walk.end ? static_cast<float>(walk.end->t) : infinity;
-  if (meets_light_)
-    gather_light(walk, walk.segment.t_end, t_end);
-  else
-    walk.add(lights_met(walk, {walk.segment.ray, 0, t_end}));
+  gather_light(walk, walk.segment.t_end, walk.end ? static_cast<float>(walk.end->t) : infinity);
   return walk.end && meet_surface(walk);
 }
 
-/// Light that the flight meets, from where it was gathered last: the medium's own up to medium_end,
-/// and that of the lights up to t_end.
 void WalkTracer::gather_light(PathWalk& walk, float medium_end, float t_end) const {
-  const Ray& ray = walk.segment.ray;
-  if (!world_.medium.emitters.empty() && walk.gathered < medium_end)
-    walk.add(sample_emission(world_.medium, {ray, walk.gathered, medium_end}, walk.rng) *
-                 walk.throughput,
-             world_.lights.group_of_emission());
-  if (world_.lights.any_extent() || t_end == infinity)
-    walk.add(lights_met(walk, {ray, walk.gathered, t_end}));
-  walk.gathered = t_end;
+  walk.add(meet_light(world_, walk, medium_end, t_end,
+                      [&](std::size_t light) { return weight_of_met(walk, light); }));
 }
 
-/// The lights that the flight meets within the segment, but for surfaces, weighted against
-/// next-event estimation.
-GroupedLight WalkTracer::lights_met(const PathWalk& walk, const Segment& segment) const {
-  const Ray& ray = segment.ray;
-  GroupedLight sum;
-  for (std::size_t i = 0; i < world_.lights.size() && !walk.in_plate; ++i) {
-    const Light& light = world_.lights[i];
-    if (light.is_delta() || light.surface() >= 0 || (shadow_rays_[i] && walk.leaves_out(light)))
-      continue;
-    float weight = 1;
-    if (shadow_rays_[i] && walk.density > 0)
-      weight = walk.density / (walk.density + light.incident_pdf(ray.origin, ray.direction));
-    sum.add(light.emitted_radiance(segment).radiance * weight, world_.lights.group(i));
-  }
-  return sum * walk.throughput;
+/// Weight of a light that the flight meets against next-event estimation.
+float WalkTracer::weight_of_met(const PathWalk& walk, std::size_t i) const {
+  const Light& light = world_.lights[i];
+  if (walk.in_plate || (shadow_rays_[i] && walk.leaves_out(light)))
+    return 0;
+  if (!shadow_rays_[i] || !(walk.density > 0))
+    return 1;
+  const Ray& ray = walk.segment.ray;
+  return walk.density / (walk.density + light.incident_pdf(ray.origin, ray.direction));
 }
 
 } // namespace vdbeam

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "math/grouped_light.h"
-#include "medium/flight.h"
 #include "medium/optical_depth.h"
 #include "transport/world.h"
 #include "tuning/constants.h"
+#include "walks/camera_walk.h"
 #include "walks/lamp_shells.h"
 #include "walks/light_branches.h"
 
@@ -14,8 +14,8 @@ namespace vdbeam {
 
 /// The state of a path from the camera on: it is at a tentative collision of its flight or, while
 /// there is one, of its shadow ray.
-struct PathWalk : Flight {
-  using Flight::Flight;
+struct PathWalk : CameraWalk {
+  using CameraWalk::CameraWalk;
 
   std::size_t target = 0; ///< pixel of the image to which its light is added
   std::size_t piece = 0;  ///< of the pixel's deep layout in which it began
@@ -28,8 +28,6 @@ struct PathWalk : Flight {
   /// Density of flights in this one's direction, branches among them [1/sr]; 0: nothing else draws
   /// it.
   float density = 0;
-  float gathered = 0; ///< distance of the flight up to which light that it meets was added
-  std::optional<SurfaceHit> end; ///< of the present flight
   /// Light so far that the medium scattered once at most, and more often.
   GroupedLight direct, indirect;
   std::optional<RatioTracking> shadow;
@@ -44,7 +42,6 @@ struct PathWalk : Flight {
   /// It has met nothing but shadow catchers: the light of the plate's lights is in the plate.
   bool in_plate = false;
 
-  SurfaceRoulette surfaces;
   float refraction = 1; ///< factor of the throughput that is no loss: roulette looks beyond it
 
   bool leaves_out(const Light& source) const {
@@ -68,12 +65,12 @@ struct ReflectedLight {
 
 /// Unbiased path tracing in media and among surfaces, a collision at a time: flights by delta
 /// tracking end at surfaces, which scatter by their materials; next-event estimation at every
-/// vertex that is not specular (sample_direct_light), through the medium by ratio tracking, combined
-/// with the directions drawn by multiple importance sampling; Russian roulette. The medium's own
-/// emission is added along every flight up to its end (track-length estimator). Walks branch
-/// towards narrow lights where phase functions have a sharp peak (LightBranches). Light of point
-/// lights, or of a parallel sun, that only mirrors or glass bring to a point is not found: no path
-/// meets them.
+/// vertex that is not specular (sample_direct_light), through the medium by ratio tracking,
+/// combined with the directions drawn by multiple importance sampling; Russian roulette. The
+/// medium's own emission is added along every flight up to its end (track-length estimator). Walks
+/// branch towards narrow lights where phase functions have a sharp peak (LightBranches). Light of
+/// point lights, or of a parallel sun, that only mirrors or glass bring to a point is not found: no
+/// path meets them.
 class WalkTracer {
 public:
   /// `shadow_rays`: per light, whether next-event estimation samples it. `max_bounces`: scattering
@@ -145,7 +142,7 @@ private:
   bool outlives_roulette(PathWalk& walk) const;
   float flight_density(const PathWalk& walk, const Vec3f& direction) const;
   void gather_light(PathWalk& walk, float medium_end, float t_end) const;
-  GroupedLight lights_met(const PathWalk& walk, const Segment& segment) const;
+  float weight_of_met(const PathWalk& walk, std::size_t light) const;
 
   const World& world_;
   std::vector<bool> shadow_rays_;

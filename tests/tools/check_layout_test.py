@@ -1,6 +1,7 @@
 """The source tree keeps its rules, and the check of the rules can fail."""
 import pathlib
 import sys
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -75,6 +76,39 @@ class Checker(unittest.TestCase):
         self.refuses("src/math/a.cpp", "// TO" "DO: later\n", "unfinished")
         self.refuses("src/math/a.h", "int a;\n", "pragma once")
         self.accepts("src/math/a-inl.h", "int a;\n")
+
+    def test_length_of_functions(self):
+        def function(lines, indent=""):
+            return f"{indent}int f(int a) {{\n" + f"{indent}  g();\n" * (lines - 2) + f"{indent}}}\n"
+        self.accepts("src/math/a.cpp", function(60) + function(60))
+        self.refuses("src/math/a.cpp", function(2) + function(61), "function of 61 lines")
+        method = "class A {\n" + function(61, "  ") + "};\n"
+        self.refuses("src/math/a.cpp", method, "function of 61 lines")
+        self.accepts("src/keys/a.cpp", function(61))
+        self.accepts("src/math/a.cpp", "constexpr Row rows[] = {\n" + "    {f(1), 2},\n" * 80 + "};\n")
+
+    def test_parameters_of_functions(self):
+        def function(count):
+            return "int f(" + ",\n      ".join(["std::map<int, int> a = {1, 2}"] * count) + ") const {\n}\n"
+        self.accepts("src/math/a.cpp", function(7))
+        self.refuses("src/math/a.cpp", function(8), "function of 8 parameters")
+        self.accepts("src/math/a.cpp", "int f() {\n  for (int i = 0; i < g(1, 2, 3, 4, 5, 6, 7, 8);\n       ++i) {\n  }\n}\n")
+
+    def test_number_of_files(self):
+        def fill(folder, count):
+            folder.mkdir(parents=True)
+            for number in range(count):
+                (folder / f"{number}.cpp").touch()
+
+        with tempfile.TemporaryDirectory() as name:
+            root = pathlib.Path(name)
+            fill(root / "src/math", 41)
+            fill(root / "src/rays", 21)
+            fill(root / "src/estimators/beam", 15)
+            fill(root / "src/estimators/path", 16)
+            self.assertEqual(list(check_layout.check_folders(root)),
+                             ["src/math:1: 41 files, the limit is 40", "src/rays:1: 21 files, the limit is 20",
+                              "src/estimators:1: 31 files in all, the limit is 30"])
 
 
 if __name__ == "__main__":

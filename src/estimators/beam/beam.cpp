@@ -37,9 +37,11 @@ void BeamEstimator::gather(TileScratch& scratch, PassImage& image) const {
   for (int i = 0; i < TileRays::count; ++i)
     if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside) {
       scratch.statistics.lookups += ray.profile.empty() ? 0 : 1;
-      image.indirect[ray.pixel] = light_of(tile.radiance, i, map.channels());
+      std::vector<Rgb> groups;
       for (std::size_t g = 0; g < image.groups.size() && tile.by_group; ++g)
-        image.groups[g][ray.pixel] += light_of(tile.group_radiance, i, map.channels(), g);
+        groups.push_back(light_of(tile.group_radiance, i, map.channels(), g));
+      image.add(&PassImage::indirect, ray.pixel,
+                {light_of(tile.radiance, i, map.channels()), groups});
       if (map.has_first_flights())
         image.move_to_direct(ray.pixel, light_of(tile.first_flight, i, map.channels()));
     }
@@ -63,8 +65,7 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
     return beam_radiance(photons_, photons_.map(), weights, ray, profile);
   };
-  shade_tiles(input_, photons_, spec.pass, {false, gather_tile, gather_along, &blur}, image,
-              statistics);
+  shade_tiles(input_, photons_, spec, {false, gather_tile, gather_along, &blur}, image, statistics);
   image.blur = blur.take();
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
@@ -89,8 +90,8 @@ void BeamEstimator::gather_volumes(TileScratch& scratch, PassImage& image) const
     photons_.map().query(scratch.tile);
     for (int i = 0; i < TileRays::count; ++i)
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside)
-        VolumeLights(input_.layers, ray.pixel, image)
-            .add(setting, light_of(light, i, photons_.map().channels()));
+        RaySink(input_.layers, ray.pixel, image)
+            .add_of_volume(setting, light_of(light, i, photons_.map().channels()));
   }
 }
 

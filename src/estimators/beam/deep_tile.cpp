@@ -1,6 +1,6 @@
 #include "estimators/beam/deep_tile.h"
 
-#include "layers/deep_ray.h"
+#include "layers/ray_sink.h"
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ float hat_before(float x) {
 
 /// A pixel's ray, with the edges of its pieces in knots of its sub-tile's table.
 struct CutRay {
-  DeepRay deep;
+  RaySink sink;
   double shift = 0;
 
   float knot(float t, const BeamTile::Profile& profile) const {
@@ -32,8 +32,8 @@ struct CutRay {
 void copy_weights(const CutRay& ray, std::size_t piece, const BeamTile::Profile& profile,
                   std::size_t rows, const std::vector<float>& whole, int lane,
                   std::vector<float>& part) {
-  const float begin = ray.knot(ray.deep.begin(piece), profile);
-  const float end = ray.knot(ray.deep.end(piece), profile);
+  const float begin = ray.knot(ray.sink.begin(piece), profile);
+  const float end = ray.knot(ray.sink.end(piece), profile);
   const float last = static_cast<float>(profile.knots - 1);
   const int first = static_cast<int>(std::clamp(std::floor(begin - 1), 0.0f, last));
   const int final = static_cast<int>(std::clamp(std::ceil(end + 1), 0.0f, last));
@@ -63,8 +63,8 @@ void gather_pieces(const World& world, const PhotonMap& map, const TileRays& ray
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
     if (!ray.inside || ray.profile.empty())
       continue;
-    cut[i] = {DeepRay(world, ray.camera, ray.pixel, image), tile.shift[i]};
-    pieces = std::max(pieces, cut[i].deep ? cut[i].deep.count() : 0);
+    cut[i] = {RaySink(world, ray.camera, nullptr, ray.pixel, image), tile.shift[i]};
+    pieces = std::max(pieces, cut[i].sink.pieces());
   }
   const std::vector<float> whole = tile.weights;
   const int channels = map.channels();
@@ -75,18 +75,18 @@ void gather_pieces(const World& world, const PhotonMap& map, const TileRays& ray
       tile.choose_part(part);
       for (std::size_t i = 0; i < cut.size(); ++i) {
         const BeamTile::Profile& profile = tile.profiles[i / BeamTile::rays_per_subtile];
-        if (cut[i].deep && piece < cut[i].deep.count() && profile.knots > 0)
+        if (piece < cut[i].sink.pieces() && profile.knots > 0)
           copy_weights(cut[i], piece, profile, tile.rows(), whole,
                        static_cast<int>(i % BeamTile::rays_per_subtile), tile.weights);
       }
     }
     map.query(tile);
     for (std::size_t i = 0; i < cut.size(); ++i) {
-      if (!cut[i].deep || piece >= cut[i].deep.count())
+      if (piece >= cut[i].sink.pieces())
         continue;
       const auto value = [&](std::size_t c) { return tile.radiance[c * cut.size() + i]; };
-      cut[i].deep.add_light(piece,
-                            channels == 1 ? Rgb(value(0)) : Rgb(value(0), value(1), value(2)));
+      cut[i].sink.add_to_piece(piece,
+                               channels == 1 ? Rgb(value(0)) : Rgb(value(0), value(1), value(2)));
     }
   }
 }

@@ -2,8 +2,6 @@
 
 #include "math/sampling.h"
 #include "medium/distance_sampling.h"
-#include "medium/emission.h"
-#include "medium/flight.h"
 #include "medium/optical_depth.h"
 #include "transport/next_event.h"
 #include "tuning/constants.h"
@@ -13,17 +11,14 @@
 namespace vdbeam {
 
 /// A walk on its way. Light that travels against its flight counts `throughput` times.
-struct FinalGather::Walk : Flight {
+struct FinalGather::Walk : CameraWalk {
   Walk(const Rng& numbers, const Rgb& weight, RenderStatistics& counts_)
-      : Flight(numbers, weight), counts(counts_) {}
+      : CameraWalk(numbers, weight), counts(counts_) {}
 
   RenderStatistics& counts;
   Vec3f beginning;
   int scatterings = 1;
-  float gathered = 0; ///< distance of the flight up to which light that it meets was added
-  std::optional<SurfaceHit> end; ///< of the present flight
-  bool mirrored = false;         ///< it begins at a mirror or glass
-  SurfaceRoulette surfaces;
+  bool mirrored = false; ///< the present flight begins at a mirror or glass
   GatheredLight found;
 
   /// Light that comes along the present flight.
@@ -115,21 +110,20 @@ void FinalGather::follow(Walk& walk) const {
 /// Begins a flight, which ends at the first surface, and adds the light of lamps that it passes.
 void FinalGather::set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
                           bool mirrored) const {
-  walk.gathered = 0;
   walk.mirrored = mirrored;
-  walk.start(world_.medium, flight_segment(world_, origin, direction, walk.end));
+  walk.CameraWalk::set_out(world_, origin, direction);
   if (shells_.any())
     walk.found.indirect += shells_.along(walk.segment, walk.rng) * walk.throughput;
 }
 
 void FinalGather::meet(Walk& walk, const Collision& hit) const {
   if (meets_light_)
-    meet_light(walk, hit.t);
+    gather_light(walk, hit.t, hit.t);
 }
 
 /// The flight leaves the medium, and with it the walk ends unless a mirror or glass sends it on.
 bool FinalGather::leave(Walk& walk) const {
-  meet_light(walk, walk.end ? static_cast<float>(walk.end->t) : walk.segment.t_end);
+  gather_light(walk, walk.segment.t_end, walk.end ? static_cast<float>(walk.end->t) : infinity);
   return walk.end && meet_surface(walk);
 }
 
@@ -164,18 +158,9 @@ bool FinalGather::finds(const Walk& walk, std::size_t light) const {
   return walk.mirrored ? !world_.lights[light].narrow_direction() : !plan_.sampled_lights[light];
 }
 
-/// Light that the flight meets from where it was gathered last: the medium's own, and that of
-/// lights.
-void FinalGather::meet_light(Walk& walk, float end) const {
-  const Segment piece{walk.segment.ray, walk.gathered, end};
-  GroupedLight light;
-  if (!world_.medium.emitters.empty())
-    light.add(sample_emission(world_.medium, piece, walk.rng), world_.lights.group_of_emission());
-  for (std::size_t l = 0; l < world_.lights.size(); ++l)
-    if (finds(walk, l) && !world_.lights[l].is_delta() && world_.lights[l].surface() < 0)
-      light.add(world_.lights[l].emitted_radiance(piece).radiance, world_.lights.group(l));
-  walk.add(light * walk.throughput);
-  walk.gathered = end;
+void FinalGather::gather_light(Walk& walk, float medium_end, float t_end) const {
+  walk.add(meet_light(world_, walk, medium_end, t_end,
+                      [&](std::size_t light) { return finds(walk, light) ? 1.0f : 0.0f; }));
 }
 
 /// The light of the surface at which the flight ends. At a mirror or glass the walk goes on.

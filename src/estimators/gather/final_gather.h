@@ -58,7 +58,7 @@ private:
   void set_out(Walk& walk, const Vec3d& origin, const Vec3f& direction,
                bool mirrored = false) const;
   bool finds(const Walk& walk, std::size_t light) const;
-  void meet_light(Walk& walk, float end) const;
+  void gather_light(Walk& walk, float medium_end, float t_end) const;
   bool meet_surface(Walk& walk) const;
   void send_shadow_rays(Walk& walk, const PhaseFunction& phase) const;
   void gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const;

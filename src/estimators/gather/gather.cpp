@@ -20,7 +20,7 @@ void GatherEstimator::render(const PassSpec& spec, PassImage& image, RenderStati
   const auto gather_along = [&](const CameraRay& ray, const DepthProfile& profile, Rng&) {
     return beam_radiance(photons_, photons_.map(), weights, ray, profile);
   };
-  shade_tiles(walks.input(), photons_, spec.pass, {true, gather, gather_along, &blur}, image,
+  shade_tiles(walks.input(), photons_, spec, {true, gather, gather_along, &blur}, image,
               statistics);
   walks.fit(blur, image);
   image.blur = blur.take();

@@ -78,8 +78,7 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
       const GatheredLight light =
           (probe ? twice : gather)
               .gather(from.camera.ray(), from.profile, walks, ray_weight, rng, scratch.statistics,
-                      {DeepRay(world, from.camera, from.pixel, image),
-                       VolumeLights(wide_.layers, from.pixel, walked_)});
+                      RaySink(world, from.camera, wide_.layers, from.pixel, image, walked_));
       sum.direct += light.direct;
       sum.indirect += light.indirect;
       sum.blur += light.blur;
@@ -105,17 +104,18 @@ void GatherPass::add_caustics(const TileRays::PixelRay& ray, float weight, PassI
       beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile);
   image.add(&PassImage::direct, ray.pixel, light *= weight);
   add_by_opacity(light.sum(), ray.pixel, image);
-  const VolumeLights volumes(wide_.layers, ray.pixel, image);
+  const RaySink sink(wide_.layers, ray.pixel, image);
   const Medium& medium = photons_.world().medium;
-  std::vector<std::uint8_t> only(volumes ? medium.volumes.size() : 0);
+  std::vector<std::uint8_t> only(sink.sorts_by_volume() ? medium.volumes.size() : 0);
   weights.only = &only;
   for (std::size_t v = 0; v < only.size(); ++v) {
     only.assign(only.size(), 0);
     only[v] = 1;
-    volumes.add(medium.volumes[v].setting, beam_radiance(photons_, photons_.caustics_along_rays(),
-                                                         weights, ray.camera, ray.profile)
-                                                   .sum() *
-                                               weight);
+    sink.add_of_volume(
+        medium.volumes[v].setting,
+        beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile)
+                .sum() *
+            weight);
   }
 }
 

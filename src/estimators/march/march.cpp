@@ -50,12 +50,12 @@ public:
         ++counts.lookups;
         find_shares(before, after, camera.ray().at(t));
         air_ = profile.air().left(t);
-        const Rgb light = weigh(before, after, step, gathered_.data(), sink.volumes);
+        const Rgb light = weigh(before, after, step, gathered_.data(), sink);
         std::vector<Rgb> parts;
         for (std::size_t g = 0; g < groups_.size(); g += gathered_.size())
           parts.push_back(weigh(before, after, step, groups_.data() + g));
         sum += {light, parts};
-        sink.deep.add_light_at(t, light);
+        sink.add_at(t, light);
         if (photons_.map().has_first_flights())
           straight += weigh(before, after, step, straight_.data());
       }
@@ -119,7 +119,7 @@ private:
   }
 
   Rgb weigh(const std::vector<float>& before, const std::vector<float>& after, float step,
-            const Rgb* gathered, const VolumeLights& of_volumes = {}) const {
+            const Rgb* gathered, const RaySink& sink = {}) const {
     const std::size_t volumes = profile_->volume_count();
     Rgb tau, piece;
     for (std::size_t v = 0; v < volumes; ++v) {
@@ -134,10 +134,10 @@ private:
       for (std::size_t v = 0; v < volumes; ++v) {
         const float light = whole * shares_[v][c] * gathered[group(v)][c];
         sum[c] += light;
-        if (of_volumes) {
+        if (sink.sorts_by_volume()) {
           Rgb of_channel;
           of_channel[c] = light;
-          of_volumes.add(volume(v).setting, of_channel);
+          sink.add_of_volume(volume(v).setting, of_channel);
         }
       }
     }
@@ -186,7 +186,7 @@ void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatis
     Rgb straight;
     return RayMarcher(input_.settings, photons_).march(ray, profile, rng, counts, straight);
   };
-  shade_tiles(input_, photons_, spec.pass, {false, gather, gather_along}, image, statistics);
+  shade_tiles(input_, photons_, spec, {false, gather, gather_along}, image, statistics);
   image.truncation = truncation(photons_.world().medium);
   photons_.release();
 }

@@ -38,11 +38,10 @@ void PathEstimator::begin_walk(const RayTask& ray, const ScatterPoint& point, fl
     return;
   const auto& [volume, throughput] = *chosen;
   const PhaseFunction& phase = medium.phases[medium.volumes[volume].phase_index];
-  const DeepRay deep(input_.world, ray.camera, ray.target, image);
   scratch.walks.push_back(tracer_.start(
       ray.target, walk_rng, {point.position, ray.camera.ray().direction}, throughput, phase));
   PathWalk& walk = scratch.walks.back();
-  walk.piece = deep ? deep.piece(point.t) : 0;
+  walk.piece = RaySink(input_.world, ray.camera, nullptr, ray.target, image).piece_at(point.t);
   walk.volume = medium.volumes[volume].setting;
   walk.share = share;
 }
@@ -145,16 +144,6 @@ void PathEstimator::render_pixel(const RngKey& key, std::size_t pixel, Scratch& 
   take_turns(scratch, walks_under_way, image);
 }
 
-/// The light of a walk that has ended, at the depth where it began.
-void PathEstimator::add_deep_light(const PathWalk& walk, PassImage& image) {
-  if (image.deep_layout->count(walk.target) == 0)
-    return;
-  float* values = &image.deep[(image.deep_layout->first[walk.target] + walk.piece) *
-                              DeepLayout::values_per_piece];
-  for (int c = 0; c < 3; ++c)
-    values[c] += (walk.direct.sum()[c] + walk.indirect.sum()[c]) * walk.share;
-}
-
 /// Lets the walks take turns until no more than `most` are under way. Walks of several pixels:
 /// while one waits for its voxels to come from memory, others compute.
 void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& image) const {
@@ -170,10 +159,10 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
         ++i;
         continue;
       }
-      VolumeLights(input_.layers, walk.target, image)
-          .add(walk.volume, (walk.direct.sum() + walk.indirect.sum()) * walk.share);
-      if (image.deep_layout)
-        add_deep_light(walk, image);
+      const RaySink sink(input_.layers, walk.target, image);
+      const Rgb light = (walk.direct.sum() + walk.indirect.sum()) * walk.share;
+      sink.add_of_volume(walk.volume, light);
+      sink.add_to_piece(walk.piece, light);
       image.add(&PassImage::direct, walk.target, walk.direct *= walk.share);
       image.add(&PassImage::indirect, walk.target, walk.indirect *= walk.share);
       if (&walk != &walks.back())

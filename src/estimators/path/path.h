@@ -43,7 +43,6 @@ private:
   SeenSurface seen_catcher(const RayTask& ray, Rng& rng) const;
   void scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
   void send_walks(const RayTask& ray, Rng& rng, Scratch& scratch, PassImage& image) const;
-  static void add_deep_light(const PathWalk& walk, PassImage& image);
   void take_turns(Scratch& scratch, std::size_t most, PassImage& image) const;
 
   /// What a pilot measures.
