@@ -114,25 +114,11 @@ std::string features_text(const std::vector<FeatureChoice>& features) {
   return text;
 }
 
-} // namespace
-
-void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result,
-                        const std::string& hash) {
-  for (const auto& [name, version] : component_versions())
-    if (name == "vdbeam")
-      image.metadata["software"] = "vdbeam " + version;
-  std::error_code error; // where there is no working folder, the path stays as it was written
-  const std::filesystem::path absolute = std::filesystem::absolute(scene.path, error);
-  image.metadata["vdbeam:scene"] = error ? scene.path : absolute.lexically_normal().string();
-  image.metadata["vdbeam:sceneHash"] = hash;
-  image.metadata["vdbeam:estimator"] = std::string(
-      result.plan.estimator.empty() ? scene.render.estimator.name : result.plan.estimator);
-  if (!result.plan.features.empty())
-    image.metadata["vdbeam:features"] = features_text(result.plan.features);
-  image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
+/// How the scene wants its image to be written.
+void add_format(Image& image, const Scene& scene, bool in_a_hurry) {
   if (!scene.layers.empty())
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);
-  if (result.quick_look || result.draft > 0) // is packed in no time, for its time is over
+  if (in_a_hurry)
     image.metadata["vdbeam:compression"] = enum_name(Compression::rle);
   else if (scene.image.compression != Compression::zip)
     image.metadata["vdbeam:compression"] = enum_name(scene.image.compression);
@@ -148,7 +134,11 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   }
   for (const auto& [name, text] : parse_attributes(scene.image.attributes))
     image.metadata[name] = text;
-  image.numbers["vdbeam:frame"] = scene.frame.number;
+}
+
+/// How far the image got, and what it took.
+void add_progress(Image& image, const Scene& scene, const RenderResult& result) {
+  image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   if (result.quick_look) {
     image.metadata["vdbeam:quickLook"] = "no pass was finished";
     image.numbers["vdbeam:passes"] = 0;
@@ -158,7 +148,6 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.integers.insert("vdbeam:draft");
   } else if (result.stopped_by != "stop")
     image.numbers["vdbeam:complete"] = 1; // what --skip-existing looks for
-  image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   if (!result.passes.empty()) {
     const PassRecord& last = result.passes.back();
     image.numbers["vdbeam:passes"] = last.pass;
@@ -177,11 +166,10 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.integers.insert("vdbeam:deepSamples");
   }
   image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
-  for (const char* name : {"vdbeam:frame", "vdbeam:complete", "vdbeam:seed", "vdbeam:passes",
-                           "vdbeam:photonsStored", "vdbeam:clampedPixels"})
-    if (image.numbers.contains(name))
-      image.integers.insert(name);
-  add_time(image, scene);
+}
+
+/// Where the camera stands and what it shows, for compositing.
+void add_camera(Image& image, const Scene& scene) {
   const ViewWindow window = view_window(scene.camera, scene.image);
   if (scene.camera.projection == Projection::perspective)
     image.numbers["vdbeam:cameraFov"] =
@@ -195,6 +183,34 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.matrices["worldToCamera"] = flatten(view);
   if (scene.camera.projection != Projection::panorama)
     image.matrices["worldToNDC"] = flatten(product(view, camera_to_ndc(scene.camera, scene.image)));
+}
+
+} // namespace
+
+void add_image_metadata(Image& image, const Scene& scene, const RenderResult& result,
+                        const std::string& hash) {
+  for (const auto& [name, version] : component_versions())
+    if (name == "vdbeam")
+      image.metadata["software"] = "vdbeam " + version;
+  std::error_code error; // where there is no working folder, the path stays as it was written
+  const std::filesystem::path absolute = std::filesystem::absolute(scene.path, error);
+  image.metadata["vdbeam:scene"] = error ? scene.path : absolute.lexically_normal().string();
+  image.metadata["vdbeam:sceneHash"] = hash;
+  image.metadata["vdbeam:estimator"] = std::string(
+      result.plan.estimator.empty() ? scene.render.estimator.name : result.plan.estimator);
+  if (!result.plan.features.empty())
+    image.metadata["vdbeam:features"] = features_text(result.plan.features);
+  image.numbers["vdbeam:frame"] = scene.frame.number;
+  image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
+  // A draft and a quick look are packed in no time, for their time is over.
+  add_format(image, scene, result.quick_look || result.draft > 0);
+  add_progress(image, scene, result);
+  for (const char* name : {"vdbeam:frame", "vdbeam:complete", "vdbeam:seed", "vdbeam:passes",
+                           "vdbeam:photonsStored", "vdbeam:clampedPixels"})
+    if (image.numbers.contains(name))
+      image.integers.insert(name);
+  add_time(image, scene);
+  add_camera(image, scene);
 }
 
 } // namespace vdbeam

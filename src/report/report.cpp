@@ -142,6 +142,35 @@ Json plan_json(const RenderPlan& plan) {
             {"deep", plan.deep_bytes}}}};
 }
 
+namespace {
+
+Json counts_json(const RenderStatistics& statistics) {
+  return {{"light_paths", statistics.light_paths},
+          {"light_collisions", statistics.light_collisions},
+          {"photons_stored", statistics.photons_stored},
+          {"contributions", statistics.contributions},
+          {"lookups", statistics.lookups},
+          {"camera_rays", statistics.camera_rays},
+          {"depth_profiles", statistics.depth_profiles},
+          {"shadow_rays", statistics.shadow_rays},
+          {"emission_rays", statistics.emission_rays},
+          {"camera_walks", statistics.camera_walks},
+          {"walk_collisions", statistics.walk_collisions},
+          {"gather_walks", statistics.gather_walks},
+          {"bias_rays", statistics.bias_rays},
+          {"neighbourhoods", statistics.neighbourhoods},
+          {"importance_rays", statistics.importance_rays},
+          {"pilot_paths", statistics.pilot_paths},
+          {"directions", statistics.directions},
+          {"maps_reused", statistics.maps_reused},
+          {"grids_read", statistics.grids_read},
+          {"meshes_read", statistics.meshes_read},
+          {"textures_read", statistics.textures_read},
+          {"trees_built", statistics.trees_built}};
+}
+
+} // namespace
+
 Json report_json(const Scene& scene, const RenderResult& result, const ReportContext& context) {
   const RenderStatistics& statistics = result.statistics;
   Json report;
@@ -167,28 +196,7 @@ Json report_json(const Scene& scene, const RenderResult& result, const ReportCon
   report["peak_memory"] = statistics.peak_memory;
   report["bytes_per_photon"] = statistics.bytes_per_photon;
   report["neighbours"] = statistics.neighbours;
-  report["counts"] = {{"light_paths", statistics.light_paths},
-                      {"light_collisions", statistics.light_collisions},
-                      {"photons_stored", statistics.photons_stored},
-                      {"contributions", statistics.contributions},
-                      {"lookups", statistics.lookups},
-                      {"camera_rays", statistics.camera_rays},
-                      {"depth_profiles", statistics.depth_profiles},
-                      {"shadow_rays", statistics.shadow_rays},
-                      {"emission_rays", statistics.emission_rays},
-                      {"camera_walks", statistics.camera_walks},
-                      {"walk_collisions", statistics.walk_collisions},
-                      {"gather_walks", statistics.gather_walks},
-                      {"bias_rays", statistics.bias_rays},
-                      {"neighbourhoods", statistics.neighbourhoods},
-                      {"importance_rays", statistics.importance_rays},
-                      {"pilot_paths", statistics.pilot_paths},
-                      {"directions", statistics.directions},
-                      {"maps_reused", statistics.maps_reused},
-                      {"grids_read", statistics.grids_read},
-                      {"meshes_read", statistics.meshes_read},
-                      {"textures_read", statistics.textures_read},
-                      {"trees_built", statistics.trees_built}};
+  report["counts"] = counts_json(statistics);
   if (scene.render.clamp) {
     Json& clamp = report["clamp"];
     clamp["limit"] = *scene.render.clamp;
