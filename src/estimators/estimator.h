@@ -1,5 +1,6 @@
 #pragma once
 
+#include "photons/photon_pass.h"
 #include "rays/estimator_input.h"
 #include "vdbeam/pass_spec.h"
 
@@ -15,6 +16,17 @@ public:
   /// asked to end meanwhile, only `image.finished_tiles` hold what the pass is to be, or it throws
   /// Stopped.
   virtual void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) = 0;
+};
+
+/// One that gathers photons. `photons` must outlive it.
+class PhotonEstimator : public Estimator {
+public:
+  PhotonEstimator(const EstimatorInput& input, PhotonPass& photons)
+      : input_(input), photons_(photons) {}
+
+protected:
+  EstimatorInput input_;
+  PhotonPass& photons_;
 };
 
 } // namespace vdbeam

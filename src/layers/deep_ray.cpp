@@ -6,6 +6,17 @@
 
 namespace vdbeam {
 
+void DeepRay::add_by_opacity(const Rgb& light) const {
+  const auto opacity = [&](std::size_t i) {
+    return (*deep_)[(first_ + i) * DeepLayout::values_per_piece + 3];
+  };
+  float all = 0;
+  for (std::size_t i = 0; i < count_; ++i)
+    all += opacity(i);
+  for (std::size_t i = 0; i < count_ && all > 0; ++i)
+    add_light(i, light * (opacity(i) / all));
+}
+
 void DeepRay::add_opacity(const Medium& medium, const DepthProfile& profile) const {
   if (!deep_ || profile.empty())
     return;
@@ -13,9 +24,7 @@ void DeepRay::add_opacity(const Medium& medium, const DepthProfile& profile) con
   Rgb before; // optical depth where the piece begins
   for (std::size_t i = 0; i < count_; ++i) {
     cursor.move_to(std::min(end(i), profile.back()));
-    Rgb after;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      after += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
+    const Rgb after = cursor.channels(medium);
     float opacity = 0;
     for (int c = 0; c < 3; ++c) // no difference of transmittances, which would lose digits
       opacity += std::exp(-before[c]) * opacity_of(after[c] - before[c]);

@@ -50,6 +50,8 @@ public:
     if (deep_)
       add_light(piece(t), light);
   }
+  /// Light whose place is not known: as the opacity of the pieces.
+  void add_by_opacity(const Rgb& light) const;
   /// Opacity, from the profile of all of the medium, which may be empty.
   void add_opacity(const Medium& medium, const DepthProfile& profile) const;
   /// Light that the medium itself sends out.

@@ -34,7 +34,7 @@ public:
     Rgb plate_left; ///< the share of the plate's light that arrives there
     Rgb added;      ///< its radiance by light that the plate does not have
   };
-  /// Radiance of the ray without the light of volumes.
+  /// Adds the values of a ray to the planes, but for the light of volumes (RaySink).
   void record(const World& world, const CameraRay& camera, const DepthProfile& profile,
               const Seen& seen, std::size_t pixel, PassImage& image) const;
 

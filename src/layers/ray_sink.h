@@ -5,10 +5,9 @@
 
 namespace vdbeam {
 
-/// Sorts what a ray of a pixel brings by its place, beside the sum that PassImage::add takes: into
-/// the pieces of the deep pixel, by how deep it was scattered, and into the layers of volumes, by
-/// which of them scattered it. All that is sorted by place is written here; without a deep image
-/// and layers it does nothing.
+/// Writes the light that a ray of a pixel brings: its sums, and those of groups of lights; the
+/// pieces of the deep pixel, by how deep it was scattered; and the layers of volumes, by which of
+/// them scattered it. Sums are added once for all that is sorted by place.
 class RaySink {
 public:
   RaySink() = default;
@@ -19,14 +18,19 @@ public:
   /// Pieces of one image, layers of another.
   RaySink(const World& world, const CameraRay& camera, const RayLayers* layers, std::size_t pixel,
           PassImage& of_pieces, PassImage& of_layers)
-      : deep_(world, camera, pixel, of_pieces), volumes_(layers, pixel, of_layers) {}
+      : deep_(world, camera, pixel, of_pieces), volumes_(layers, pixel, of_layers),
+        image_(&of_layers), pixel_(pixel) {}
   /// For light whose piece is known.
   RaySink(const RayLayers* layers, std::size_t pixel, PassImage& image)
-      : deep_(pixel, image), volumes_(layers, pixel, image) {}
+      : deep_(pixel, image), volumes_(layers, pixel, image), image_(&image), pixel_(pixel) {}
 
   bool sorts_by_depth() const { return static_cast<bool>(deep_); }
   bool sorts_by_volume() const { return static_cast<bool>(volumes_); }
 
+  /// Adds light to one of the sums of the pixel, and the parts of groups to theirs.
+  void add_sum(std::vector<Rgb> PassImage::*sum, const GroupedLight& light) const {
+    image_->add(sum, pixel_, light);
+  }
   /// Light that volume `setting` of the scene scatters into the ray at the distance t.
   void add(float t, std::size_t setting, const Rgb& light) const {
     deep_.add_light_at(t, light);
@@ -47,6 +51,11 @@ public:
     if (deep_)
       deep_.add_light(piece, light);
   }
+  /// Spreads light over the pieces as their opacity is spread.
+  void add_by_opacity(const Rgb& light) const {
+    if (deep_)
+      deep_.add_by_opacity(light);
+  }
 
   /// Opacity, from the profile of all of the medium, which may be empty.
   void add_opacity(const Medium& medium, const DepthProfile& profile) const {
@@ -63,6 +72,8 @@ public:
 private:
   DeepRay deep_;
   VolumeLights volumes_;
+  PassImage* image_ = nullptr;
+  std::size_t pixel_ = 0;
 };
 
 } // namespace vdbeam

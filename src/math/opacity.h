@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vdbeam/vec.h"
+
 #include <cmath>
 
 namespace vdbeam {
@@ -13,6 +15,11 @@ inline float opacity_of(float tau) {
                                    (1 - tau * (1.0f / 4) *
                                             (1 - tau * (1.0f / 5) * (1 - tau * (1.0f / 6))))));
   return 1 - std::exp(-tau);
+}
+
+/// exp(-tau) of each channel.
+inline Rgb transmittance_of(const Rgb& tau) {
+  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
 } // namespace vdbeam

@@ -42,9 +42,25 @@ public:
   float opacity() const { return empty() ? 0 : opacity_of(total(knots() - 1)); }
   /// Per-channel optical depth at a knot.
   Rgb channels(const Medium& medium, std::size_t knot) const {
+    return channels_of(medium, [&](std::size_t v) { return tau(knot, v); });
+  }
+  /// Per-channel optical depth at a knot of what the peak took out of the medium, which has one.
+  Rgb taken_out(const Medium& medium, std::size_t knot) const {
+    return taken_out_of(medium, [&](std::size_t v) { return tau(knot, v); });
+  }
+  /// The same for optical depths tau(v) of the volumes of the profile.
+  template <class Tau>
+  Rgb channels_of(const Medium& medium, const Tau& tau) const {
     Rgb sum;
     for (std::size_t v = 0; v < volumes_; ++v)
-      sum += medium.volumes[met_[v]].channel_scale * tau(knot, v);
+      sum += medium.volumes[met_[v]].channel_scale * tau(v);
+    return sum;
+  }
+  template <class Tau>
+  Rgb taken_out_of(const Medium& medium, const Tau& tau) const {
+    Rgb sum;
+    for (std::size_t v = 0; v < volumes_; ++v)
+      sum += medium.peak->excess[met_[v]] * tau(v);
     return sum;
   }
   /// The same ray in a medium whose volumes have `factors` times the extinction, by their numbers
@@ -89,6 +105,14 @@ public:
   float tau(std::size_t v = 0) const {
     const float a = profile_->tau(knot_, v);
     return a + fraction_ * (profile_->tau(knot_ + 1, v) - a);
+  }
+  /// The same per channel, of all volumes.
+  Rgb channels(const Medium& medium) const {
+    return profile_->channels_of(medium, [this](std::size_t v) { return tau(v); });
+  }
+  /// And of what the peak took out of the medium, which has one.
+  Rgb taken_out(const Medium& medium) const {
+    return profile_->taken_out_of(medium, [this](std::size_t v) { return tau(v); });
   }
   /// Goes to distance t, not less than before; outside the profile its ends hold.
   void move_to(float t) {

@@ -1,5 +1,6 @@
 #include "medium/optical_depth.h"
 
+#include "math/opacity.h"
 namespace vdbeam {
 
 LayeredSegment::LayeredSegment(const Volume& volume, const Segment& segment)
@@ -52,10 +53,6 @@ Rgb optical_depth(const Medium& medium, const Segment& segment, float limit, flo
       *taken_out += medium.peak->excess[v] * sum;
   });
   return tau;
-}
-
-Rgb transmittance_of(const Rgb& tau) {
-  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
 } // namespace

@@ -77,9 +77,7 @@ void ShadowLattice::trace_column(const Medium& medium, int column) {
   ProfileCursor cursor(profile);
   for (int z = 0; z < counts_.z; ++z) {
     cursor.move_to(to_edge_ + static_cast<float>(z) * spacing_.z);
-    Rgb tau;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
+    const Rgb tau = cursor.channels(medium);
     depths[z] = std::min(std::min(tau.x, tau.y), std::min(tau.z, opaque_optical_depth));
   }
 }

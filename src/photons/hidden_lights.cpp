@@ -4,6 +4,7 @@
 #include "medium/equi_angular.h"
 #include "photons/photon_plan.h"
 #include "transport/camera_ray.h"
+#include "transport/next_event.h"
 
 #include <tbb/parallel_for.h>
 
@@ -83,10 +84,7 @@ private:
   }
 
   bool sees(std::size_t light, const Vec3f& point, Rng& rng) const {
-    const float u = rng.uniform(), v = rng.uniform();
-    const IncidentSample sample = world_.lights[light].sample_incident(point, u, v);
-    return max_component(sample.value) > 0 &&
-           unoccluded(world_, Vec3d(point), sample.wi, sample.distance);
+    return sample_direct_light(world_, world_.lights[light], AnyVertex{point}, rng).has_value();
   }
 
   const EstimatorInput& input_;

@@ -42,9 +42,7 @@ void mark_cells(const Medium& medium, std::size_t volume, const Rgb& hidden, flo
   ProfileCursor cursor(profile);
   for (; !walk.done(); walk.advance()) {
     cursor.move_to(walk.t());
-    Rgb tau = hidden;
-    for (std::size_t v = 0; v < profile.volume_count(); ++v)
-      tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
+    const Rgb tau = hidden + cursor.channels(medium);
     const Vec3<int>& cell = walk.cell();
     raise(table[field.cell_offset(cell.x, cell.y, cell.z)],
           weight * std::exp(-std::min(tau.x, std::min(tau.y, tau.z))));

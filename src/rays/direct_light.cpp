@@ -187,14 +187,14 @@ private:
       piece.weight += least * piece.opacity;
   }
 
-  /// Light of one of the samples, which adds so much to the deep picture.
+  /// Adds the light of one of the samples to the deep image, and returns it.
   const Rgb& take_down(const ScatterPoint& point, const Rgb& light) {
     sink_.add_at(point.t, light * share_);
     return light;
   }
 
-  /// Times a factor. Balance heuristic (Veach and Guibas 1995): the point's weights hold
-  /// 1 / point.pdf already.
+  /// Radiance that one light scatters into the ray at the point, times `factor`. Balance heuristic
+  /// (Veach and Guibas 1995): the point's weights hold 1 / point.pdf already.
   Rgb scattered(const ScatterPoint& point, std::size_t light, float factor,
                 float certain_depth = tuning::certain_depth) {
     const Medium& medium = world_.medium;
@@ -261,12 +261,8 @@ private:
     const PeakTakenOut& peak = *medium.peak;
     ProfileCursor cursor(profile_);
     cursor.move_to(t);
-    Rgb through;
-    for (std::size_t v = 0; v < profile_.volume_count(); ++v)
-      through += peak.excess[profile_.volume(v)] * cursor.tau(v);
-    for (int c = 0; c < 3; ++c)
-      through[c] = std::exp(-through[c]);
-    return {peak.original[i], &peak.gathered[i], &peak.aureoles[i], peak.forward[i], through};
+    return {peak.original[i], &peak.gathered[i], &peak.aureoles[i], peak.forward[i],
+            transmittance_of(cursor.taken_out(medium))};
   }
 
   const World& world_;

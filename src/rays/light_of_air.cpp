@@ -76,7 +76,7 @@ void add_light_of_air(const EstimatorInput& input, const CameraRay& camera,
     sum += stretch.finish(sink);
     begin = profile.t(knot);
   }
-  image.add(&PassImage::direct, pixel, {sum, world.lights.group(world.air_light)});
+  sink.add_sum(&PassImage::direct, {sum, world.lights.group(world.air_light)});
 }
 
 } // namespace vdbeam

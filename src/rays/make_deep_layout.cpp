@@ -68,9 +68,7 @@ private:
     for (Knot& knot : knots_) {
       cursor.move_to(
           static_cast<float>(knot.distance * input_.world.space.scale - cameras_[ray].shift));
-      Rgb tau;
-      for (std::size_t v = 0; v < profile.volume_count(); ++v)
-        tau += input_.world.medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
+      const Rgb tau = cursor.channels(input_.world.medium);
       double opacity = 0;
       for (int c = 0; c < 3; ++c)
         opacity -= std::expm1(-static_cast<double>(tau[c]));

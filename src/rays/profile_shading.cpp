@@ -15,10 +15,7 @@ Rgb transmittance_to(const Medium& medium, const DepthProfile& profile, float t)
     return Rgb(1);
   ProfileCursor cursor(profile);
   cursor.move_to(t);
-  Rgb tau;
-  for (std::size_t v = 0; v < profile.volume_count(); ++v)
-    tau += medium.volumes[profile.volume(v)].channel_scale * cursor.tau(v);
-  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+  return transmittance_of(cursor.channels(medium));
 }
 
 /// A surface is opaque, but for one that stands for what is composited later. Of a shadow catcher
@@ -97,7 +94,7 @@ Rgb transmittance(const Medium& medium, const DepthProfile& profile) {
   if (profile.empty())
     return Rgb(1);
   const Rgb tau = profile.channels(medium, profile.knots() - 1);
-  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+  return transmittance_of(tau);
 }
 
 OpacityAndDepth opacity_and_depth(const World& world, const CameraRay& camera,
@@ -124,7 +121,8 @@ OpacityAndDepth shade_profile(const EstimatorInput& input, const CameraRay& came
     background += surface_through_air(world, camera, surface) * tr;
     end_at_surface(world, camera, surface.caught.mean, seen);
   }
-  image.add(&PassImage::background, pixel, background);
+  const RaySink sink(world, camera, input.layers, pixel, image);
+  sink.add_sum(&PassImage::background, background);
   image.opacity[pixel] += seen.opacity;
   image.depth[pixel] += seen.depth;
   if (!image.coverage.empty())
@@ -134,7 +132,7 @@ OpacityAndDepth shade_profile(const EstimatorInput& input, const CameraRay& came
                          {tr, seen.depth, surface.caught.mean, surface.caught.left,
                           camera.air ? surface.added * air_to_end(camera).left : surface.added},
                          pixel, image);
-  RaySink(world, camera, nullptr, pixel, image).add_opacity(world.medium, profile);
+  sink.add_opacity(world.medium, profile);
   add_light_of_air(input, camera, profile, pixel, image);
   return medium;
 }
@@ -150,7 +148,7 @@ void shade_emission(const EstimatorInput& input, const World& world, const Camer
   std::vector<Rgb> of_emitters;
   const Rgb emission = emission_along(world.medium, camera.segment, profile, cutoff,
                                       sink.sorts_by_volume() ? &of_emitters : nullptr);
-  image.add(&PassImage::emission, pixel, {emission, world.lights.group_of_emission()});
+  sink.add_sum(&PassImage::emission, {emission, world.lights.group_of_emission()});
   for (std::size_t i = 0; i < of_emitters.size(); ++i)
     sink.add_of_volume(world.medium.emitters[i].setting, of_emitters[i]);
   sink.add_emission(world.medium, camera.segment, profile, cutoff);

@@ -7,7 +7,7 @@
 
 namespace vdbeam {
 
-/// Light that is scattered once into rays, as two points along each find it behind surfaces or not:
+/// Light that is scattered once into rays, and whether two points on each ray are lit:
 /// where a ray crosses shafts of light, chance decides whether a shadow ray is lit, and that is
 /// most of the noise of single scattering.
 struct ShaftLight {

@@ -15,8 +15,8 @@ namespace vdbeam {
 /// scene in an order that spreads any number of passes over the shutter (van der Corput's
 /// sequence, shifted by the seed), a pure function of the pass' number. Where the camera alone
 /// moves all passes share one world; else worlds are built when they are first needed, and kept as
-/// far as memory goes. What `beam` plans about its photons at the scene's own moment serves all of
-/// them: to find it out at each would take longer than a pass.
+/// far as memory goes. What is chosen at the scene's own moment serves all of them: pilots at
+/// each would take longer than a pass.
 class Shutter {
 public:
   /// The renderer of a pass, valid until the next call of `at`.

@@ -6,15 +6,6 @@ namespace vdbeam {
 
 namespace {
 
-/// The optical depth of what was taken out of the medium, from the beginning of a ray to a knot of
-/// its profile.
-Rgb taken_out_before(const World& world, const DepthProfile& profile, std::size_t knot) {
-  Rgb sum;
-  for (std::size_t v = 0; v < profile.volume_count(); ++v)
-    sum += world.medium.peak->excess[profile.volume(v)] * profile.tau(knot, v);
-  return sum;
-}
-
 /// The share of light from behind that the peak scatters for the last time between two of its
 /// optical depths.
 Rgb scattered_last(const Rgb& before, const Rgb& after) {
@@ -39,10 +30,8 @@ void sort_light(const World& world, const DepthProfile& profile, const Rgb& radi
     else
       ++knot;
     cursor.move_to(end);
-    Rgb after;
-    for (std::size_t v = 0; v < taken_out.size(); ++v)
-      after += world.medium.peak->excess[profile.volume(v)] * cursor.tau(v);
-    const Rgb light = radiance * scattered_last(before, after);
+    const Rgb after = cursor.taken_out(world.medium),
+              light = radiance * scattered_last(before, after);
     for (std::size_t v = 0; v < taken_out.size(); ++v) {
       const Rgb now = world.medium.peak->excess[profile.volume(v)] * cursor.tau(v);
       Rgb of_volume;
@@ -61,7 +50,7 @@ void sort_light(const World& world, const DepthProfile& profile, const Rgb& radi
 Rgb air_before_peak(const World& world, const DepthProfile& profile) {
   Rgb before, sum, left;
   for (std::size_t knot = 1; profile.air() && knot < profile.knots(); ++knot) {
-    const Rgb after = taken_out_before(world, profile, knot), light = scattered_last(before, after);
+    const Rgb after = profile.taken_out(world.medium, knot), light = scattered_last(before, after);
     sum += light;
     left += profile.air().left(0.5f * (profile.t(knot - 1) + profile.t(knot))) * light;
     before = after;
@@ -87,10 +76,10 @@ GroupedLight light_of_the_peak(const World& world, const TileRays::PixelRay& ray
                    world.lights.group(i));
   const std::size_t last = profile.knots() - 1;
   const Rgb tau = profile.channels(world.medium, last);
-  const Rgb through(std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z));
+  const Rgb through = transmittance_of(tau);
   if (sink.sorts_by_depth() || sink.sorts_by_volume())
     sort_light(world, profile, radiance.sum() * through, sink);
-  return radiance * (through * scattered_last(Rgb(), taken_out_before(world, profile, last)));
+  return radiance * (through * scattered_last(Rgb(), profile.taken_out(world.medium, last)));
 }
 
 } // namespace vdbeam

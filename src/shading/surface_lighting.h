@@ -6,7 +6,7 @@
 
 namespace vdbeam {
 
-/// The light of surfaces that are no mirrors, for estimators that gather photons: by path tracing
+/// The light of surfaces that are not mirrors, for estimators that gather photons: by path tracing
 /// (WalkTracer), but for caustics and the like, which photons on the surfaces bring where the plan
 /// has them (Stage::surface_photons).
 class SurfaceLighting {

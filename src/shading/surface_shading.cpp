@@ -301,13 +301,9 @@ GroupedLight SurfaceShading::along(const CameraRay& ray, const DepthProfile& pro
 
 /// The transmittance of the scene's own medium over that of the medium at hand.
 Rgb SurfaceShading::left_of_lamps(const DepthProfile& profile) const {
-  Rgb left(1);
-  const PeakTakenOut* peak = world_.medium.peak.get();
-  for (std::size_t v = 0; peak && !profile.empty() && v < profile.volume_count(); ++v)
-    for (int c = 0; c < 3; ++c)
-      left[c] *=
-          std::exp(-peak->excess[profile.volume(v)][c] * profile.tau(profile.knots() - 1, v));
-  return left;
+  if (!world_.medium.peak || profile.empty())
+    return Rgb(1);
+  return transmittance_of(profile.taken_out(world_.medium, profile.knots() - 1));
 }
 
 /// Radiance that leaves the surface at which the chain ends. `lamps`: transmittance on the way

@@ -117,7 +117,7 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
     light += direct_light(world, ray.camera.ray(), ray.profile,
                           {plan.sampled_lights, samples, &photons.shadows(), input.stop, weight},
                           rng, counts.shadow_rays, sink);
-  image.add(&PassImage::direct, target.pixel, light);
+  sink.add_sum(&PassImage::direct, light);
   return medium;
 }
 

@@ -47,7 +47,7 @@ OpacityAndDepth shade_ray(const EstimatorInput& input, const PhotonPass& photons
 struct TileGather {
   /// Edges of the medium are seen by several rays (is_uneven), as those of the light behind it are.
   bool refine_medium;
-  /// Adds what the photon map gives to image.indirect, and its counts to scratch.statistics.
+  /// Adds the light of the photon map to the image, and its counts to scratch.statistics.
   std::function<void(TileScratch& scratch, const RngKey& key)> gather;
   GatherAlong gather_along;  ///< the same for a ray that goes on behind a mirror or glass
   BlurProbe* blur = nullptr; ///< takes what the fit of surfaces blurs; null: nobody asks

@@ -2,26 +2,43 @@
 
 #include "transport/world.h"
 
+#include <concepts>
 #include <optional>
 
 namespace vdbeam {
 
-/// A vertex of a path in the medium. Vertices on surfaces are SurfaceVertex, which has the same
-/// `position`, `leave` and `evaluate`.
+/// A vertex of a path: where it is, where a ray begins that leaves it in the direction wi, and how
+/// much it scatters there. On surfaces it is a SurfaceVertex, in the medium one of those below.
+template <class Vertex>
+concept PathVertex = requires(const Vertex& vertex, const Vec3f& wi) {
+  { vertex.position() } -> std::convertible_to<Vec3f>;
+  { vertex.leave(wi) } -> std::convertible_to<Vec3d>;
+  { vertex.evaluate(wi) } -> std::convertible_to<Rgb>;
+};
+
+/// A vertex in a volume, by its phase function.
 struct MediumVertex {
   const Vec3f& point;
   const Vec3f& arriving; ///< unit, along which the path comes
   const PhaseFunction& phase;
 
   const Vec3f& position() const { return point; }
-  /// Where a ray begins that leaves in the direction wi.
   Vec3d leave(const Vec3f&) const { return Vec3d(point); }
   Rgb evaluate(const Vec3f& wi) const { return Rgb(phase.evaluate(dot(arriving, wi))); }
 };
 
+/// A point that shows all light that it gets.
+struct AnyVertex {
+  const Vec3f& point;
+
+  const Vec3f& position() const { return point; }
+  Vec3d leave(const Vec3f&) const { return Vec3d(point); }
+  Rgb evaluate(const Vec3f&) const { return Rgb(1); }
+};
+
 /// Light that a shadow ray brings from a light to a vertex of a path.
 struct ShadowRay {
-  Rgb light;       ///< radiance from there over the density with which the direction was drawn
+  Rgb light;       ///< radiance of the light over the density with which the direction was drawn
   Rgb scattered;   ///< factor by which the vertex scatters it on: p, or f |cos|
   float weight;    ///< against drawing the direction as the path goes on (balance heuristic)
   Segment segment; ///< from the vertex to the light
@@ -31,13 +48,13 @@ struct ShadowRay {
   Rgb radiance() const { return light * (scattered * weight); }
 };
 
-/// Next-event estimation, the only one of the renderer: draws a shadow ray from a vertex in the
+/// Next-event estimation of all walks and of direct_light: draws a shadow ray from a vertex in the
 /// medium or on a surface to a light. None where no light comes from there, a surface hides it, or
 /// the vertex scatters none of it. pdf(wi): the density [1/sr] with which the path itself draws the
 /// direction wi to go on, 0 where the light is found in no other way. The two are combined by
 /// multiple importance sampling (Veach and Guibas 1995). The transmittance of the segment is left
 /// to the caller: estimated at once, or a collision at a time beside other walks.
-template <class Vertex, class Pdf>
+template <PathVertex Vertex, class Pdf>
 std::optional<ShadowRay> sample_direct_light(const World& world, const Light& light,
                                              const Vertex& vertex, Rng& rng, const Pdf& pdf) {
   const float u = rng.uniform(), v = rng.uniform();
@@ -56,7 +73,7 @@ std::optional<ShadowRay> sample_direct_light(const World& world, const Light& li
 }
 
 /// The same for lights that paths find in no other way.
-template <class Vertex>
+template <PathVertex Vertex>
 std::optional<ShadowRay> sample_direct_light(const World& world, const Light& light,
                                              const Vertex& vertex, Rng& rng) {
   return sample_direct_light(world, light, vertex, rng, [](const Vec3f&) { return 0.0f; });

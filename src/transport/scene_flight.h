@@ -7,8 +7,8 @@
 
 namespace vdbeam {
 
-/// The flights of a random walk through media and among surfaces: of light paths, of paths from the
-/// camera, and of gathering.
+/// A flight of a random walk through media and among surfaces: the state that light paths and walks
+/// from the camera share.
 struct SceneFlight : Flight {
   using Flight::Flight;
 

@@ -60,7 +60,7 @@ Rgb SurfaceVertex::absorbed() const {
   const Rgb tau = material_.absorption() * static_cast<float>(hit_.t);
   if (front() || max_component(tau) <= 0)
     return Rgb(1);
-  return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+  return transmittance_of(tau);
 }
 
 Rgb SurfaceVertex::matt_share(const Vec3f& wi) const {

@@ -10,7 +10,7 @@ namespace vdbeam {
 struct CameraWalk : SceneFlight {
   using SceneFlight::SceneFlight;
 
-  float gathered = 0; ///< distance of the flight up to which light that it meets was added
+  float gathered = 0; ///< distance along the flight up to which the light that it meets was added
 
   void set_out(const World& world, const Vec3d& origin, const Vec3f& direction) {
     gathered = 0;

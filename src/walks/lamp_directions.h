@@ -11,7 +11,7 @@ namespace vdbeam {
 /// a lamp's light, D being its distance from the lamp (LampShells), whatever the phase function:
 /// walks that draw their directions by phase functions alone have rare, very bright values. The
 /// angle to the lamp has the density g of scattering angles (ScatteringAngles), whose even part is
-/// proportional to 1 / D per solid angle (docs/theory/transport.md, T.18).
+/// proportional to 1 / D per solid angle (docs/theory/transport.md, T.17).
 class LampDirections {
 public:
   /// Takes the lamps that have shells. `world` must outlive this.

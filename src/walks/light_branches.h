@@ -16,7 +16,7 @@ namespace vdbeam {
 /// the phase function (LampShells). So at each scattering a walk now and then sends a branch of its
 /// own in a direction about the light's instead of its own. With p the density of the walk's own
 /// direction and c q that of branches, both carry p/(p + c q), which leaves the mean as it is:
-/// flights at the light become many and faint (docs/theory/transport.md, "The reference").
+/// flights at the light become many and faint (docs/theory/transport.md, "Path tracing").
 /// q is the phase function about the light's direction or, for lamps in the medium, that of
 /// LampDirections.
 ///

@@ -34,7 +34,7 @@ struct PathWalk : CameraWalk {
   std::size_t light = 0; ///< that the shadow ray is sent to
   Rgb shadow_value;      ///< its contribution, without the transmittance
 
-  // What light straight from lights with shadow rays counts:
+  // Weights of light that comes unscattered from lights with shadow rays:
   bool skips_sampled = false; ///< none on this flight, since it was found before
   bool all_light = true;      ///< else only that which surfaces get straight from lights
   bool from_surface = false;  ///< the present flight begins at such a surface

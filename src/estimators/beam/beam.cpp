@@ -40,8 +40,8 @@ void BeamEstimator::gather(TileScratch& scratch, PassImage& image) const {
       std::vector<Rgb> groups;
       for (std::size_t g = 0; g < image.groups.size() && tile.by_group; ++g)
         groups.push_back(light_of(tile.group_radiance, i, map.channels(), g));
-      image.add(&PassImage::indirect, ray.pixel,
-                {light_of(tile.radiance, i, map.channels()), groups});
+      RaySink(input_.layers, ray.pixel, image)
+          .add_sum(&PassImage::indirect, {light_of(tile.radiance, i, map.channels()), groups});
       if (map.has_first_flights())
         image.move_to_direct(ray.pixel, light_of(tile.first_flight, i, map.channels()));
     }

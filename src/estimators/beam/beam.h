@@ -2,7 +2,6 @@
 
 #include "estimators/beam/beam_weights.h"
 #include "estimators/estimator.h"
-#include "photons/photon_pass.h"
 
 namespace vdbeam {
 
@@ -11,20 +10,15 @@ struct TileScratch;
 /// The beam radiance estimate (Jarosz, Zwicker, Jensen 2008) for heterogeneous media: one query
 /// gathers all photons along a whole camera ray. Single scattering of the sampled lights and what
 /// is seen through the medium are added.
-class BeamEstimator : public Estimator {
+class BeamEstimator : public PhotonEstimator {
 public:
-  /// `photons` must outlive this.
-  BeamEstimator(const EstimatorInput& input, PhotonPass& photons)
-      : input_(input), photons_(photons) {}
+  using PhotonEstimator::PhotonEstimator;
 
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
 
 private:
   void gather(TileScratch& scratch, PassImage& image) const;
   void gather_volumes(TileScratch& scratch, PassImage& image) const;
-
-  EstimatorInput input_;
-  PhotonPass& photons_;
 };
 
 } // namespace vdbeam

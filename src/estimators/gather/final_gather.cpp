@@ -206,8 +206,8 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
   }
 }
 
-/// Scattered light of photons at the walk's collision. The photons
-/// may have its albedo already.
+/// Scattered light of photons at the walk's collision. The power of photons may contain the
+/// volume's albedo already.
 void FinalGather::gather_photons(Walk& walk, const Volume& volume, const PhotonMap& map) const {
   const std::vector<PhaseFunction>& phases = world_.medium.gathered_phases();
   const auto phase = static_cast<std::size_t>(volume.phase_index);

@@ -20,7 +20,7 @@ struct GatheredLight {
 /// at each collision on its way; there the photons' density is what scatters into its last flight.
 /// A walk that meets a surface ends there, with the light that the surface sends back, unless it is
 /// a mirror or glass. So kernels blur only what walks are about to blur anyway, and most of their
-/// bias is gone, for noise of the walks' own (docs/theory/beam.md, "Final gathering").
+/// bias is gone, for noise of the walks' own (docs/theory/beam.md, "Gather").
 class FinalGather {
 public:
   /// The photons that walks gather; all must outlive this.

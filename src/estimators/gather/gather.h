@@ -1,7 +1,6 @@
 #pragma once
 
 #include "estimators/estimator.h"
-#include "photons/photon_pass.h"
 
 namespace vdbeam {
 
@@ -9,17 +8,11 @@ namespace vdbeam {
 /// photons are not gathered along the camera ray, but where random walks arrive that begin on it
 /// (FinalGather). What the walks of a pixel find is then fitted over the pixels around it
 /// (PixelRegression), which see nearly the same light.
-class GatherEstimator : public Estimator {
+class GatherEstimator : public PhotonEstimator {
 public:
-  /// `photons` must outlive this.
-  GatherEstimator(const EstimatorInput& input, PhotonPass& photons)
-      : input_(input), photons_(photons) {}
+  using PhotonEstimator::PhotonEstimator;
 
   void render(const PassSpec& spec, PassImage& image, RenderStatistics& statistics) override;
-
-private:
-  EstimatorInput input_;
-  PhotonPass& photons_;
 };
 
 } // namespace vdbeam

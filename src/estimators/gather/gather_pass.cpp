@@ -8,25 +8,6 @@
 
 namespace vdbeam {
 
-namespace {
-
-/// Spreads light over the pieces of a deep pixel as its opacity is spread.
-void add_by_opacity(const Rgb& light, std::size_t pixel, PassImage& image) {
-  if (!image.deep_layout)
-    return;
-  constexpr std::size_t values = DeepLayout::values_per_piece;
-  float* pieces = image.deep.data() + image.deep_layout->first[pixel] * values;
-  const std::size_t end = image.deep_layout->count(pixel) * values;
-  float all = 0;
-  for (std::size_t i = 0; i < end; i += values)
-    all += pieces[i + 3];
-  for (std::size_t i = 0; i < end && all > 0; i += values)
-    for (std::size_t c = 0; c < 3; ++c)
-      pieces[i + c] += light[static_cast<int>(c)] * pieces[i + 3] / all;
-}
-
-} // namespace
-
 GatherPass::GatherPass(const EstimatorInput& input, const PhotonPass& photons, const PassSpec& spec)
     : wide_(input), window_(wanted(input)), photons_(photons),
       surfaces_(surface_lighting(input, photons)),
@@ -102,9 +83,9 @@ void GatherPass::add_caustics(const TileRays::PixelRay& ray, float weight, PassI
   WeightSettings weights = weight_settings(photons_, wide_.settings.store);
   GroupedLight light =
       beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile);
-  image.add(&PassImage::direct, ray.pixel, light *= weight);
-  add_by_opacity(light.sum(), ray.pixel, image);
   const RaySink sink(wide_.layers, ray.pixel, image);
+  sink.add_sum(&PassImage::direct, light *= weight);
+  sink.add_by_opacity(light.sum());
   const Medium& medium = photons_.world().medium;
   std::vector<std::uint8_t> only(sink.sorts_by_volume() ? medium.volumes.size() : 0);
   weights.only = &only;
@@ -182,7 +163,8 @@ void GatherPass::fit_pixel(int x, int y, BlurProbe& blur, PassImage& image) cons
   for (std::size_t plane = 0; plane < walked_.planes.size(); ++plane)
     for (const PixelRegression::Share& share : shares)
       image.planes[plane][pixel] += walked_.planes[plane][share.pixel] * share.weight;
-  add_by_opacity(direct + indirect - walked_.direct[pixel] - walked_.indirect[pixel], pixel, image);
+  RaySink(wide_.layers, pixel, image)
+      .add_by_opacity(direct + indirect - walked_.direct[pixel] - walked_.indirect[pixel]);
 }
 
 } // namespace vdbeam

@@ -174,10 +174,9 @@ void MarchEstimator::render(const PassSpec& spec, PassImage& image, RenderStatis
         continue;
       Rng rng(key, RngStage::march, ray.pixel);
       Rgb straight;
-      image.add(
-          &PassImage::indirect, ray.pixel,
-          marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight,
-                        RaySink(photons_.world(), ray.camera, input_.layers, ray.pixel, image)));
+      const RaySink sink(photons_.world(), ray.camera, input_.layers, ray.pixel, image);
+      sink.add_sum(&PassImage::indirect,
+                   marcher.march(ray.camera, ray.profile, rng, scratch.statistics, straight, sink));
       image.move_to_direct(ray.pixel, straight);
     }
   };

@@ -84,10 +84,9 @@ void PathEstimator::scatter_once(const RayTask& ray, Rng& rng, Scratch& scratch,
     return;
   const LightSampling sampling{shadow_rays_, draws.count, nullptr, input_.stop,
                                draws.weight * static_cast<float>(draws.count)};
-  image.add(&PassImage::direct, ray.target,
-            direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
-                         scratch.counts.shadow_rays,
-                         RaySink(world, ray.camera, input_.layers, ray.target, image)));
+  const RaySink sink(world, ray.camera, input_.layers, ray.target, image);
+  sink.add_sum(&PassImage::direct, direct_light(world, ray.camera.ray(), ray.profile, sampling, rng,
+                                                scratch.counts.shadow_rays, sink));
 }
 
 /// All other light of the medium, by walks from points that are drawn from the depth profile; they
@@ -163,8 +162,8 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
       const Rgb light = (walk.direct.sum() + walk.indirect.sum()) * walk.share;
       sink.add_of_volume(walk.volume, light);
       sink.add_to_piece(walk.piece, light);
-      image.add(&PassImage::direct, walk.target, walk.direct *= walk.share);
-      image.add(&PassImage::indirect, walk.target, walk.indirect *= walk.share);
+      sink.add_sum(&PassImage::direct, walk.direct *= walk.share);
+      sink.add_sum(&PassImage::indirect, walk.indirect *= walk.share);
       if (&walk != &walks.back())
         walk = std::move(walks.back());
       walks.pop_back();

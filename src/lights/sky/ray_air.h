@@ -63,8 +63,7 @@ public:
     Rgb depth;
     for (const Column& column : table_.column)
       depth += read(column.depth, place) * column.weight;
-    return {std::exp(-depth.x * place.metres), std::exp(-depth.y * place.metres),
-            std::exp(-depth.z * place.metres)};
+    return transmittance_of(depth * place.metres);
   }
 
 private:
