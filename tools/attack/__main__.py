@@ -6,6 +6,7 @@
     tools/attack.sh --hours 8                         mutants for eight hours
     tools/attack.sh --kills 200                       kills at chosen calls and at random moments
     tools/attack.sh --pipes                           pipes, devices, sockets, folders and loops of links as files
+    tools/attack.sh --prepare                         only the sound files, which later campaigns find
 
 Each command has 2 GiB of memory and 20 s; it must end with 0, 2 or 3 and a line, and leave inputs as they are and no
 half file. Exit status: 1 where one did not.
@@ -28,6 +29,7 @@ def parse():
     parser.add_argument("--one", metavar="KIND:NUMBER")
     parser.add_argument("--kills", type=int, default=0, metavar="N")
     parser.add_argument("--pipes", type=int, nargs="?", const=sys.maxsize, metavar="N", help="about N of them; default: all")
+    parser.add_argument("--prepare", action="store_true")
     parser.add_argument("--keep", metavar="FOLDER", help="where files of breaches go")
     return parser.parse_args()
 
@@ -35,7 +37,7 @@ def parse():
 def attack(options):
     """The number of breaches."""
     count = 0
-    if options.mutants or options.hours or options.one or options.pipes:
+    if options.mutants or options.hours or options.one or options.pipes or options.prepare:
         here = campaign.Campaign(options.keep)
         try:
             if options.one:

@@ -73,25 +73,20 @@ def make_cameras(folder):
 def make_pictures(folder):
     """EXR of every compression, in tiles, with levels, in parts; HDR, PNG, and what else OpenImageIO writes."""
     def tool(*words):
-        subprocess.run(["oiiotool", *words], check=True, cwd=folder, capture_output=True)
+        # It would write the whole command into each file.
+        subprocess.run(["oiiotool", "--nosoftwareattrib", *words], check=True, cwd=folder, capture_output=True)
 
     picture = ["--pattern", "checker:width=3:color1=0.2,0.4,0.1,1:color2=2,0.5,1.5,0.5", "16x8", "4"]
     rgb = [*picture, "--ch", "R,G,B"]
-    for compression in EXR_COMPRESSIONS:
-        tool(*rgb, "-d", "half", "--compression", compression, "-o", f"{compression}.exr")
-    tool(*picture, "-d", "float", "-o", "float_rgba.exr")
+    tool(*rgb, "-d", "half", *(word for one in EXR_COMPRESSIONS for word in ("--compression", one, "-o", f"{one}.exr")))
+    tool(*picture, "-d", "float", "-o", "float_rgba.exr", "-d", "uint8", "-o", "rgba8.png", "--ch", "R", "-o", "grey8.png",
+         "-d", "half", "-o", "one_channel.exr")
     tool(*rgb, "-d", "half", "--tile", "4", "4", "-o", "tiled.exr")
     tool(*rgb, "-d", "half", "-otex:prefilter=0", "mip.exr")
     tool(*rgb, *rgb, "--siappend", "-d", "half", "-o", "parts.exr")
-    tool(*picture, "--ch", "R", "-d", "half", "-o", "one_channel.exr")
-    tool(*rgb, "-o", "rgbe.hdr")
-    tool(*picture, "-d", "uint8", "-o", "rgba8.png")
-    tool(*rgb, "-d", "uint8", "-o", "rgb8.png")
-    tool(*rgb, "-d", "uint16", "-o", "rgb16.png")
-    tool(*picture, "--ch", "R", "-d", "uint8", "-o", "grey8.png")
-    tool(*rgb, "-o", "picture.jpg")
-    for compression in ("none", "zip", "lzw"):
-        tool(*rgb, "-d", "uint16", "--compression", compression, "-o", f"{compression}.tif")
+    tool(*rgb, "-o", "rgbe.hdr", "-d", "uint8", "-o", "rgb8.png", "-d", "uint16", "-o", "rgb16.png")
+    subprocess.run(["oiiotool", *rgb, "-o", "picture.jpg"], check=True, cwd=folder)  # with the blocks that such words stand in
+    tool(*rgb, "-d", "uint16", *(word for one in ("none", "zip", "lzw") for word in ("--compression", one, "-o", f"{one}.tif")))
     tool(*rgb, "-d", "float", "-otex", "picture.tx")
 
 
