@@ -57,7 +57,8 @@ class Streams(unittest.TestCase):
     def outputs(self):
         result = self.run_in_shell("", "render", FOG, "-o", "a.exr", *SMALL)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return [["info", FOG], ["init", FOG], ["plan", FOG], ["plan", FOG, "--json"],
+        return [["info", FOG], ["init", FOG], ["plan", FOG, "--no-pilot"],
+                ["plan", FOG, "--no-pilot", "--json"],
                 ["compare", "a.exr", "a.exr"], ["compare", "a.exr", "a.exr", "--json"],
                 ["farm", "slurm", FOG, "-f", "1", "-o", "o.exr"], ["--help"], ["--version"],
                 ["--help-scene"], ["render", "--help"]]
