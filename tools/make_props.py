@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Makes the meshes of the gallery's scenes, and their textures: a patchwork of fields, setts, bricks.
 
-Usage: make_props.py FOLDER
+Usage: make_props.py FOLDER [--small]
 
-The same files come out each time. Y is up, except in chimney.obj, factory.obj, street.obj and rubble.obj, which
-stand around simulations of Blender's.
+The same files come out each time; with --small, fields.png has 64 x 64 pixels in place of 1024 x 1024, which are
+most of the work. Y is up, except in chimney.obj, factory.obj, street.obj and rubble.obj, which stand around simulations
+of Blender's.
 """
 import pathlib
 import random
@@ -41,7 +42,7 @@ def field_colour(kind, wave):
     return [c * (1 + 0.05 * wave) for c in soils[kind % len(soils)]]
 
 
-def make_fields(path, size=1024):
+def make_fields(path, size):
     """A patchwork of dry fields with woods and a river, as an sRGB PNG."""
     dice, cells = random.Random(5), 60
     seeds = {(i, j): (i + dice.random(), j + dice.random(), dice.randrange(1000)) for i in range(cells) for j in range(cells)}
@@ -78,14 +79,15 @@ TEXTURES = {
 
 
 def main():
-    if len(sys.argv) != 2:
+    small = sys.argv[2:] == ["--small"]
+    if len(sys.argv) != 2 + small:
         sys.exit(__doc__.split("\n\n")[1])
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     for name, make in MESHES.items():
         make().write(folder / f"{name}.obj")
     write_plain(folder / "plain.obj")
-    make_fields(folder / "fields.png")
+    make_fields(folder / "fields.png", 64 if small else 1024)
     for name, options in TEXTURES.items():
         pixels = stone_texture(**options)
         write_png(folder / f"{name}.png", pixels.shape[1], [row.tobytes() for row in pixels])

@@ -31,7 +31,7 @@ class Gallery(unittest.TestCase):
         """Small stand-ins for all that the scenes read."""
         cls.folder = tempfile.TemporaryDirectory()
         cls.volumes = Path(cls.folder.name, "volumes")
-        done = run("/usr/bin/python3", "-B", ROOT / "tools/make_props.py", cls.volumes)
+        done = run("/usr/bin/python3", "-B", ROOT / "tools/make_props.py", cls.volumes, "--small")
         assert done.returncode == 0, done.stderr
         for name, (kind, *_) in gallery.CLOUDS.items():
             done = run(BUILD / "tools/make_volumes", kind, cls.volumes / name, "--size", "64")
