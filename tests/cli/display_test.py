@@ -212,9 +212,11 @@ class ShownImages(InTempFolder):
     def test_viewer_that_is_not_there_or_does_not_read(self):
         free = socket.create_server(("127.0.0.1", 0))
         address = f"127.0.0.1:{free.getsockname()[1]}"
-        self.render(address, size="400x300")  # connections wait, nobody reads
+        # Images as large as ever, of passes that take no time: what matters is how much is sent.
+        words = ["--estimator", "path", "--set", "render.max_bounces=1", "--snapshot", "1"]
+        self.render(address, *words, size="400x300")  # connections wait, nobody reads
         free.close()
-        self.render(address, "--no-resume", size="400x300")
+        self.render(address, *words, "--no-resume", size="400x300")
         self.assertTrue(pathlib.Path(self.file("fog.exr")).exists())
 
     def test_a_viewer_that_is_not_there_is_reported_once(self):
