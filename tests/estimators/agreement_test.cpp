@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 // Three estimators, one truth: beam and march against path.
 namespace vdbeam {
 namespace {
@@ -132,8 +134,8 @@ MemoryScene colored_overlap() {
 }
 
 /// Mean over the image of each output that both estimators mean alike.
-void expect_agreement(const MemoryScene& scene, const PassMeans& truth, EstimatorType type,
-                      int passes, double bias, double power = 0.015, bool layers = true) {
+PassMeans expect_agreement(const MemoryScene& scene, const PassMeans& truth, EstimatorType type,
+                           int passes, double bias, double power = 0.015, bool layers = true) {
   const PassMeans means = test::render_passes(scene, type, passes);
   for (std::size_t c = 0; c < 3; ++c) {
     SCOPED_TRACE(testing::Message() << "channel " << c);
@@ -149,6 +151,7 @@ void expect_agreement(const MemoryScene& scene, const PassMeans& truth, Estimato
   }
   // Part by part, so that a picture that is mirrored or shifted is found out.
   EXPECT_EQ(test::regions_apart(means, truth, 6 * bias + 2 * power), 0);
+  return means;
 }
 
 PassMeans truth_of(const MemoryScene& scene) {
@@ -164,41 +167,48 @@ struct Case {
     return out << test_case.name;
   }
 };
-class Agreement : public testing::TestWithParam<Case> {};
+class Agreement : public testing::TestWithParam<Case> {
+protected:
+  /// What path finds in the scene, rendered once for all tests of the case.
+  static const PassMeans& truth() {
+    static std::map<std::string, PassMeans> truths;
+    const auto [found, is_new] = truths.try_emplace(GetParam().name);
+    if (is_new)
+      found->second = truth_of(GetParam().make());
+    return found->second;
+  }
+};
 
 TEST_P(Agreement, BeamAndMarchWithPath) {
   MemoryScene scene = GetParam().make();
-  const PassMeans truth = truth_of(scene);
   for (const ForwardPeak peak : {ForwardPeak::automatic, ForwardPeak::kept}) {
     scene.scene.render.forward_peak = peak;
     const bool layers = peak == ForwardPeak::kept;
     {
       SCOPED_TRACE("beam");
-      expect_agreement(scene, truth, EstimatorType::beam, 24, 0.005, GetParam().power, layers);
+      expect_agreement(scene, truth(), EstimatorType::beam, 24, 0.005, GetParam().power, layers);
     }
     {
       SCOPED_TRACE("march");
-      expect_agreement(scene, truth, EstimatorType::march, 24, 0.005, GetParam().power, layers);
+      expect_agreement(scene, truth(), EstimatorType::march, 24, 0.005, GetParam().power, layers);
     }
   }
   {
     SCOPED_TRACE("beam, all from photons");
     scene.scene.render.direct = DirectLight::photons;
-    expect_agreement(scene, truth, EstimatorType::beam, 24, 0.01, GetParam().power);
+    expect_agreement(scene, truth(), EstimatorType::beam, 24, 0.01, GetParam().power);
   }
 }
 
 /// Walks that begin on camera rays find the same light, with as little as nothing of the blur.
 TEST_P(Agreement, FinalGatheringWithPath) {
   MemoryScene scene = GetParam().make();
-  const PassMeans truth = truth_of(scene);
   scene.scene.render.final_gather = FinalGathering::always;
   for (const ForwardPeak peak : {ForwardPeak::automatic, ForwardPeak::kept}) {
     scene.scene.render.forward_peak = peak;
-    const PassMeans means = test::render_passes(scene, EstimatorType::beam, 1);
+    const PassMeans means = expect_agreement(scene, truth(), EstimatorType::beam, 24, 0.005,
+                                             GetParam().power, peak == ForwardPeak::kept);
     EXPECT_GT(means.statistics.gather_walks, 0u);
-    expect_agreement(scene, truth, EstimatorType::beam, 24, 0.005, GetParam().power,
-                     peak == ForwardPeak::kept);
   }
 }
 
