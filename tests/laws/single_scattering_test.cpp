@@ -129,7 +129,7 @@ void expect_quadrature(const LightSettings& light, const Finder& finder) {
     render.radius = 0.05;
     render.alpha = 1;
     const bool photons = finder.direct == DirectLight::photons;
-    const test::PassMeans means = test::render_passes(scene, finder.estimator, photons ? 40 : 100);
+    const test::PassMeans means = test::render_passes(scene, finder.estimator, photons ? 32 : 100);
     const double expected = 3 * exact_radiance(light, view.from, normalize(view.to - view.from));
     test::expect_mean(means.total[0], expected, finder.bias * expected, 2e-4);
     test::expect_mean(means.total[1], expected / 2, finder.bias * expected / 2, 2e-4);
