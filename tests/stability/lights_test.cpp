@@ -11,7 +11,7 @@ using namespace test;
 void expect_same_picture(MemoryScene scene, const std::string& what, double bias) {
   scene.scene.render.photons = 20000;
   const PassMeans beam = render_sound(scene, EstimatorType::beam, 48, what);
-  const PassMeans path = render_sound(scene, EstimatorType::path, 3000, what);
+  const PassMeans path = render_sound(scene, EstimatorType::path, 750, what);
   SCOPED_TRACE(what);
   expect_power(beam.total[0], 0.025 * path.total[0].mean());
   expect_power(path.total[0], 0.025 * path.total[0].mean());
@@ -44,7 +44,7 @@ TEST(Lights, OnTheBorderOfTheMedium) {
 TEST(Lights, InThePicture) {
   MemoryScene scene = box_scene(4, 0.9);
   scene.add_light(LightType::point).position = {0, 0, 0};
-  const PassMeans path = render_sound(scene, EstimatorType::path, 3000, "in the picture");
+  const PassMeans path = render_sound(scene, EstimatorType::path, 750, "in the picture");
   expect_power(path.total[0], 0.03 * path.total[0].mean());
   scene.scene.render.photons = 20000;
   for (const EstimatorType type : {EstimatorType::beam, EstimatorType::march}) {
