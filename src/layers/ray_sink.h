@@ -36,7 +36,7 @@ public:
     deep_.add_light_at(t, light);
     volumes_.add(setting, light);
   }
-  /// The same, where several volumes scatter it, each of which is added by itself.
+  /// The same, where several volumes scatter it: add_of_volume takes the part of each.
   void add_at(float t, const Rgb& light) const { deep_.add_light_at(t, light); }
   void add_of_volume(std::size_t setting, const Rgb& light) const { volumes_.add(setting, light); }
 

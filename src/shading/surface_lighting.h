@@ -2,7 +2,7 @@
 
 #include "photonmap/photon_map.h"
 #include "rays/estimator_input.h"
-#include "walks/path_walk.h"
+#include "walks/walk_tracer.h"
 
 namespace vdbeam {
 

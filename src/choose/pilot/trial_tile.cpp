@@ -5,7 +5,7 @@
 #include "rays/pixel_tiles.h"
 #include "rays/profile_shading.h"
 #include "tuning/constants.h"
-#include "walks/path_walk.h"
+#include "walks/walk_tracer.h"
 
 #include <cmath>
 

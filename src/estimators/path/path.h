@@ -5,7 +5,7 @@
 #include "medium/distance_sampling.h"
 #include "rays/profile_shading.h"
 #include "transport/camera_ray.h"
-#include "walks/path_walk.h"
+#include "walks/walk_tracer.h"
 
 namespace vdbeam {
 

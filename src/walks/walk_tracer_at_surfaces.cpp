@@ -1,5 +1,5 @@
 #include "transport/next_event.h"
-#include "walks/path_walk.h"
+#include "walks/walk_tracer.h"
 
 #include <utility>
 

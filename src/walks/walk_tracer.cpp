@@ -1,4 +1,4 @@
-#include "walks/path_walk.h"
+#include "walks/walk_tracer.h"
 
 #include "transport/next_event.h"
 #include "tuning/constants.h"
