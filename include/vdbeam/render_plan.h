@@ -121,6 +121,7 @@ struct RenderPlan {
   std::vector<bool> shadow_ray_lights;
   /// Whether the mean of the passes has no bias; otherwise its bias vanishes only in the limit.
   bool unbiased = false;
+  std::size_t motion_samples = 0; ///< of an open shutter; 0: nothing moves
   /// Estimated memory of these parts [bytes]; MemoryPlan has that of a whole frame.
   std::uint64_t photon_bytes = 0, film_bytes = 0;
   /// Peak memory of meshes while they are read, and of textures.

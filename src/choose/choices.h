@@ -12,6 +12,8 @@ struct KernelTrialResult;
 /// of the estimator's input (by counts, never by a clock).
 struct Choices {
   std::string_view estimator;       ///< of all passes
+  std::size_t motion_samples = 0;   ///< a pass renders one of them; 0: nothing moves
+  bool fits_surfaces = false;       ///< the light of surfaces is fitted over pixels
   PeakOrders peak;                  ///< of phase functions, which photons live without
   PhotonPlan photons;               ///< lights, light paths, photons and kernels
   std::optional<GatherPlan> gather; ///< of final gathering; empty: there is none

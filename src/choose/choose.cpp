@@ -179,21 +179,8 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
   plan.share_at_boundary = is_possible(boundary_share_feature, facts);
 }
 
-} // namespace
-
-SceneChoices SceneChoices::in_units(double scale) const {
-  SceneChoices result = *this;
-  const auto factor = static_cast<float>(scale / space.scale);
-  if (factor == 1)
-    return result;
-  result.space.scale = scale;
-  result.choices.photons.view_reach *= factor;
-  if (const auto& guide = choices.photons.guide)
-    result.choices.photons.guide = std::make_shared<const PathGuide>(guide->in_units(factor));
-  return result;
-}
-
-Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {
+/// The choices about light; those about the shutter and surfaces are the caller's.
+Choices choose_light(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {
   Choices choices;
   choices.estimator = kind.name;
   if (!kind.shoots_photons())
@@ -213,6 +200,27 @@ Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorld
   else if (may_gather)
     choices.estimator = EstimatorType::beam.name;
   plan.shadow_lattices = is_possible(shadow_lattice_feature, {first, kind, plan.sampled_lights});
+  return choices;
+}
+
+} // namespace
+
+SceneChoices SceneChoices::in_units(double scale) const {
+  SceneChoices result = *this;
+  const auto factor = static_cast<float>(scale / space.scale);
+  if (factor == 1)
+    return result;
+  result.space.scale = scale;
+  result.choices.photons.view_reach *= factor;
+  if (const auto& guide = choices.photons.guide)
+    result.choices.photons.guide = std::make_shared<const PathGuide>(guide->in_units(factor));
+  return result;
+}
+
+Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {
+  Choices choices = choose_light(input, kind, worlds);
+  choices.motion_samples = input.plan.motion_samples;
+  choices.fits_surfaces = kind.shoots_photons() && input.world.surfaces;
   return choices;
 }
 

@@ -3,8 +3,8 @@
 #include "choose/feature.h"
 #include "choose/pilot/kernel_pilot.h"
 #include "estimators/estimator_table.h"
-
 #include "estimators/path/path.h"
+#include "math/pass_numbers.h"
 #include "shading/tile_shading.h"
 #include "transport/similar_medium.h"
 #include "tuning/constants.h"
@@ -17,9 +17,6 @@
 namespace vdbeam {
 
 namespace {
-
-/// Names random numbers that neither passes nor other pilots draw.
-constexpr int first_trial_pass = -200;
 
 /// Weighted variance of independent images of the same scene: mean over the pixels.
 double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
@@ -120,7 +117,7 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
 /// Tentative collisions of a light path, the mean over a few: what the pilot of `beam`, which
 /// traces thousands of paths and stores their collisions, would cost.
 double collisions_of_light_paths(const EstimatorInput& input) {
-  constexpr std::uint64_t probe_paths = 64, probe_pass = pilot_pass - 64;
+  constexpr std::uint64_t probe_paths = 64;
   if (!input.plan.needs(Stage::photons) || input.world.medium.empty())
     return 0;
   const PhotonPlan plan = default_photon_plan(input);
@@ -129,7 +126,7 @@ double collisions_of_light_paths(const EstimatorInput& input) {
                               ? choose_peak_orders(input.world.medium)
                               : PeakOrders();
   const EstimatorInput in = input.in(worlds.of(peak_order(peak, 0, false)));
-  PhotonPassSettings settings = pass_settings(in, plan, probe_pass);
+  PhotonPassSettings settings = pass_settings(in, plan, rare_photons_pass);
   settings.paths = probe_paths;
   settings.store_probability = 0;
   return trace_photons(in.world, settings).mean_collisions;

@@ -2,6 +2,7 @@
 
 #include "estimators/gather/regression.h"
 #include "math/pixel_fit.h"
+#include "shading/surface_passes.h"
 #include "tuning/constants.h"
 
 namespace vdbeam {
@@ -39,9 +40,8 @@ double GatherPlan::error_after(double passes_along) const {
 }
 
 float GatherPlan::regression_radius(int pass) const {
-  // Assumes that the render will be twice as long as it is now, and that a pass of walks costs 1.5
-  // passes of beam.
-  return RegressionTrial::radii[best_radius(2 * 1.5 * (pass + 1))];
+  constexpr double time_of_pass = 1.5; // of walks, in passes of beam
+  return RegressionTrial::radii[best_radius(time_of_pass * expected_passes(pass))];
 }
 
 int GatherPlan::walks(int pass) const {

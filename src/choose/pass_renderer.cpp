@@ -19,7 +19,7 @@ void FramePasses::render_pass(int pass, PassImage& image, RenderStatistics& stat
     statistics.importance_rays += choices_.photons.importance_rays;
   }
   try {
-    estimator_->render(schedule(choices_, input_.settings, pass), image, statistics);
+    estimator_->render(specify(pass), image, statistics);
   } catch (const Stopped&) {
     image.finished_tiles.clear();
     if (photons_)

@@ -18,6 +18,9 @@ public:
   /// be.
   virtual void render_pass(int pass, PassImage& image, RenderStatistics& statistics) = 0;
 
+  /// What pass `pass` (from 0) is.
+  virtual PassSpec specify(int pass) const = 0;
+
   /// What was chosen.
   virtual const Choices& choices() const = 0;
 };
@@ -31,6 +34,7 @@ public:
 
   void render_pass(int pass, PassImage& image, RenderStatistics& statistics) override;
 
+  PassSpec specify(int pass) const override { return schedule(choices_, input_.settings, pass); }
   const Choices& choices() const override { return choices_; }
   /// Requires an estimator that shoots photons.
   const PhotonPass& photons() const { return *photons_; }

@@ -1,6 +1,8 @@
 #include "choose/schedule.h"
 
+#include "math/rng.h"
 #include "phase/truncated_phase.h"
+#include "shading/surface_passes.h"
 #include "tuning/constants.h"
 
 #include <algorithm>
@@ -26,7 +28,22 @@ constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_gather{16, 2};
 /// truncation with less noise, and cost more noise of the picture.
 constexpr int order_step = 2;
 
+/// The bits of a number behind the point, in reverse (van der Corput 1935): 0, 1/2, 1/4, 3/4, ...
+double radical_inverse(std::uint32_t n) {
+  std::uint32_t reversed = 0;
+  for (int bit = 0; bit < 32; ++bit)
+    reversed |= (n >> bit & 1) << (31 - bit);
+  return static_cast<double>(reversed) * 0x1p-32;
+}
+
 } // namespace
+
+std::size_t motion_sample(int pass, std::size_t samples, std::uint64_t seed) {
+  const double shift = static_cast<double>(mix64(seed) >> 11) * 0x1p-53;
+  const double place = radical_inverse(static_cast<std::uint32_t>(pass)) + shift;
+  const double part = (place - std::floor(place)) * static_cast<double>(samples);
+  return std::min(static_cast<std::size_t>(part), samples - 1);
+}
 
 int peak_order(const PeakOrders& first, int pass, bool gathers) {
   if (!first.taken_out)
@@ -60,6 +77,16 @@ PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pa
   spec.kernel_scale = radius_scale(pass, settings.alpha);
   spec.neighbours = choices.photons.neighbours;
   spec.light_paths = choices.photons.paths;
+  spec.expected_passes = expected_passes(pass);
+  if (choices.fits_surfaces) {
+    const auto [narrow, wide] = surface_fit_radii(pass);
+    spec.surface_fit_radius = narrow;
+    spec.wide_surface_fit_radius = wide;
+  }
+  if (choices.motion_samples > 0)
+    spec.motion_sample =
+        static_cast<int>(motion_sample(pass, choices.motion_samples, settings.seed));
+  spec.probe_turn = pass;
   if (!gathers)
     return spec;
   if (settings.neighbours == 0)

@@ -13,6 +13,10 @@ PassSpec schedule(const Choices& choices, const RenderSettings& settings, int pa
 /// for.
 std::vector<PassSpec> list_passes(const Choices& choices, const RenderSettings& settings);
 
+/// The motion sample that a pass renders, of `samples`: in an order that spreads any number of
+/// passes over the shutter's time (van der Corput's sequence, shifted by the seed).
+std::size_t motion_sample(int pass, std::size_t samples, std::uint64_t seed);
+
 /// The truncation order of a pass; 0 where no peak is taken out. It grows by one whenever the
 /// number of passes has tripled, or doubled for final gathering, so that the estimate
 /// stays consistent (docs/theory/beam.md, "Forward peaks"). One pass of two takes less out, so that

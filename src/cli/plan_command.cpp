@@ -11,10 +11,13 @@
 #include "vdbeam/render.h"
 #include "vdbeam/scene_file.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace vdbeam::cli {
 namespace {
@@ -82,22 +85,52 @@ std::string features_text(const RenderPlan& plan) {
   return text;
 }
 
-/// Table of the passes; empty if no pilot ran.
+/// A column of the table of passes.
+struct ScheduleColumn {
+  std::string_view name;
+  int width;                        ///< [characters]
+  double (*value)(const PassSpec&); ///< below 0: none
+  bool may_be_zero = false;         ///< else 0 means that there is none
+};
+
+constexpr ScheduleColumn schedule_columns[] = {
+    {"peak order", 12, [](const PassSpec& spec) { return static_cast<double>(spec.peak_order); }},
+    {"kernels", 12, [](const PassSpec& spec) { return static_cast<double>(spec.kernel_scale); }},
+    {"neighbours", 12, [](const PassSpec& spec) { return spec.neighbours; }},
+    {"light paths", 12, [](const PassSpec& spec) { return static_cast<double>(spec.light_paths); }},
+    {"walks", 8, [](const PassSpec& spec) { return static_cast<double>(spec.gather_walks); }},
+    {"fit [pixels]", 14,
+     [](const PassSpec& spec) { return static_cast<double>(spec.regression_radius); }},
+    {"of surfaces", 13,
+     [](const PassSpec& spec) { return static_cast<double>(spec.surface_fit_radius); }},
+    {"motion sample", 15,
+     [](const PassSpec& spec) { return static_cast<double>(spec.motion_sample); }, true}};
+
+/// Table of the passes, without columns that are empty; nothing if no pilot ran.
 std::string schedule_text(const RenderPlan& plan) {
   if (plan.schedule.empty())
     return {};
-  const auto cell = [](double number) {
-    return number > 0 ? fmt::format("{:.3g}", number) : std::string("-");
+  const auto cell = [](const ScheduleColumn& column, const PassSpec& spec) {
+    const double number = column.value(spec);
+    const bool is_there = column.may_be_zero ? number >= 0 : number > 0;
+    if (!is_there)
+      return std::string("-");
+    return number >= 1000 ? fmt::format("{:.0f}", number) : fmt::format("{:.3g}", number);
   };
-  std::string text =
-      fmt::format("\n{:<8}{:<10}{:>12}{:>12}{:>12}{:>12}{:>8}{:>14}\n", "pass", "estimator",
-                  "peak order", "kernels", "neighbours", "light paths", "walks", "fit [pixels]");
-  for (const PassSpec& spec : plan.schedule)
-    text += fmt::format("  {:<6}{:<10}{:>12}{:>12}{:>12}{:>12}{:>8}{:>14}\n", spec.pass,
-                        spec.estimator, cell(spec.peak_order), cell(spec.kernel_scale),
-                        cell(spec.neighbours), spec.light_paths, cell(spec.gather_walks),
-                        cell(static_cast<double>(spec.regression_radius)));
-  return text;
+  std::vector<const ScheduleColumn*> columns;
+  for (const ScheduleColumn& column : schedule_columns)
+    if (std::any_of(plan.schedule.begin(), plan.schedule.end(),
+                    [&](const PassSpec& spec) { return cell(column, spec) != "-"; }))
+      columns.push_back(&column);
+  std::string text = fmt::format("\n{:<8}{:<10}", "pass", "estimator");
+  for (const ScheduleColumn* column : columns)
+    text += fmt::format("{:>{}}", column->name, column->width);
+  for (const PassSpec& spec : plan.schedule) {
+    text += fmt::format("\n  {:<6}{:<10}", spec.pass, spec.estimator);
+    for (const ScheduleColumn* column : columns)
+      text += fmt::format("{:>{}}", cell(*column, spec), column->width);
+  }
+  return text + "\n";
 }
 
 std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPlan& memory) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/pass_numbers.h"
 #include "photonmap/photon_map.h"
 #include "rays/estimator_input.h"
 #include "transport/photon_tracing.h"
@@ -76,11 +77,6 @@ std::uint64_t choose_paths(const RenderSettings& settings, const PhotonPlan& pla
 double automatic_paths(double hits, double stored_per_path, double collisions_per_path);
 /// Where the scene asks for a number of photons.
 double paths_for_photons(double photons, double stored_per_path);
-
-/// The pilots' pass numbers count down from here, far from those of the picture.
-inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
-inline constexpr std::uint64_t guide_pass = pilot_pass - 16, guided_pilot_pass = guide_pass - 1,
-                               sight_pass = guide_pass - 2, limit_pass = guide_pass - 3;
 
 /// Per light of the world: shadow rays look for it from surfaces, whatever the medium's photons
 /// bring, since a path from a surface may not meet it.

@@ -218,6 +218,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
   plan.estimator = estimator.name;
   plan.stages = Planner(scene, estimator, needs).plan();
   plan.shadow_ray_lights = needs.shadow_ray_lights;
+  plan.motion_samples = scene.moments.size();
   plan.unbiased =
       !scene.render.clamp && (estimator.unbiased || (estimator.shoots_photons() && !needs.photons));
   const std::size_t groups = light_group_names(scene).size();

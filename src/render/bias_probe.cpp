@@ -34,20 +34,20 @@ BiasProbe::BiasProbe(const EstimatorInput& input, const PixelRegion& window,
   period_ = static_cast<std::size_t>(std::max(1.0, std::round(period)));
 }
 
-std::vector<PixelValue> BiasProbe::trace(int pass, RenderStatistics& statistics) {
+std::vector<PixelValue> BiasProbe::trace(const PassSpec& spec, RenderStatistics& statistics) {
   const Stopwatch watch;
   std::vector<PixelValue> probes;
   std::vector<std::size_t> image_pixels;
   // Every period-th pixel in an order that jumps, so that a pass does not probe columns.
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    if ((mix64(i) + static_cast<std::uint64_t>(pass)) % period_ != 0)
+    if ((mix64(i) + static_cast<std::uint64_t>(spec.probe_turn)) % period_ != 0)
       continue;
     const auto width = static_cast<std::size_t>(window_.width());
     const std::size_t x = window_.x0 + pixels_[i] % width, y = window_.y0 + pixels_[i] / width;
     probes.push_back({pixels_[i], {}});
     image_pixels.push_back(y * static_cast<std::size_t>(image_width_) + x);
   }
-  const std::vector<Rgb> radiance = path_.radiance(pass, image_pixels);
+  const std::vector<Rgb> radiance = path_.radiance(spec.pass, image_pixels);
   for (std::size_t i = 0; i < probes.size(); ++i)
     probes[i].radiance = radiance[i];
   statistics.bias_rays += probes.size();

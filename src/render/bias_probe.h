@@ -15,7 +15,7 @@ public:
             const std::vector<std::size_t>& pixels);
 
   /// The pixels whose turn it is in this pass. A pure function of scene, seed, frame and pass.
-  std::vector<PixelValue> trace(int pass, RenderStatistics& statistics);
+  std::vector<PixelValue> trace(const PassSpec& spec, RenderStatistics& statistics);
 
 private:
   PathEstimator path_;

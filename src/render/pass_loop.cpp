@@ -178,7 +178,7 @@ void PassLoop::render_pass(Shutter& shutter) {
     return;
   std::vector<PixelValue> probes;
   if (probe)
-    probes = probe->trace(next_pass(), result_.statistics);
+    probes = probe->trace(passes.specify(next_pass()), result_.statistics);
   if (stop_.requested())
     return;
   if (stop_.stopped()) // the picture needs no probes, and it is finished

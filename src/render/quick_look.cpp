@@ -1,6 +1,7 @@
 #include "render/quick_look.h"
 
 #include "estimators/path/path.h"
+#include "math/pass_numbers.h"
 
 #include <tbb/parallel_for.h>
 
@@ -9,8 +10,6 @@
 namespace vdbeam {
 namespace {
 
-/// Names random numbers that no pass and no pilot draws.
-constexpr int quick_look_pass = -100;
 constexpr int coarsest_spacing = 64;
 
 void copy_pixel(const PassImage& from, std::size_t source, PassImage& to, std::size_t target) {

@@ -5,19 +5,9 @@
 #include "prepare/prepared_scene.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 namespace vdbeam {
 namespace {
-
-/// The bits of a number behind the point, in reverse (van der Corput 1935): 0, 1/2, 1/4, 3/4, ...
-double radical_inverse(std::uint32_t n) {
-  std::uint32_t reversed = 0;
-  for (int bit = 0; bit < 32; ++bit)
-    reversed |= (n >> bit & 1) << (31 - bit);
-  return static_cast<double>(reversed) * 0x1p-32;
-}
 
 std::uint64_t bytes_of(const World& world) {
   std::uint64_t bytes = 0;
@@ -49,17 +39,11 @@ Shutter::Shutter(const Scene& scene, const EstimatorType& type, const PreparedSc
     : scene_(scene), type_(type), prepared_(prepared), input_(input), path_plan_(path_plan),
       probe_pixels_(probe_pixels) {}
 
-std::size_t Shutter::moment_of(int pass, std::size_t moments, std::uint64_t seed) {
-  const double shift = static_cast<double>(mix64(seed) >> 11) * 0x1p-53;
-  const double place = radical_inverse(static_cast<std::uint32_t>(pass)) + shift;
-  const double part = (place - std::floor(place)) * static_cast<double>(moments);
-  return std::min(static_cast<std::size_t>(part), moments - 1);
-}
-
 Shutter::Renderer Shutter::at(int pass, RenderStatistics& statistics) {
   const bool still = scene_.moments.empty();
   const Scene& moment =
-      still ? scene_ : scene_.moments[moment_of(pass, scene_.moments.size(), scene_.render.seed)];
+      still ? scene_
+            : scene_.moments[motion_sample(pass, scene_.moments.size(), scene_.render.seed)];
   MomentRenderer& renderer = renderer_of(moment, statistics);
   renderer.last_pass = pass;
   if (!renderer.passes) {

@@ -11,9 +11,8 @@
 
 namespace vdbeam {
 
-/// Gives each pass what renders it at its own moment of the shutter's time: the moments of the
-/// scene in an order that spreads any number of passes over the shutter (van der Corput's
-/// sequence, shifted by the seed), a pure function of the pass' number. Where the camera alone
+/// Gives each pass what renders it at its own moment of the shutter's time
+/// (PassSpec::motion_sample). Where the camera alone
 /// moves all passes share one world; else worlds are built when they are first needed, and kept as
 /// far as memory goes. What is chosen at the scene's own moment serves all of them: pilots at
 /// each would take longer than a pass.
@@ -38,9 +37,6 @@ public:
   void follow(SceneChoices choices, RenderStatistics& statistics);
   /// Adds what the estimator tries out before its first pass to statistics.pilot.
   Renderer at(int pass, RenderStatistics& statistics);
-
-  /// Index of the motion sample that a pass renders.
-  static std::size_t moment_of(int pass, std::size_t moments, std::uint64_t seed);
 
 private:
   /// A world and what renders it.

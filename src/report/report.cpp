@@ -119,7 +119,12 @@ Json schedule_json(const RenderPlan& plan) {
                       {"neighbours", spec.neighbours},
                       {"light_paths", spec.light_paths},
                       {"gather_walks", spec.gather_walks},
-                      {"regression_radius", spec.regression_radius}});
+                      {"regression_radius", spec.regression_radius},
+                      {"expected_passes", spec.expected_passes},
+                      {"surface_fit_radius", spec.surface_fit_radius},
+                      {"wide_surface_fit_radius", spec.wide_surface_fit_radius},
+                      {"motion_sample", spec.motion_sample},
+                      {"probe_turn", spec.probe_turn}});
   return passes;
 }
 

@@ -4,6 +4,7 @@
 #include "math/plane_fit.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
+#include "shading/surface_passes.h"
 #include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
@@ -19,24 +20,6 @@ namespace {
 /// of the surface, in widths of what is shared.
 constexpr float least_cosine = 0.9f, farthest_off_plane = 2;
 
-/// Radii of a pass's planes: narrow ones in pixels, wide ones in steps of three of them; 0: none.
-std::array<float, 2> radii_of(int pass) {
-  struct Row {
-    int end;
-    std::array<float, 2> radii;
-  };
-  constexpr std::array<Row, 6> rows{{{4, {2.8f, 2.8f}},
-                                     {12, {2, 2.8f}},
-                                     {32, {1.4f, 2}},
-                                     {80, {1, 1.4f}},
-                                     {200, {0.7f, 0}},
-                                     {600, {0.5f, 0}}}};
-  for (const Row& row : rows)
-    if (pass < row.end)
-      return row.radii;
-  return {0.25f, 0};
-}
-
 float mean_square(const Rgb& difference) {
   return mean_component(difference * difference);
 }
@@ -45,7 +28,7 @@ float mean_square(const Rgb& difference) {
 
 SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
     : camera_(input.camera), width_(input.camera.width()), height_(input.camera.height()),
-      pass_(pass), narrow_(radii_of(pass)[0]), wide_(radii_of(pass)[1]),
+      pass_(pass), narrow_(surface_fit_radii(pass)[0]), wide_(surface_fit_radii(pass)[1]),
       pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
       variance_of_narrow_(pixels_.size()),
       parts_(input.world.surfaces->any_gloss() ? part_count : gloss) {
@@ -212,7 +195,7 @@ void SurfaceFit::fit_wide(int x, int y) {
 
 /// The mean over n passes to come has the least error at the weight (V / n) / (V / n + B).
 float SurfaceFit::best_weight(float variance, float difference, int pass, float tolerance) {
-  const float of_mean = variance / static_cast<float>(2 * (pass + 1));
+  const float of_mean = variance / static_cast<float>(expected_passes(pass));
   const float bias = std::max(0.0f, difference - tolerance * variance);
   return of_mean + bias > 0 ? of_mean / (of_mean + bias) : 0;
 }

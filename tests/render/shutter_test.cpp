@@ -28,13 +28,13 @@ TEST_F(ShutterTest, PassesVisitEveryMomentOnce) {
     for (const int moments : {1, 16, 64}) {
       std::set<std::size_t> seen;
       for (int pass = 0; pass < moments; ++pass)
-        seen.insert(Shutter::moment_of(pass, static_cast<std::size_t>(moments), seed));
+        seen.insert(motion_sample(pass, static_cast<std::size_t>(moments), seed));
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(moments));
       if (moments == 1)
         continue;
       std::vector<int> halves(2);
       for (int pass = 0; pass < 8; ++pass)
-        ++halves[2 * Shutter::moment_of(pass, static_cast<std::size_t>(moments), seed) /
+        ++halves[2 * motion_sample(pass, static_cast<std::size_t>(moments), seed) /
                  static_cast<std::size_t>(moments)];
       EXPECT_LE(std::abs(halves[0] - halves[1]), 2);
     }
@@ -113,7 +113,7 @@ TEST_F(ShutterTest, BlurIsTheMeanOfItsMoments) {
   const Image blurred = render(scene).image;
   std::vector<double> sum(plane(blurred, "A").size());
   for (int pass = 0; pass < 16; ++pass) {
-    const std::size_t moment = Shutter::moment_of(pass, scene.moments.size(), 1);
+    const std::size_t moment = motion_sample(pass, scene.moments.size(), 1);
     const double time = scene.moments[moment].volumes[0].velocity.time; // 1 frame per second
     Scene instant =
         load({"camera.shutter_open=" + std::to_string(time - 1e-4),

@@ -92,7 +92,7 @@ void SubFrames::compare() {
     for (int r = 0; r < replicates; ++r) {
       scene.render.seed = static_cast<std::uint64_t>(1001 + r);
       int pass = 0;
-      while (Shutter::moment_of(pass, moments, scene.render.seed) != static_cast<std::size_t>(part))
+      while (motion_sample(pass, moments, scene.render.seed) != static_cast<std::size_t>(part))
         ++pass;
       FrameSettings frame;
       frame.pass_range = PassRange{pass, pass};

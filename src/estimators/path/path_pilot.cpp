@@ -1,5 +1,6 @@
 #include "estimators/path/ray_task.h"
 
+#include "math/pass_numbers.h"
 #include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
@@ -10,8 +11,6 @@ namespace vdbeam {
 
 namespace {
 
-/// Names random numbers that no pass draws.
-constexpr std::uint64_t first_effort_pass = ~std::uint64_t(0) - 300;
 constexpr std::size_t rays_per_pixel = 2, draws_per_ray = 2;
 constexpr std::size_t fewest_pixels = 64, most_pixels = 1024, pixels_per_trial = 32;
 constexpr std::uint32_t most_rounds = 1024;
