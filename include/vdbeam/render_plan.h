@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdbeam/pass_spec.h"
+#include "vdbeam/plan_choices.h"
 
 #include <array>
 #include <cstdint>
@@ -89,14 +90,6 @@ struct PlanStage {
   std::string reason; ///< one clause
 };
 
-/// A feature of the method, and whether a frame's passes use it.
-struct FeatureChoice {
-  std::string_view name; ///< "forward peak", ...
-  std::string_view key;  ///< key of the scene file that controls it; empty: none
-  bool on = false;
-  std::string reason; ///< one clause: what it does, or why it is left out
-};
-
 /// A mesh or texture of a scene, as found before rendering.
 struct SurfaceFile {
   std::string path;
@@ -113,6 +106,8 @@ struct RenderPlan {
   std::vector<PlanStage> stages; ///< all of them, in the order of Stage
   /// All features with the choices made once the volumes were read; empty before.
   std::vector<FeatureChoice> features;
+  /// The numbers of the passes, with their origin; empty before the volumes are read.
+  std::vector<PlanNumber> numbers;
   /// Specifications of the passes at which something may change, up to the last pass; empty before
   /// the volumes are read.
   std::vector<PassSpec> schedule;

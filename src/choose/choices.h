@@ -8,6 +8,15 @@ namespace vdbeam {
 
 struct KernelTrialResult;
 
+/// Work of a pilot, as it counts it.
+struct PilotWork {
+  std::uint64_t light_paths = 0, camera_rays = 0;
+
+  PilotWork operator-(const PilotWork& other) const {
+    return {light_paths - other.light_paths, camera_rays - other.camera_rays};
+  }
+};
+
 /// How the passes of a frame are rendered: chosen once, before the first pass, as a pure function
 /// of the estimator's input (by counts, never by a clock).
 struct Choices {
@@ -17,6 +26,11 @@ struct Choices {
   PeakOrders peak;                  ///< of phase functions, which photons live without
   PhotonPlan photons;               ///< lights, light paths, photons and kernels
   std::optional<GatherPlan> gather; ///< of final gathering; empty: there is none
+  /// Work of the pilots of view importance, of the path guide and of kernels.
+  PilotWork view_work, guide_work, kernel_work;
+  /// Forecast error of gathering along camera rays over that of final gathering after the same
+  /// time; 0: there is no forecast.
+  double lead_of_gather = 0;
   /// Result of the kernel pilot; null without one.
   std::shared_ptr<const KernelTrialResult> trial;
 };

@@ -53,9 +53,16 @@ TracedPhotons trace_guided_pilot(const EstimatorInput& input, PhotonPlan& plan) 
   return trace_photons(input.world, pass);
 }
 
+/// What pilots have counted so far.
+PilotWork work_so_far(const PhotonPlan& plan) {
+  return {plan.pilot_paths, plan.importance_rays};
+}
+
 /// Sends light paths to where the camera sees them, and stores their collisions there.
 void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedPhotons pilot,
-                 PhotonPlan& plan) {
+                 Choices& choices) {
+  PhotonPlan& plan = choices.photons;
+  const PilotWork before_view = work_so_far(plan);
   const auto wanted_per_path = [&] {
     const double collisions = pilot.mean_collisions;
     return std::min(collisions, std::max(tuning::stored_per_path, std::sqrt(collisions)));
@@ -65,6 +72,8 @@ void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedP
   CellTables importance =
       view_importance(input.world, input.camera, plan.view_reach, tuning::least_importance,
                       plan.importance_rays, input.stop);
+  choices.view_work = work_so_far(plan) - before_view;
+  const PilotWork before_guide = work_so_far(plan);
   if (is_possible(path_guide_feature, {input, kind}))
     plan.guide = fit_path_guide(input, plan, importance, pilot.mean_collisions);
   if (plan.guide) {
@@ -72,6 +81,7 @@ void follow_view(const EstimatorInput& input, const EstimatorKind& kind, TracedP
     plan.collisions_per_path = pilot.mean_collisions;
     plan.stored_per_path = wanted_per_path();
   }
+  choices.guide_work = work_so_far(plan) - before_guide;
   if (pilot.photons.size() == 0) // only where a pilot was stopped
     return;
   ViewThinning thinning =
@@ -123,6 +133,7 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
                            std::min(tuning::few_trial_paths, 2 * tuning::trial_share * paths),
                            tuning::most_trial_paths));
   plan.collisions_per_path = 0;
+  const PilotWork before = work_so_far(plan);
   KernelTrial narrow, wide;
   narrow.neighbours = std::min(tuning::trial_neighbours, tuning::most_in_kernel * photons);
   wide.neighbours = tuning::wide_over_narrow * narrow.neighbours;
@@ -146,11 +157,14 @@ void try_kernels(const EstimatorInput& input, const EstimatorKind& kind, Choices
     }
   }
   const KernelErrors errors = measure_kernels(input, plan, narrow, wide, key, plan.importance_rays);
+  choices.kernel_work = work_so_far(plan) - before;
   const KernelModel model(narrow, wide, errors, trial_paths / paths, input.settings.alpha);
   plan.neighbours = in_kernel_steps(model.best_neighbours());
   choices.trial = std::make_shared<const KernelTrialResult>(
       KernelTrialResult{model, errors.pixels, errors.regression});
-  choices.gather = choose_gather(input, kind, choices, narrow, trial_paths / paths);
+  const GatherChoice gather = choose_gather(input, kind, choices, narrow, trial_paths / paths);
+  choices.gather = gather.plan;
+  choices.lead_of_gather = gather.lead;
 }
 
 /// Chooses lights, photons, kernels and gathering for an estimator that shoots photons, in the
@@ -167,7 +181,7 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
   }
   TracedPhotons pilot = trace_pilot(input, plan);
   if (input.plan.needs(Stage::photon_importance) && pilot.photons.size() > 0)
-    follow_view(input, kind, std::move(pilot), plan);
+    follow_view(input, kind, std::move(pilot), choices);
   plan.paths = choose_paths(input.settings, plan);
   const double photons = plan.stored_per_path * static_cast<double>(plan.paths);
   if (input.plan.needs(Stage::kernel_pilot) && photons >= tuning::fewest_for_trial)

@@ -83,29 +83,29 @@ double share_of_lamps_inside(const World& world) {
 
 } // namespace
 
-std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
-                                        const Choices& choices, const KernelTrial& trial,
-                                        double paths_share) {
+GatherChoice choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
+                           const Choices& choices, const KernelTrial& trial, double paths_share) {
   const PhotonPlan& plan = choices.photons;
   if (choices.trial->pixels.empty() || trial.maps.size() < 2 ||
       !is_possible(final_gather_feature, {input, kind, plan.sampled_lights}))
-    return std::nullopt;
+    return {};
   const GatherNoise noise = measure_noise(input, choices, trial);
   const double in_trial = std::max(0.0, noise.maps - noise.walks / 2) * paths_share;
   const double of_photons =
       in_trial * trial.neighbours / (tuning::neighbours_of_gather * plan.neighbours);
   const GatherPlan gather{noise.walks, of_photons, choices.trial->regression};
+  const double error = gather.error_after(tuning::passes_compared);
+  const double without = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
+  const double lead = error > 0 ? without / error : 0;
   if (forces_final_gather(kind, input.settings))
-    return gather;
+    return {gather, lead};
   // The forecast also lacks the kernels' bias for caustics, at which walks look near their
   // beginning.
   const double preference = tuning::preference_for_gather *
                             (1 - share_of_lamps_inside(input.world)) * (1 - plan.caustic_share);
-  const double error = gather.error_after(tuning::passes_compared);
-  const double without = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
   if (error > 0 && error < preference * without)
-    return gather;
-  return std::nullopt;
+    return {gather, lead};
+  return {std::nullopt, lead};
 }
 
 } // namespace vdbeam

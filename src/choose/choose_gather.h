@@ -8,11 +8,15 @@
 
 namespace vdbeam {
 
-/// Plan of final gathering, from the noise of walks that a pilot measures; empty if it is never
-/// better, or impossible. `trial`: photons in narrow kernels, of maps of
-/// `paths_share` of a pass's light paths.
-std::optional<GatherPlan> choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
-                                        const Choices& choices, const KernelTrial& trial,
-                                        double paths_share);
+/// Whether and how walks from camera rays gather photons.
+struct GatherChoice {
+  std::optional<GatherPlan> plan; ///< empty where final gathering is never better, or impossible
+  double lead = 0;                ///< Choices::lead_of_gather
+};
+
+/// Chooses by the noise of walks that a pilot measures. `trial`: photons in narrow kernels, of maps
+/// of `paths_share` of a pass's light paths.
+GatherChoice choose_gather(const EstimatorInput& input, const EstimatorKind& kind,
+                           const Choices& choices, const KernelTrial& trial, double paths_share);
 
 } // namespace vdbeam

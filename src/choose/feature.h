@@ -29,6 +29,8 @@ struct FeatureFacts {
 struct FeatureCondition {
   bool (*excludes)(const FeatureFacts& facts);
   std::string_view clause; ///< why, as it ends "off: ..."
+  /// The lights or volumes on whose account the feature is off; null: none in particular.
+  std::string (*culprits)(const FeatureFacts& facts) = nullptr;
 };
 
 /// A part of the method that a frame's passes use or leave out: everything that choices, the plan,
@@ -42,7 +44,12 @@ struct Feature {
   std::span<const FeatureCondition> conditions;
   /// Whether it is used where nothing excludes it, by what the pilot measured; null: always.
   bool (*used)(const FeatureFacts& facts, const Choices& choices) = nullptr;
-  std::string_view unused = {}; ///< clause for where the pilot leaves it out
+  std::string_view unused = {};         ///< clause for where the pilot leaves it out
+  std::string_view whole = "the scene"; ///< what does without it where it is off
+  /// What does without it where it is on: lights, volumes, paths or places; null: nothing.
+  std::string (*rest)(const FeatureFacts& facts, const Choices& choices) = nullptr;
+  /// Work or error that a pilot measured or forecast; null: none does.
+  std::string (*cost)(const FeatureFacts& facts, const Choices& choices) = nullptr;
 };
 
 /// Every feature, in the order in which the plan lists them. A new one is its file and a line here.

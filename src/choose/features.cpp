@@ -1,5 +1,10 @@
 #include "choose/feature.h"
+#include "choose/names.h"
+#include "choose/schedule.h"
+#include "phase/truncated_phase.h"
 #include "walks/light_branches.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -25,38 +30,50 @@ bool gathers_along_rays(const Facts& facts) {
   return facts.kind.name != EstimatorType::automatic.name && !is_forced(facts);
 }
 
-/// Removing the peak is valid only if every light has shadow rays or is a constant sky; otherwise
-/// light that is scattered by the peak alone is lost.
-bool has_light_that_loses_its_peak(const Facts& facts) {
-  const LightSet& lights = facts.input.world.lights;
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    if (!facts.sampled_lights[i] && !lights.traits(i).is_emission &&
-        (!lights.traits(i).surrounds || lights.traits(i).wants_shadow_rays))
+/// A question about a light of the world.
+using LightTest = bool (*)(const Facts& facts, std::size_t light);
+
+template <LightTest test>
+bool any_light(const Facts& facts) {
+  for (std::size_t i = 0; i < facts.input.world.lights.size(); ++i)
+    if (test(facts, i))
       return true;
   return false;
 }
+template <LightTest test>
+std::string lights_that(const Facts& facts) {
+  return light_names(facts.input.world, [&](std::size_t light) { return test(facts, light); });
+}
+
+/// Removing the peak is valid only if every light has shadow rays or is a constant sky; otherwise
+/// light that is scattered by the peak alone is lost.
+bool loses_its_peak(const Facts& facts, std::size_t light) {
+  const LightTraits& traits = facts.input.world.lights.traits(light);
+  return !facts.sampled_lights[light] && !traits.is_emission &&
+         (!traits.surrounds || traits.wants_shadow_rays);
+}
 
 /// Walks meet no light that has but one point or direction.
-bool has_light_that_walks_miss(const Facts& facts) {
-  const LightSet& lights = facts.input.world.lights;
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    if (!facts.sampled_lights[i] && lights[i].is_delta())
-      return true;
-  return false;
+bool is_missed_by_walks(const Facts& facts, std::size_t light) {
+  return !facts.sampled_lights[light] && facts.input.world.lights[light].is_delta();
 }
 
 /// A small light without shadow rays is met by chance only: rare and bright values, which a pilot
 /// would miss.
-bool has_light_that_pilots_miss(const Facts& facts) {
-  if (is_forced(facts))
+bool is_missed_by_pilots(const Facts& facts, std::size_t light) {
+  if (is_forced(facts) || light >= facts.input.plan.shadow_ray_lights.size())
     return false;
-  const LightSet& lights = facts.input.world.lights;
-  for (std::size_t l = 0; l < facts.input.plan.shadow_ray_lights.size(); ++l) {
-    const LightTraits& traits = lights.traits(l);
-    if (!facts.sampled_lights[l] && (!traits.surrounds || traits.wants_shadow_rays))
-      return true;
-  }
-  return false;
+  const LightTraits& traits = facts.input.world.lights.traits(light);
+  return !facts.sampled_lights[light] && (!traits.surrounds || traits.wants_shadow_rays);
+}
+
+bool has_surfaces(const Facts& facts) {
+  return facts.input.world.surfaces != nullptr;
+}
+
+/// "photons on surfaces", as `text` says, where there are any.
+std::string where_photons_lie_on_surfaces(const Facts& facts, std::string_view text) {
+  return facts.needs(Stage::surface_photons) ? std::string(text) : std::string();
 }
 
 /// Whether shadow rays look for a light that `is_wanted`.
@@ -91,12 +108,18 @@ bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settin
   return kind.name == EstimatorType::gather.name || asked;
 }
 
-const Feature view_importance_feature{.name = "view importance",
-                                      .key = "render.thinning",
-                                      .help =
-                                          "photons are stored by their importance for the camera",
-                                      .stage = Stage::photon_importance,
-                                      .conditions = {}};
+const Feature view_importance_feature{
+    .name = "view importance",
+    .key = "render.thinning",
+    .help = "photons are stored by their importance for the camera",
+    .stage = Stage::photon_importance,
+    .conditions = {},
+    .rest =
+        [](const Facts& facts, const Choices&) {
+          return where_photons_lie_on_surfaces(facts, "photons on surfaces");
+        },
+    .cost = [](const Facts& facts,
+               const Choices& choices) { return work_text(facts, choices, choices.view_work); }};
 
 namespace {
 constexpr FeatureCondition path_guide_conditions[] = {{stores_scattered_flux, by_scattered_flux}};
@@ -108,7 +131,10 @@ const Feature path_guide_feature{
     .stage = Stage::photon_importance,
     .conditions = path_guide_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.photons.guide != nullptr; },
-    .unused = "the pilot stored too few photons to estimate importance"};
+    .unused = "the pilot stored too few photons to estimate importance",
+    .whole = "all light paths",
+    .cost = [](const Facts& facts,
+               const Choices& choices) { return work_text(facts, choices, choices.guide_work); }};
 
 const Feature kernel_pilot_feature{
     .name = "kernel pilot",
@@ -117,7 +143,14 @@ const Feature kernel_pilot_feature{
     .stage = Stage::kernel_pilot,
     .conditions = {},
     .used = [](const Facts&, const Choices& choices) { return choices.trial != nullptr; },
-    .unused = "there are too few photons for a pilot"};
+    .unused = "there are too few photons for a pilot",
+    .whole = "all kernels",
+    .rest =
+        [](const Facts& facts, const Choices&) {
+          return where_photons_lie_on_surfaces(facts, "kernels of photons on surfaces");
+        },
+    .cost = [](const Facts& facts,
+               const Choices& choices) { return work_text(facts, choices, choices.kernel_work); }};
 
 namespace {
 constexpr FeatureCondition forward_peak_conditions[] = {
@@ -128,16 +161,34 @@ constexpr FeatureCondition forward_peak_conditions[] = {
     {[](const Facts& facts) { return facts.input.world.medium.isotropic(); },
      "phase functions are isotropic"},
     {[](const Facts& facts) { return facts.input.world.medium.colored(); },
-     "a colour grid varies the albedo"},
-    {has_light_that_loses_its_peak,
-     "a light other than a constant sky is sampled by photons only"}};
+     "a colour grid varies the albedo",
+     [](const Facts& facts) {
+       return volume_names(facts.input.world,
+                           [](const Volume& volume) { return volume.color != nullptr; });
+     }},
+    {any_light<loses_its_peak>, "a light other than a constant sky is sampled by photons only",
+     lights_that<loses_its_peak>}};
+
+/// Volumes whose phase functions have no peak at the order of the first pass.
+std::string volumes_without_peak(const Facts& facts, const Choices& choices) {
+  const World& world = facts.input.world;
+  const int order = peak_order(choices.peak, 0, choices.gather.has_value());
+  return volume_names(world, [&](const Volume& volume) {
+    return order == 0 ||
+           truncate_peak(world.medium.phases[static_cast<std::size_t>(volume.phase_index)], order)
+                   .forward == 0;
+  });
 }
+} // namespace
 const Feature forward_peak_feature{
     .name = "forward peak",
     .key = "render.forward_peak",
     .help = "multiple scattering uses delta-M truncation of the forward peak",
     .stage = Stage::photons,
-    .conditions = forward_peak_conditions};
+    .conditions = forward_peak_conditions,
+    .used = [](const Facts&, const Choices& choices) { return choices.peak.taken_out; },
+    .unused = "no phase function has a peak that is worth truncating",
+    .rest = volumes_without_peak};
 
 namespace {
 constexpr FeatureCondition final_gather_conditions[] = {
@@ -148,10 +199,35 @@ constexpr FeatureCondition final_gather_conditions[] = {
      "render.final_gather is \"never\""},
     {stores_scattered_flux, by_scattered_flux},
     {limits_bounces, by_bounces},
-    {has_light_that_walks_miss, "a point or directional light is sampled by photons only"},
-    {has_light_that_pilots_miss,
-     "a small light without shadow rays makes the pilot's noise estimate unreliable"}};
+    {any_light<is_missed_by_walks>, "a point or directional light is sampled by photons only",
+     lights_that<is_missed_by_walks>},
+    {any_light<is_missed_by_pilots>,
+     "a small light without shadow rays makes the pilot's noise estimate unreliable",
+     lights_that<is_missed_by_pilots>}};
+
+/// Light for which photons are gathered along camera rays all the same.
+std::string gathered_along_rays(const Facts& facts, const Choices&) {
+  const World& world = facts.input.world;
+  if (!world.surfaces || !world.surfaces->focus_light())
+    return {};
+  const std::vector<bool> caustic = caustic_lights(world);
+  const std::string lights = light_names(world, [&](std::size_t i) { return caustic[i]; });
+  return lights.empty() ? "rays behind mirrors and glass"
+                        : "rays behind mirrors and glass, and caustics of " + lights;
 }
+
+/// The forecast against gathering along camera rays, whichever is used.
+std::string cost_of_gather(const Facts&, const Choices& choices) {
+  const double lead = choices.lead_of_gather;
+  if (!(lead > 0))
+    return {};
+  if (choices.gather)
+    return fmt::format("at equal time, gathering along camera rays has {:.2g} times its forecast "
+                       "error",
+                       lead);
+  return fmt::format("at equal time it has {:.2g} times the forecast error", 1 / lead);
+}
+} // namespace
 const Feature final_gather_feature{
     .name = "final gathering",
     .key = "render.estimator",
@@ -160,14 +236,22 @@ const Feature final_gather_feature{
     .conditions = final_gather_conditions,
     .used = [](const Facts&, const Choices& choices) { return choices.gather.has_value(); },
     .unused = "the pilot predicts a smaller error for gathering along camera rays, or had too few "
-              "photons"};
+              "photons",
+    .rest = gathered_along_rays,
+    .cost = cost_of_gather};
 
 namespace {
 constexpr FeatureCondition shadow_lattice_conditions[] = {
     {shoots_no_photons, "the estimator traces no photons"},
     {[](const Facts& facts) { return facts.input.world.medium.empty(); }, "there is no medium"},
     {[](const Facts& facts) { return facts.input.world.medium.chromatic; },
-     "extinction differs between channels"}};
+     "extinction differs between channels",
+     [](const Facts& facts) {
+       return volume_names(facts.input.world, [](const Volume& volume) {
+         const Rgb& scale = volume.channel_scale;
+         return scale.x != scale.y || scale.y != scale.z;
+       });
+     }}};
 }
 const Feature shadow_lattice_feature{
     .name = "shadow lattice",
@@ -179,7 +263,16 @@ const Feature shadow_lattice_feature{
         [](const Facts& facts, const Choices&) {
           return samples_light(facts, [](const Light& light) { return light.narrow_direction(); });
         },
-    .unused = "no light has a single direction"};
+    .unused = "no light has a single direction",
+    .whole = "all shadow rays",
+    .rest =
+        [](const Facts& facts, const Choices&) {
+          const LightSet& lights = facts.input.world.lights;
+          const std::string names = light_names(facts.input.world, [&](std::size_t i) {
+            return facts.sampled_lights[i] && !lights[i].narrow_direction();
+          });
+          return names.empty() ? names : "shadow rays to " + names;
+        }};
 
 namespace {
 constexpr FeatureCondition boundary_share_conditions[] = {
@@ -190,12 +283,10 @@ const Feature boundary_share_feature{
     .key = "",
     .help = "kernel weights are divided by the fraction of the kernel inside the medium",
     .stage = Stage::photons,
-    .conditions = boundary_share_conditions};
+    .conditions = boundary_share_conditions,
+    .whole = "all kernels"};
 
 namespace {
-bool has_surfaces(const Facts& facts) {
-  return facts.input.world.surfaces != nullptr;
-}
 constexpr FeatureCondition edges_conditions[] = {
     {[](const Facts& facts) { return !facts.kind.shoots_photons(); },
      "path divides its rays among pixels by their noise"},
@@ -210,7 +301,12 @@ const Feature edges_feature{
     .conditions = edges_conditions,
     .used = [](const Facts& facts,
                const Choices& choices) { return choices.gather || has_surfaces(facts); },
-    .unused = "without surfaces, only final gathering refines edges"};
+    .unused = "without surfaces, only final gathering refines edges",
+    .whole = "all pixels",
+    .rest =
+        [](const Facts&, const Choices& choices) {
+          return choices.gather ? std::string() : "edges of the medium";
+        }};
 
 namespace {
 constexpr FeatureCondition branches_conditions[] = {
@@ -225,6 +321,14 @@ const Feature branches_feature{
     .key = "",
     .help = "paths, and walks from surfaces, branch towards lights of small angular size",
     .stage = std::nullopt,
-    .conditions = branches_conditions};
+    .conditions = branches_conditions,
+    .whole = "all paths and walks",
+    .rest = [](const Facts& facts, const Choices&) {
+      const LightSet& lights = facts.input.world.lights;
+      const std::string names = light_names(facts.input.world, [&](std::size_t i) {
+        return facts.sampled_lights[i] && !LightBranches::is_narrow(lights[i]);
+      });
+      return names.empty() ? names : "paths to " + names;
+    }};
 
 } // namespace vdbeam

@@ -26,6 +26,15 @@ int lowest_order(const Medium& medium, float largest_peak) {
   return lowest;
 }
 
+/// Some phase function has a peak worth taking out.
+bool has_peak(const Medium& medium) {
+  for (int order = least_truncation_order; order <= most_truncation_order; ++order)
+    for (const PhaseFunction& phase : medium.phases)
+      if (truncate_peak(phase, order).forward > 0)
+        return true;
+  return false;
+}
+
 /// The order of the first passes that gather along rays.
 double first_order(const Medium& medium) {
   const int lowest = lowest_order(medium, tuning::largest_first_peak);
@@ -46,6 +55,8 @@ double first_order(const Medium& medium) {
 } // namespace
 
 PeakOrders choose_peak_orders(const Medium& medium) {
+  if (!has_peak(medium))
+    return {};
   const double along_rays = first_order(medium);
   return {true, along_rays,
           std::max<double>(along_rays, lowest_order(medium, tuning::largest_peak_of_gather))};

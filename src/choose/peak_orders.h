@@ -14,7 +14,8 @@ struct PeakOrders {
   double along_rays = 0, of_gather = 0;
 };
 
-/// At first one that leaves enough of each phase function, higher where the medium is thin.
+/// None where no phase function has a peak. At first one that leaves enough of each phase function,
+/// higher where the medium is thin.
 PeakOrders choose_peak_orders(const Medium& medium);
 
 } // namespace vdbeam

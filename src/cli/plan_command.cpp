@@ -3,6 +3,7 @@
 #include "console/streams.h"
 #include "keys/estimator_kind.h"
 #include "machine/memory.h"
+#include "report/plan_text.h"
 #include "report/report.h"
 #include "text/frame_range.h"
 #include "text/text.h"
@@ -72,16 +73,28 @@ std::string memory_text(const MemoryPlan& plan) {
 }
 
 /// The parts of the method with what was chosen; nothing where no pilot ran.
-std::string features_text(const RenderPlan& plan) {
+std::string features_table(const RenderPlan& plan) {
   std::string text;
   for (const bool on : {true, false}) {
     std::string rows;
     for (const FeatureChoice& feature : plan.features)
       if (feature.on == on)
-        rows += fmt::format("  {:<20} {}\n", feature.name, feature.reason);
+        rows += fmt::format(
+            "  {:<20} {}{}{}\n", feature.name, feature.reason,
+            feature.scope.empty() ? "" : (on ? "; not for " : "; off for ") + feature.scope,
+            feature.cost.empty() ? "" : "; " + feature.cost);
     if (!rows.empty())
       text += fmt::format("\n{}\n{}", on ? "features" : "features that are off", rows);
   }
+  return text;
+}
+
+/// The numbers of the passes with their origin; nothing where no pilot ran.
+std::string numbers_table(const RenderPlan& plan) {
+  std::string text;
+  for (const PlanNumber& number : plan.numbers)
+    text += fmt::format("{}  {:<26} {:<14} {:<10} {}\n", text.empty() ? "\nnumbers\n" : "",
+                        number.name, range_text(number), origin_name(number.origin), number.reason);
   return text;
 }
 
@@ -95,7 +108,10 @@ struct ScheduleColumn {
 
 constexpr ScheduleColumn schedule_columns[] = {
     {"peak order", 12, [](const PassSpec& spec) { return static_cast<double>(spec.peak_order); }},
-    {"kernels", 12, [](const PassSpec& spec) { return static_cast<double>(spec.kernel_scale); }},
+    {"kernels", 12,
+     [](const PassSpec& spec) {
+       return spec.light_paths > 0 ? static_cast<double>(spec.kernel_scale) : 0;
+     }},
     {"neighbours", 12, [](const PassSpec& spec) { return spec.neighbours; }},
     {"light paths", 12, [](const PassSpec& spec) { return static_cast<double>(spec.light_paths); }},
     {"walks", 8, [](const PassSpec& spec) { return static_cast<double>(spec.gather_walks); }},
@@ -144,8 +160,8 @@ std::string plan_text(const Scene& scene, const RenderPlan& plan, const MemoryPl
       if (stage.needed == needed)
         text += fmt::format("  {:<18} {}\n", stage_name(stage.stage), stage.reason);
   }
-  return text + features_text(plan) + schedule_text(plan) + memory_text(memory) +
-         surfaces_text(plan);
+  return text + features_table(plan) + numbers_table(plan) + schedule_text(plan) +
+         memory_text(memory) + surfaces_text(plan);
 }
 
 int run_plan(const PlanOptions& options) {
@@ -159,7 +175,7 @@ int run_plan(const PlanOptions& options) {
   const bool fits = memory.peak() <= granted_memory();
   if (!options.no_pilot && !fits)
     log("note: the frame does not fit into this machine's memory, so volumes were not read; "
-        "features and schedule are omitted");
+        "features, numbers and schedule are omitted");
   if (!options.no_pilot && fits) {
     RenderPlan chosen = choose_plan(scene);
     plan.estimator = chosen.estimator;
@@ -167,6 +183,7 @@ int run_plan(const PlanOptions& options) {
     plan.stages = std::move(chosen.stages);
     plan.features = std::move(chosen.features);
     plan.schedule = std::move(chosen.schedule);
+    plan.numbers = std::move(chosen.numbers);
   }
   if (!options.json) {
     print_text(plan_text(scene, plan, memory));
@@ -190,7 +207,7 @@ CommandRun add_plan(CLI::App& app) {
   app.add_option("-f,--frame", options->frame, "Frame number; default: the first on disk")
       ->option_text("N");
   app.add_flag("--no-pilot", options->no_pilot,
-               "Run no pilots and read no large volumes: omit features and schedule");
+               "Run no pilots and read no large volumes: omit features, numbers and schedule");
   app.add_flag("--json", options->json, "Print JSON, with all settings");
   app.footer(R"(Examples:
   vdbeam plan cloud.toml

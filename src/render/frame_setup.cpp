@@ -1,6 +1,7 @@
 #include "render/frame_setup.h"
 
 #include "choose/feature.h"
+#include "choose/plan_numbers.h"
 #include "choose/schedule.h"
 #include "layers/plane_layers.h"
 #include "lights/light_groups.h"
@@ -67,6 +68,7 @@ void describe_choices(const EstimatorInput& input, const EstimatorType& type,
                       const Choices& choices, RenderPlan& plan) {
   plan.features = describe_features(input, estimator_kind(type), choices);
   plan.schedule = list_passes(choices, input.settings);
+  plan.numbers = describe_numbers(input, choices, plan.schedule);
 }
 
 } // namespace vdbeam

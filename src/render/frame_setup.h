@@ -45,7 +45,7 @@ public:
   EstimatorInput input;
 };
 
-/// Puts into the plan what was chosen for an estimator: features and schedule.
+/// Puts into the plan what was chosen for an estimator: features, schedule and numbers.
 void describe_choices(const EstimatorInput& input, const EstimatorType& type,
                       const Choices& choices, RenderPlan& plan);
 

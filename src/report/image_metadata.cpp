@@ -3,6 +3,7 @@
 #include "camera/camera.h"
 #include "film/layers.h"
 #include "keys/scene_enums.h"
+#include "report/plan_text.h"
 #include "report/versions.h"
 #include "text/attributes.h"
 
@@ -105,15 +106,6 @@ void add_error_metadata(Image& image, const PassRecord& record) {
 
 namespace {
 
-/// "forward peak: on; final gathering: off (meshes stand in the scene); ...".
-std::string features_text(const std::vector<FeatureChoice>& features) {
-  std::string text;
-  for (const FeatureChoice& feature : features)
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", feature.name,
-                        feature.on ? "on" : fmt::format("off ({})", feature.reason));
-  return text;
-}
-
 /// How the scene wants its image to be written.
 void add_format(Image& image, const Scene& scene, bool in_a_hurry) {
   if (!scene.layers.empty())
@@ -199,7 +191,9 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   image.metadata["vdbeam:estimator"] = std::string(
       result.plan.estimator.empty() ? scene.render.estimator.name : result.plan.estimator);
   if (!result.plan.features.empty())
-    image.metadata["vdbeam:features"] = features_text(result.plan.features);
+    image.metadata["vdbeam:features"] = features_text(result.plan);
+  if (!result.plan.numbers.empty())
+    image.metadata["vdbeam:numbers"] = numbers_text(result.plan);
   image.numbers["vdbeam:frame"] = scene.frame.number;
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   // A draft and a quick look are packed in no time, for their time is over.

@@ -101,12 +101,30 @@ namespace {
 
 Json features_json(const RenderPlan& plan) {
   Json features = Json::array();
-  for (const FeatureChoice& feature : plan.features)
-    features.push_back({{"name", feature.name},
-                        {"key", feature.key},
-                        {"on", feature.on},
-                        {"reason", feature.reason}});
+  for (const FeatureChoice& feature : plan.features) {
+    Json entry{{"name", feature.name},
+               {"key", feature.key},
+               {"on", feature.on},
+               {"reason", feature.reason}};
+    if (!feature.scope.empty())
+      entry["scope"] = feature.scope;
+    if (!feature.cost.empty())
+      entry["cost"] = feature.cost;
+    features.push_back(std::move(entry));
+  }
   return features;
+}
+
+Json numbers_json(const RenderPlan& plan) {
+  Json numbers = Json::array();
+  for (const PlanNumber& number : plan.numbers)
+    numbers.push_back({{"name", number.name},
+                       {"key", number.key},
+                       {"first", number.first},
+                       {"last", number.last},
+                       {"origin", origin_name(number.origin)},
+                       {"reason", number.reason}});
+  return numbers;
 }
 
 Json schedule_json(const RenderPlan& plan) {
@@ -140,6 +158,7 @@ Json plan_json(const RenderPlan& plan) {
           {"stages", std::move(stages)},
           {"features", features_json(plan)},
           {"schedule", schedule_json(plan)},
+          {"numbers", numbers_json(plan)},
           {"memory",
            {{"photons", plan.photon_bytes},
             {"film", plan.film_bytes},

@@ -1,6 +1,8 @@
 // The table of features: each condition excludes its feature in some scene, with its own clause,
 // and what the plan describes is what passes do.
 #include "choose/feature.h"
+
+#include "choose/plan_numbers.h"
 #include "support/lumpy_cloud.h"
 #include "support/surface_scene.h"
 #include "support/test_frame.h"
@@ -159,6 +161,90 @@ TEST(Features, OfTheTableHaveNamesAndHelp) {
     EXPECT_TRUE(names.insert(feature->name).second) << feature->name;
     EXPECT_EQ(feature->used == nullptr, feature->unused.empty()) << feature->name;
   }
+}
+
+/// Features say which lights, volumes and paths do without them.
+TEST(Features, NameWhatDoesWithoutThem) {
+  MemoryScene scene = cloud();
+  EXPECT_EQ(feature_of(scene, "forward peak").scope, "");
+  scene.add_light(LightType::environment);
+  EXPECT_EQ(feature_of(scene, "shadow lattice").scope, "");
+  VolumeSettings& mist = scene.add(uniform_field({1, 1, 1}, 1),
+                                   box_map({1, 1, 1}, Vec3d(-0.6), Vec3d(-0.2)));
+  mist.extinction = 1;
+  EXPECT_EQ(feature_of(scene, "forward peak").scope, "volume.1");
+  scene.scene.render.direct = DirectLight::photons;
+  const FeatureChoice off = feature_of(scene, "forward peak");
+  EXPECT_FALSE(off.on);
+  EXPECT_EQ(off.scope, "the scene, because of light.0");
+  scene = cloud();
+  name_path(scene);
+  for (const FeatureChoice& feature : features_of(scene))
+    EXPECT_TRUE(feature.on || !feature.scope.empty()) << feature.name;
+  EXPECT_EQ(feature_of(scene, "view importance").scope, "the scene");
+}
+
+TEST(Features, StateTheWorkOfTheirPilots) {
+  const TestFrame frame(cloud());
+  const EstimatorKind& kind = estimator_kind(EstimatorType::automatic);
+  const Choices choices = choose_for_scene(frame.input(), kind).choices;
+  const PilotWork &view = choices.view_work, &guide = choices.guide_work,
+                  &kernels = choices.kernel_work;
+  EXPECT_GT(view.camera_rays, 0u);
+  EXPECT_GT(guide.light_paths, 0u);
+  EXPECT_GT(kernels.light_paths, 0u);
+  // The first pilot belongs to no feature.
+  EXPECT_EQ(view.light_paths + guide.light_paths + kernels.light_paths + 1024,
+            choices.photons.pilot_paths);
+  EXPECT_EQ(view.camera_rays + guide.camera_rays + kernels.camera_rays,
+            choices.photons.importance_rays);
+  for (const FeatureChoice& feature : describe_features(frame.input(), kind, choices))
+    if (feature.name == "kernel pilot") {
+      EXPECT_NE(feature.cost.find("a pilot of " + std::to_string(kernels.light_paths)),
+                std::string::npos)
+          << feature.cost;
+    } else if (feature.name == "final gathering") {
+      EXPECT_NE(feature.cost.find("times its forecast error"), std::string::npos) << feature.cost;
+    } else if (feature.name == "boundary correction") {
+      EXPECT_EQ(feature.cost, ""); // no pilot measures it
+    }
+}
+
+std::vector<PlanNumber> numbers_of(const MemoryScene& scene) {
+  const TestFrame frame(scene);
+  const EstimatorKind& kind = estimator_kind(scene.scene.render.estimator);
+  const Choices choices = choose_for_scene(frame.input(), kind).choices;
+  return describe_numbers(frame.input(), choices, list_passes(choices, scene.scene.render));
+}
+
+PlanNumber number_of(const MemoryScene& scene, std::string_view name) {
+  for (const PlanNumber& number : numbers_of(scene))
+    if (number.name == name)
+      return number;
+  ADD_FAILURE() << "there is no number " << name;
+  return {};
+}
+
+TEST(Numbers, StateTheirOrigin) {
+  MemoryScene scene = cloud();
+  scene.scene.render.passes = 64;
+  EXPECT_EQ(number_of(scene, "neighbours").origin, NumberOrigin::measured);
+  EXPECT_EQ(number_of(scene, "kernel scale").origin, NumberOrigin::standard);
+  EXPECT_EQ(number_of(scene, "shadow rays per camera ray").origin, NumberOrigin::measured);
+  EXPECT_EQ(number_of(scene, "walks per camera ray").origin, NumberOrigin::measured);
+  EXPECT_GE(number_of(scene, "fit [pixels]").first, number_of(scene, "fit [pixels]").last);
+  RenderSettings& render = scene.scene.render;
+  render.photons = 20000;
+  render.neighbours = 100;
+  render.alpha = 0.7;
+  render.direct_samples = 3;
+  for (const std::string_view name :
+       {"light paths", "neighbours", "kernel scale", "shadow rays per camera ray"})
+    EXPECT_EQ(number_of(scene, name).origin, NumberOrigin::scene) << name;
+  EXPECT_EQ(number_of(scene, "shadow rays per camera ray").first, 3);
+  EXPECT_EQ(number_of(scene, "neighbours").first, 100);
+  name_path(scene);
+  EXPECT_TRUE(numbers_of(scene).empty());
 }
 
 TEST(Schedule, BeamIsTheBeamEstimateInEveryPass) {

@@ -97,7 +97,7 @@ class Scene:
 
     def plan(self, pilots: bool = True) -> dict[str, Any]:
         """What a render will do and why: estimator, stages, features, the schedule of passes, memory. With `pilots`
-        the files are read and measured as before a render; without, features and schedule are left out."""
+        the files are read and measured as before a render; without, features, numbers and schedule are left out."""
         return json.loads(self._core.plan(pilots))
 
     def __repr__(self) -> str:

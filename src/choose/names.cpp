@@ -1,0 +1,36 @@
+#include "choose/names.h"
+
+#include <fmt/format.h>
+
+namespace vdbeam {
+
+void add_name(const std::string& name, std::string& list) {
+  if ((", " + list + ",").find(", " + name + ",") != std::string::npos)
+    return;
+  list += (list.empty() ? "" : ", ") + name;
+}
+
+std::string light_name(const World& world, std::size_t light) {
+  if (world.lights.traits(light).is_emission)
+    return "emission of volumes";
+  if (const int surface = world.lights[light].surface(); surface >= 0)
+    return fmt::format("surface.{}", surface);
+  return fmt::format("light.{}", light);
+}
+
+std::string work_text(const FeatureFacts& facts, const Choices& choices, const PilotWork& work) {
+  std::string text;
+  if (work.light_paths > 0 && choices.photons.paths > 0)
+    text = fmt::format("{} light paths ({:.2g} % of a pass)", work.light_paths,
+                       100 * static_cast<double>(work.light_paths) /
+                           static_cast<double>(choices.photons.paths));
+  const Camera& camera = facts.input.camera;
+  if (work.camera_rays > 0)
+    text += fmt::format("{}{} camera rays ({:.2g} % of a pass)", text.empty() ? "" : " and ",
+                        work.camera_rays,
+                        100 * static_cast<double>(work.camera_rays) /
+                            (static_cast<double>(camera.width()) * camera.height()));
+  return text.empty() ? text : "a pilot of " + text;
+}
+
+} // namespace vdbeam
