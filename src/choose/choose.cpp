@@ -199,9 +199,8 @@ Choices choose_light(const EstimatorInput& input, const EstimatorKind& kind, Pas
   choices.estimator = kind.name;
   if (!kind.shoots_photons())
     return choices;
-  if (is_possible(forward_peak_feature, {input, kind}))
-    choices.peak = choose_peak_orders(input.world.medium);
-  const EstimatorInput first = input.in(worlds.of(peak_order(choices.peak, 0, false)));
+  choices.peak = choose_peak(input, kind);
+  const EstimatorInput first = input.in(planned_world(choices.peak, worlds));
   if (input.of_scene && may_follow(first, *input.of_scene))
     follow_scene(first, *input.of_scene, choices);
   else
@@ -229,6 +228,15 @@ SceneChoices SceneChoices::in_units(double scale) const {
   if (const auto& guide = choices.photons.guide)
     result.choices.photons.guide = std::make_shared<const PathGuide>(guide->in_units(factor));
   return result;
+}
+
+PeakOrders choose_peak(const EstimatorInput& input, const EstimatorKind& kind) {
+  return is_possible(forward_peak_feature, {input, kind}) ? choose_peak_orders(input.world.medium)
+                                                          : PeakOrders();
+}
+
+const World& planned_world(const PeakOrders& peak, PassWorlds& worlds) {
+  return worlds.of(peak_order(peak, 0, false));
 }
 
 Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorlds& worlds) {

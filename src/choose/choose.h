@@ -17,4 +17,10 @@ Choices choose(const EstimatorInput& input, const EstimatorKind& kind, PassWorld
 /// The same for a scene whose moments are to follow it.
 SceneChoices choose_for_scene(const EstimatorInput& input, const EstimatorKind& kind);
 
+/// Truncation orders of the first passes; none where phase functions keep their forward peak.
+PeakOrders choose_peak(const EstimatorInput& input, const EstimatorKind& kind);
+
+/// The world in which photons are planned: that of a first pass that gathers along rays.
+const World& planned_world(const PeakOrders& peak, PassWorlds& worlds);
+
 } // namespace vdbeam

@@ -2,6 +2,7 @@
 
 #include "choose/feature.h"
 #include "choose/pilot/kernel_pilot.h"
+#include "choose/pilot/trial_tile.h"
 #include "estimators/estimator_table.h"
 #include "estimators/path/path.h"
 #include "math/pass_numbers.h"
@@ -41,7 +42,6 @@ double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage
 double spread_beside_photons(const EstimatorInput& input, const PhotonPass& photons,
                              const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
   const EstimatorInput in = input.in(photons.world());
-  const auto width = static_cast<std::size_t>(input.camera.width());
   const int passes = tuning::trial_passes;
   std::vector<PassImage> images(static_cast<std::size_t>(passes));
   std::vector<RenderStatistics> counts_by_pixel(pixels.size());
@@ -53,12 +53,8 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
       if (in.stopped())
         return;
-      TileRays::PixelRay ray =
-          TileRays::pixel_ray(in, key, static_cast<int>(pixels[i].pixel % width),
-                              static_cast<int>(pixels[i].pixel / width));
-      ray.profile.build(in.world.medium, ray.camera.segment,
-                        static_cast<float>(input.settings.cutoff), ray.camera.air);
-      shade_ray(in, photons, ray, key, {i, image, counts_by_pixel[i]});
+      shade_ray(in, photons, trial_ray(in, key, pixels[i].pixel), key,
+                {i, image, counts_by_pixel[i]});
     });
   }
   for (const RenderStatistics& pixel : counts_by_pixel)
@@ -122,10 +118,7 @@ double collisions_of_light_paths(const EstimatorInput& input) {
     return 0;
   const PhotonPlan plan = default_photon_plan(input);
   PassWorlds worlds(input.world);
-  const PeakOrders peak = is_possible(forward_peak_feature, {input, auto_estimator})
-                              ? choose_peak_orders(input.world.medium)
-                              : PeakOrders();
-  const EstimatorInput in = input.in(worlds.of(peak_order(peak, 0, false)));
+  const EstimatorInput in = input.in(planned_world(choose_peak(input, auto_estimator), worlds));
   PhotonPassSettings settings = pass_settings(in, plan, rare_photons_pass);
   settings.paths = probe_paths;
   settings.store_probability = 0;

@@ -1,9 +1,9 @@
 #include "choose/choose_gather.h"
 
 #include "choose/feature.h"
+#include "choose/pilot/trial_tile.h"
 #include "choose/schedule.h"
 #include "estimators/gather/final_gather.h"
-#include "rays/tile_rays.h"
 #include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
@@ -24,16 +24,12 @@ struct GatherNoise {
 GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
                           const KernelTrial& trial) {
   const std::vector<TrialPixel>& pixels = choices.trial->pixels;
-  const auto width = static_cast<std::size_t>(input.camera.width());
   const RngKey key{input.settings.seed, input.frame, pilot_pass};
   const SurfaceLighting surfaces(input, input.world, nullptr);
   std::vector<GatherNoise> noise(pixels.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
     const std::size_t pixel = pixels[i].pixel;
-    TileRays::PixelRay ray = TileRays::pixel_ray(input, key, static_cast<int>(pixel % width),
-                                                 static_cast<int>(pixel / width));
-    ray.profile.build(input.world.medium, ray.camera.segment,
-                      static_cast<float>(input.settings.cutoff), ray.camera.air);
+    const TileRays::PixelRay ray = trial_ray(input, key, pixel);
     if (ray.profile.empty() || input.stopped())
       return;
     Rng rng(key, RngStage::final_gather, pixel);

@@ -18,18 +18,28 @@ std::string light_name(const World& world, std::size_t light) {
   return fmt::format("light.{}", light);
 }
 
+namespace {
+
+/// "75 %" of a pass, "2.5 %" where it is little.
+std::string share_of_pass(double work, double pass) {
+  const double percent = 100 * work / pass;
+  return percent < 10 ? fmt::format("{:.2g} % of a pass", percent)
+                      : fmt::format("{:.0f} % of a pass", percent);
+}
+
+} // namespace
+
 std::string work_text(const FeatureFacts& facts, const Choices& choices, const PilotWork& work) {
   std::string text;
   if (work.light_paths > 0 && choices.photons.paths > 0)
-    text = fmt::format("{} light paths ({:.2g} % of a pass)", work.light_paths,
-                       100 * static_cast<double>(work.light_paths) /
-                           static_cast<double>(choices.photons.paths));
+    text = fmt::format("{} light paths ({})", work.light_paths,
+                       share_of_pass(static_cast<double>(work.light_paths),
+                                     static_cast<double>(choices.photons.paths)));
   const Camera& camera = facts.input.camera;
   if (work.camera_rays > 0)
-    text += fmt::format("{}{} camera rays ({:.2g} % of a pass)", text.empty() ? "" : " and ",
-                        work.camera_rays,
-                        100 * static_cast<double>(work.camera_rays) /
-                            (static_cast<double>(camera.width()) * camera.height()));
+    text += fmt::format("{}{} camera rays ({})", text.empty() ? "" : " and ", work.camera_rays,
+                        share_of_pass(static_cast<double>(work.camera_rays),
+                                      static_cast<double>(camera.width()) * camera.height()));
   return text.empty() ? text : "a pilot of " + text;
 }
 

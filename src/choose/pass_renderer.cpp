@@ -7,8 +7,7 @@ namespace vdbeam {
 FramePasses::FramePasses(const EstimatorType& type, const EstimatorInput& input)
     : input_(input), worlds_(input.world), choices_(choose(input_, estimator_kind(type), worlds_)) {
   if (estimator_kind(type).shoots_photons())
-    photons_.emplace(input_, worlds_, worlds_.of(peak_order(choices_.peak, 0, false)),
-                     choices_.photons);
+    photons_.emplace(input_, worlds_, planned_world(choices_.peak, worlds_), choices_.photons);
   estimator_ = estimator_kind({choices_.estimator}).make(input_, photons_ ? &*photons_ : nullptr);
 }
 

@@ -27,13 +27,6 @@ bool common_albedo(const Medium& medium) {
   return true;
 }
 
-bool samples_extended_light(const World& world, const PhotonPlan& plan) {
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    if (plan.sampled_lights[i] && !world.lights[i].is_delta())
-      return true;
-  return false;
-}
-
 /// Shadow rays of a camera ray by the number of scattering events.
 int samples_for(double collisions) {
   const double samples = std::round(tuning::direct_per_collision / (1 + collisions));
@@ -113,9 +106,9 @@ TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   if (settings.direct_samples == 0) {
     plan.direct_samples = samples_for(collisions);
     // Light of one direction has little noise where the ray is thin.
-    plan.most_direct_samples = samples_extended_light(input.world, plan)
-                                   ? tuning::most_direct_samples
-                                   : plan.direct_samples;
+    const bool extended =
+        samples_extended_light(input.world, [&](std::size_t i) { return plan.sampled_lights[i]; });
+    plan.most_direct_samples = extended ? tuning::most_direct_samples : plan.direct_samples;
   }
   plan.store_probability = std::min(1.0, tuning::stored_per_path / collisions);
   plan.stored_per_path = collisions * plan.store_probability;

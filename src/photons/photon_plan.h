@@ -60,6 +60,15 @@ struct PhotonPlan {
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
 };
 
+/// Whether some light with an extent `is_sampled(index)`, by shadow rays.
+template <class Predicate>
+bool samples_extended_light(const World& world, const Predicate& is_sampled) {
+  for (std::size_t i = 0; i < world.lights.size(); ++i)
+    if (is_sampled(i) && !world.lights[i].is_delta())
+      return true;
+  return false;
+}
+
 /// The part of the plan that needs no pilot: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
 /// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths

@@ -10,13 +10,6 @@ namespace {
 /// where the light is not fitted over pixels.
 constexpr int fewest_of_gloss = 2, paths_if_alone = 4;
 
-bool samples_extended_light(const World& world, const WalkTracer& tracer) {
-  for (std::size_t i = 0; i < world.lights.size(); ++i)
-    if (tracer.samples_light(i) && !world.lights[i].is_delta())
-      return true;
-  return false;
-}
-
 /// The mean of two means, by the numbers of their samples.
 void join(GroupedLight& mean, int count, const GroupedLight& other, int others) {
   mean *= static_cast<float>(count) / static_cast<float>(count + others);
@@ -58,7 +51,8 @@ struct MattShading::Sum {
 MattShading::MattShading(const World& world, const PhotonPlan& plan,
                          const SurfaceLighting& surfaces)
     : world_(world), plan_(plan), surfaces_(surfaces),
-      extended_(samples_extended_light(world, surfaces.tracer())) {}
+      extended_(samples_extended_light(
+          world, [&](std::size_t i) { return surfaces.tracer().samples_light(i); })) {}
 
 /// Each path brings a sample of the shadow rays' light, too.
 void MattShading::sample(const SurfaceVertex& vertex, const MattSamples& samples, Rng& rng,

@@ -169,8 +169,8 @@ TEST(Features, NameWhatDoesWithoutThem) {
   EXPECT_EQ(feature_of(scene, "forward peak").scope, "");
   scene.add_light(LightType::environment);
   EXPECT_EQ(feature_of(scene, "shadow lattice").scope, "");
-  VolumeSettings& mist = scene.add(uniform_field({1, 1, 1}, 1),
-                                   box_map({1, 1, 1}, Vec3d(-0.6), Vec3d(-0.2)));
+  VolumeSettings& mist =
+      scene.add(uniform_field({1, 1, 1}, 1), box_map({1, 1, 1}, Vec3d(-0.6), Vec3d(-0.2)));
   mist.extinction = 1;
   EXPECT_EQ(feature_of(scene, "forward peak").scope, "volume.1");
   scene.scene.render.direct = DirectLight::photons;

@@ -28,6 +28,15 @@ std::vector<std::vector<float>> gather(const EstimatorInput& input,
 
 } // namespace
 
+TileRays::PixelRay trial_ray(const EstimatorInput& input, const RngKey& key, std::size_t pixel) {
+  const auto width = static_cast<std::size_t>(input.camera.width());
+  TileRays::PixelRay ray = TileRays::pixel_ray(input, key, static_cast<int>(pixel % width),
+                                               static_cast<int>(pixel / width));
+  ray.profile.build(input.world.medium, ray.camera.segment,
+                    static_cast<float>(input.settings.cutoff), ray.camera.air);
+  return ray;
+}
+
 std::vector<TilePlace> choose_trial_tiles(const Camera& camera) {
   const int columns = (camera.width() + tile_width - 1) / tile_width;
   const int rows = (camera.height() + tile_width - 1) / tile_width;

@@ -14,6 +14,9 @@ struct TilePlace {
   int x0 = 0, y0 = 0;
 };
 
+/// The ray of a pixel, with its depth profile.
+TileRays::PixelRay trial_ray(const EstimatorInput& input, const RngKey& key, std::size_t pixel);
+
 /// Tiles spread over the picture, at which trials look; all of them where it is small.
 std::vector<TilePlace> choose_trial_tiles(const Camera& camera);
 

@@ -73,18 +73,10 @@ void BeamEstimator::render(const PassSpec& spec, PassImage& image, RenderStatist
 
 /// The same photons once more for each volume, for its layer.
 void BeamEstimator::gather_volumes(TileScratch& scratch, PassImage& image) const {
-  const World& world = photons_.world();
-  const std::size_t volumes = world.medium.volumes.size();
-  std::vector<std::uint8_t> only(volumes);
-  WeightSettings weights = weight_settings(photons_, input_.settings.store);
-  weights.only = &only;
-  for (std::size_t v = 0; v < volumes; ++v) {
-    const std::size_t setting = world.medium.volumes[v].setting;
+  const auto gather_volume = [&](const WeightSettings& weights, std::size_t setting) {
     if (input_.layers->volume_plane(setting) < 0)
-      continue;
-    only.assign(volumes, 0);
-    only[v] = 1;
-    fill_beam_tile(world, input_.camera, scratch.rays, weights, scratch.tile);
+      return;
+    fill_beam_tile(photons_.world(), input_.camera, scratch.rays, weights, scratch.tile);
     std::vector<float>& light = scratch.tile.radiance;
     std::fill(light.begin(), light.end(), 0.0f);
     photons_.map().query(scratch.tile);
@@ -92,7 +84,8 @@ void BeamEstimator::gather_volumes(TileScratch& scratch, PassImage& image) const
       if (const TileRays::PixelRay& ray = scratch.rays[i]; ray.inside)
         RaySink(input_.layers, ray.pixel, image)
             .add_of_volume(setting, light_of(light, i, photons_.map().channels()));
-  }
+  };
+  for_each_volume_alone(photons_, weight_settings(photons_, input_.settings.store), gather_volume);
 }
 
 namespace {

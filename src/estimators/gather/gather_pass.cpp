@@ -80,24 +80,19 @@ void GatherPass::gather(TileScratch& scratch, const RngKey& key, BlurProbe& blur
 /// Light that mirrors and glass brought and the medium scattered into the ray: by equation 11,
 /// since walks leave it out. It is not fitted to the pixels around, which would blur the caustic.
 void GatherPass::add_caustics(const TileRays::PixelRay& ray, float weight, PassImage& image) const {
-  WeightSettings weights = weight_settings(photons_, wide_.settings.store);
-  GroupedLight light =
-      beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile);
+  const WeightSettings all = weight_settings(photons_, wide_.settings.store);
+  const auto caustics = [&](const WeightSettings& weights) {
+    return beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera,
+                         ray.profile);
+  };
+  GroupedLight light = caustics(all);
   const RaySink sink(wide_.layers, ray.pixel, image);
   sink.add_sum(&PassImage::direct, light *= weight);
   sink.add_by_opacity(light.sum());
-  const Medium& medium = photons_.world().medium;
-  std::vector<std::uint8_t> only(sink.sorts_by_volume() ? medium.volumes.size() : 0);
-  weights.only = &only;
-  for (std::size_t v = 0; v < only.size(); ++v) {
-    only.assign(only.size(), 0);
-    only[v] = 1;
-    sink.add_of_volume(
-        medium.volumes[v].setting,
-        beam_radiance(photons_, photons_.caustics_along_rays(), weights, ray.camera, ray.profile)
-                .sum() *
-            weight);
-  }
+  if (sink.sorts_by_volume())
+    for_each_volume_alone(photons_, all, [&](const WeightSettings& weights, std::size_t setting) {
+      sink.add_of_volume(setting, caustics(weights).sum() * weight);
+    });
 }
 
 /// Whether the tile and those around it that are wanted are finished.
