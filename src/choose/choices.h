@@ -1,7 +1,7 @@
 #pragma once
 
-#include "choose/gather_plan.h"
 #include "choose/peak_orders.h"
+#include "choose/pilot/gather_plan.h"
 #include "photons/photon_plan.h"
 
 namespace vdbeam {

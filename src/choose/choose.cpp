@@ -1,7 +1,7 @@
 #include "choose/choose.h"
 
-#include "choose/choose_gather.h"
 #include "choose/feature.h"
+#include "choose/pilot/choose_gather.h"
 #include "choose/pilot/fit_path_guide.h"
 #include "choose/pilot/kernel_pilot.h"
 #include "choose/schedule.h"

@@ -56,26 +56,26 @@ int samples_for(float error, float error_of_one) {
 
 /// The part of a sample's variance that the fit will leave. `spread`: variance of means over
 /// `samples` from pixel to pixel.
-float left_by_fit(float variance, int samples, float spread, int pass, float tolerance) {
+float left_by_fit(float variance, int samples, float spread, int passes, float tolerance) {
   const float plane =
-      SurfaceFit::best_weight(variance / static_cast<float>(samples), spread, pass, tolerance);
+      SurfaceFit::best_weight(variance / static_cast<float>(samples), spread, passes, tolerance);
   return variance * ((1 - plane) * (1 - plane) + plane * plane * tuning::left_by_plane);
 }
 
 /// Samples of a pixel with this light around that has `so_far`; `tr`: what of it reaches the
 /// camera.
-MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float tr, int pass) {
+MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float tr, int passes) {
   const float mean = mean_component(near.light) / near.count,
               per_gloss = mean_component(near.glossy) / near.count;
   if (!(mean > 0 && per_gloss > 0))
     return {};
   const float relative = tr * tr / (mean * mean);
   const float of_ray = left_by_fit(near.ray_variance / near.count, so_far.shadow_rays,
-                                   near.spread(near.straight, near.straight_squares), pass, 1) *
+                                   near.spread(near.straight, near.straight_squares), passes, 1) *
                        relative;
   const float of_gloss =
       left_by_fit(near.gloss_variance / near.count, so_far.paths,
-                  near.spread(near.gloss, near.gloss_squares), pass, tuning::gloss_tolerance) *
+                  near.spread(near.gloss, near.gloss_squares), passes, tuning::gloss_tolerance) *
       tr * tr / (per_gloss * per_gloss);
   const float of_smooth =
       near.spread(near.smooth, near.smooth_squares) * tuning::left_by_plane * relative;
@@ -86,7 +86,7 @@ MattSamples wanted_samples(const Around& near, const MattSamples& so_far, float 
 } // namespace
 
 std::array<MattSamples, TileRays::count> more_samples(const Medium& medium, const TileRays& rays,
-                                                      const TileSurfaces& seen, int pass) {
+                                                      const TileSurfaces& seen, int passes) {
   std::array<MattSamples, TileRays::count> more;
   for (std::size_t i = 0; i < more.size(); ++i) {
     const TileRays::PixelRay& ray = rays[static_cast<int>(i)];
@@ -97,7 +97,7 @@ std::array<MattSamples, TileRays::count> more_samples(const Medium& medium, cons
       continue;
     const MattSamples& has = seen[i].samples;
     const float tr = mean_component(transmittance(medium, ray.profile));
-    const MattSamples wanted = wanted_samples(near, has, tr, pass);
+    const MattSamples wanted = wanted_samples(near, has, tr, passes);
     more[i] = {std::max(0, wanted.paths - has.paths),
                std::max(0, wanted.shadow_rays - has.shadow_rays)};
   }

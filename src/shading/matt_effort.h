@@ -28,8 +28,8 @@ void for_each_near(const TileSurfaces& seen, int ray, const Visit& visit) {
 /// How many more samples of a matt surface each ray of a tile should take so that its noise, after
 /// the fit over pixels (SurfaceFit), and its time balance those of the rest of the picture: as the
 /// square root of the variance. Only the pixels around decide, not the pixel's own samples, which
-/// would bias their mean. `pass`: of the fit.
+/// would bias their mean. `passes`: expected of the render.
 std::array<MattSamples, TileRays::count> more_samples(const Medium& medium, const TileRays& rays,
-                                                      const TileSurfaces& seen, int pass);
+                                                      const TileSurfaces& seen, int passes);
 
 } // namespace vdbeam

@@ -4,7 +4,6 @@
 #include "math/plane_fit.h"
 #include "photons/blur_probe.h"
 #include "rays/pixel_tiles.h"
-#include "shading/surface_passes.h"
 #include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
@@ -26,9 +25,10 @@ float mean_square(const Rgb& difference) {
 
 } // namespace
 
-SurfaceFit::SurfaceFit(const EstimatorInput& input, int pass)
+SurfaceFit::SurfaceFit(const EstimatorInput& input, const PassSpec& spec)
     : camera_(input.camera), width_(input.camera.width()), height_(input.camera.height()),
-      pass_(pass), narrow_(surface_fit_radii(pass)[0]), wide_(surface_fit_radii(pass)[1]),
+      expected_passes_(spec.expected_passes), narrow_(spec.surface_fit_radius),
+      wide_(spec.wide_surface_fit_radius),
       pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
       variance_of_narrow_(pixels_.size()),
       parts_(input.world.surfaces->any_gloss() ? part_count : gloss) {
@@ -194,8 +194,8 @@ void SurfaceFit::fit_wide(int x, int y) {
 }
 
 /// The mean over n passes to come has the least error at the weight (V / n) / (V / n + B).
-float SurfaceFit::best_weight(float variance, float difference, int pass, float tolerance) {
-  const float of_mean = variance / static_cast<float>(expected_passes(pass));
+float SurfaceFit::best_weight(float variance, float difference, int passes, float tolerance) {
+  const float of_mean = variance / static_cast<float>(passes);
   const float bias = std::max(0.0f, difference - tolerance * variance);
   return of_mean + bias > 0 ? of_mean / (of_mean + bias) : 0;
 }
@@ -214,9 +214,10 @@ std::array<float, 2> SurfaceFit::weights_of_planes(const Part& part, int x, int 
   variance /= count;
   const float of_narrow = variance * variance_of_narrow_[index(x, y)];
   const float tolerance = is_gloss(part) ? tuning::gloss_tolerance : 1;
-  return {&part == &parts_[smooth] ? 1
-                                   : best_weight(variance, from_narrow / count, pass_, tolerance),
-          wide_ > 0 ? best_weight(of_narrow, from_wide / count, pass_) : 0};
+  return {&part == &parts_[smooth]
+              ? 1
+              : best_weight(variance, from_narrow / count, expected_passes_, tolerance),
+          wide_ > 0 ? best_weight(of_narrow, from_wide / count, expected_passes_) : 0};
 }
 
 void SurfaceFit::fit_pixel(int x, int y, PassImage& image, BlurProbe* blur) const {

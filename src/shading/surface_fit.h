@@ -3,6 +3,7 @@
 #include "image/pass_image.h"
 #include "rays/estimator_input.h"
 #include "rays/profile_shading.h"
+#include "vdbeam/pass_spec.h"
 
 #include <array>
 #include <cstdint>
@@ -24,7 +25,7 @@ class BlurProbe;
 class SurfaceFit {
 public:
   /// Fit for one pass of a world with surfaces. `input` must outlive this.
-  SurfaceFit(const EstimatorInput& input, int pass);
+  SurfaceFit(const EstimatorInput& input, const PassSpec& spec);
 
   /// By how many pixels it reaches to each side: for a narrow plane, for a wide one, and for the
   /// means by which these are compared.
@@ -43,10 +44,10 @@ public:
   /// null, takes how much that blurs.
   void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr);
 
-  /// How much a plane counts, in a pass, against what has the variance V and a squared difference
-  /// from the plane of `difference`, which expects V and the squared bias B of the plane.
-  /// `tolerance`: how many times V may be noise.
-  static float best_weight(float variance, float difference, int pass, float tolerance = 1);
+  /// How much a plane counts, in a render of so many passes, against what has the variance V and a
+  /// squared difference from the plane of `difference`, which expects V and the squared bias B of
+  /// the plane. `tolerance`: how many times V may be noise.
+  static float best_weight(float variance, float difference, int passes, float tolerance = 1);
 
 private:
   struct Pixel {
@@ -92,7 +93,7 @@ private:
 
   const Camera& camera_;
   int width_, height_;
-  int pass_;
+  int expected_passes_;
   float narrow_, wide_; ///< radii of the planes [pixels, and steps]
   std::vector<Pixel> pixels_;
   std::vector<float> variance_of_narrow_; ///< of a narrow plane over that of a pixel's own light

@@ -140,7 +140,7 @@ public:
     if (!world_.surfaces)
       return;
     input_.window = widened(wanted(input), SurfaceFit::reach, input.camera);
-    fit_.emplace(input_, spec.pass);
+    fit_.emplace(input_, spec);
     surfaces_.emplace(input_, photons, lighting_, tiles.gather_along);
   }
 
@@ -206,7 +206,8 @@ private:
     for_rays(scratch, [&](const TileRays::PixelRay& ray, std::size_t i) {
       scratch.seen[i] = surfaces_->seen(ray.camera, key_, ray.stream, scratch.statistics);
     });
-    const auto more = more_samples(input_.world.medium, scratch.rays, scratch.seen, spec_.pass);
+    const auto more =
+        more_samples(input_.world.medium, scratch.rays, scratch.seen, spec_.expected_passes);
     for_rays(scratch, [&](const TileRays::PixelRay& ray, std::size_t i) {
       if (scratch.seen[i].surface >= 0)
         surfaces_->matt().add(ray.camera, more[i], key_, ray.stream, scratch.seen[i]);

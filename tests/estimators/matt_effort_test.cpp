@@ -47,7 +47,7 @@ public:
     return seen;
   }
   std::array<MattSamples, TileRays::count> more(const TileSurfaces& seen) const {
-    return more_samples(frame_.world.medium, rays_, seen, 0);
+    return more_samples(frame_.world.medium, rays_, seen, 2);
   }
 
 private:

@@ -3,6 +3,7 @@
 // falls.
 #include "shading/surface_fit.h"
 
+#include "choose/schedule.h"
 #include "support/render_passes.h"
 #include "support/surface_scene.h"
 
@@ -30,7 +31,12 @@ MemoryScene plane_scene() {
 /// Fits the light of a plane whose pixels are what `pixel(x, y)` returns, seen through `tr`.
 template <class Pixel>
 PassImage fit_of_pixels(const TestFrame& frame, int pass, float tr, const Pixel& pixel) {
-  SurfaceFit fit(frame.input(), pass);
+  PassSpec spec;
+  spec.expected_passes = expected_passes(pass);
+  const auto [narrow, wide] = surface_fit_radii(pass);
+  spec.surface_fit_radius = narrow;
+  spec.wide_surface_fit_radius = wide;
+  SurfaceFit fit(frame.input(), spec);
   PassImage image;
   image.resize(width, width);
   const double step =

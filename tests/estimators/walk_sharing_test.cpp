@@ -1,7 +1,7 @@
 // What pixels share of their walks: a fitted plane, and nothing with what lies at another depth.
 #include "estimators/gather/regression.h"
 
-#include "choose/gather_plan.h"
+#include "choose/pilot/gather_plan.h"
 #include "estimators/beam/beam.h"
 #include "math/pixel_fit.h"
 #include "render/pass_window.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "choose/gather_plan.h"
+#include "choose/pilot/gather_plan.h"
 #include "choose/pilot/trial_tile.h"
 
 namespace vdbeam {

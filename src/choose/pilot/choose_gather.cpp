@@ -1,4 +1,4 @@
-#include "choose/choose_gather.h"
+#include "choose/pilot/choose_gather.h"
 
 #include "choose/feature.h"
 #include "choose/pilot/trial_tile.h"

@@ -1,8 +1,8 @@
-#include "choose/gather_plan.h"
+#include "choose/pilot/gather_plan.h"
 
+#include "choose/schedule.h"
 #include "estimators/gather/regression.h"
 #include "math/pixel_fit.h"
-#include "shading/surface_passes.h"
 #include "tuning/constants.h"
 
 namespace vdbeam {
