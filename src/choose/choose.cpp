@@ -28,8 +28,8 @@ double in_kernel_steps(double neighbours) {
 
 /// About the radius that kernels would have without regard to the view.
 float typical_radius(const EstimatorInput& input, const PhotonPlan& plan, const PhotonList& pilot) {
-  constexpr std::size_t enough = 8192;
-  const std::size_t stride = (pilot.size() + enough - 1) / enough;
+  const std::size_t stride =
+      (pilot.size() + tuning::photons_for_radius - 1) / tuning::photons_for_radius;
   PhotonList sample;
   for (std::size_t i = 0; i < pilot.size(); i += stride) {
     sample.position.push_back(pilot.position[i]);

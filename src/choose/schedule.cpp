@@ -23,10 +23,6 @@ struct OrderGrowth {
 /// it falls as fast as the noise.
 constexpr OrderGrowth growth_along_rays{64, 3}, growth_of_gather{16, 2};
 
-/// The order of every second pass is higher by this step. A greater step would show the bias of
-/// truncation with less noise, and cost more noise of the picture.
-constexpr int order_step = 2;
-
 /// The bits of a number behind the point, in reverse (van der Corput 1935): 0, 1/2, 1/4, 3/4, ...
 double radical_inverse(std::uint32_t n) {
   std::uint32_t reversed = 0;
@@ -55,9 +51,9 @@ int peak_order(const PeakOrders& first, int pass, bool gathers) {
     ++result;
   // The lower of the two leaves room for the higher. One pass of each pair has the higher, the
   // first as often as the second (Thue-Morse sequence): the moments of the shutter take turns too.
-  result = std::min(result, most_truncation_order - order_step);
+  result = std::min(result, most_truncation_order - tuning::order_step);
   const bool higher = std::popcount(static_cast<unsigned>(pass)) % 2 == 1;
-  return higher ? result + order_step : result;
+  return higher ? result + tuning::order_step : result;
 }
 
 std::array<float, 2> surface_fit_radii(int pass) {

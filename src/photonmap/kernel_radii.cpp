@@ -1,15 +1,13 @@
 #include "photonmap/kernel_radii.h"
 
 #include "photonmap/cell_radii.h"
+#include "tuning/constants.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 namespace vdbeam {
 namespace {
-
-/// Cells hold about this share of a kernel's photons: fewer would cost more, more would be coarse.
-constexpr float cell_share = 1.0f / 16;
 
 /// Where no least radius was asked for: far below any useful kernel, far above rounding. A few
 /// photons that lie very far away, on a plane without an end, do not raise it.
@@ -46,7 +44,8 @@ void find_kernel_radii(PhotonBlocks& blocks, const RadiusSettings& settings) {
   std::size_t cell = 1;
   std::vector<float> radii(1, settings.fixed_radius);
   if (settings.mode == KernelRadius::adaptive) {
-    while (static_cast<float>(2 * cell * PhotonBlocks::width) <= neighbours * cell_share &&
+    while (static_cast<float>(2 * cell * PhotonBlocks::width) <=
+               neighbours * tuning::cell_of_neighbours &&
            2 * cell * PhotonBlocks::width <= count)
       cell *= 2;
     radii = find_cell_radii(blocks, cell, neighbours);

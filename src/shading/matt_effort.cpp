@@ -10,7 +10,8 @@ namespace vdbeam {
 
 namespace {
 
-/// Pixels around one without which nothing is decided.
+/// Pixels around one without which nothing is decided: fewer show no spread. Half of it and twice
+/// change no error (docs/developer/tuning.md).
 constexpr int fewest_around = 4;
 
 /// Sums over the pixels around one.

@@ -2,6 +2,7 @@
 
 #include "rays/profile_shading.h"
 #include "rays/tile_rays.h"
+#include "tuning/constants.h"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +12,11 @@ namespace vdbeam {
 /// What is seen of surfaces at the ends of a tile's rays, in their order.
 using TileSurfaces = std::array<SeenSurface, TileRays::count>;
 
-/// Calls visit(ray) for the rays of the tile up to two pixels from a ray's, itself among them, that
-/// show the same surface, or none as it does; row by row.
+/// Calls visit(ray) for the rays of the tile up to tuning::reach_of_effort pixels from a ray's,
+/// itself among them, that show the same surface, or none as it does; row by row.
 template <class Visit>
 void for_each_near(const TileSurfaces& seen, int ray, const Visit& visit) {
-  constexpr int reach = 2, last = TileRays::across - 1;
+  const int reach = tuning::reach_of_effort, last = TileRays::across - 1;
   const int x = TileRays::column(ray), y = TileRays::row(ray);
   const int surface = seen[static_cast<std::size_t>(ray)].surface;
   for (int py = std::max(0, y - reach); py <= std::min(last, y + reach); ++py)

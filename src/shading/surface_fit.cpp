@@ -15,9 +15,9 @@ namespace vdbeam {
 
 namespace {
 
-/// Normals at which a neighbour does not count: at 26 degrees; and how far it may lie off the plane
-/// of the surface, in widths of what is shared.
-constexpr float least_cosine = 0.9f, farthest_off_plane = 2;
+/// How far a neighbour may lie off the plane of the surface, in widths of what is shared: other
+/// parts of the surface lie much farther off, and its own curvature does not reach so far.
+constexpr float farthest_off_plane = 2;
 
 float mean_square(const Rgb& difference) {
   return mean_component(difference * difference);
@@ -120,7 +120,7 @@ std::span<const SurfaceFit::Share> SurfaceFit::shares(int x, int y, float radius
   visit_neighbours(x, y, step, [&](std::size_t pixel, int dx, int dy) {
     const Pixel& other = pixels_[pixel];
     const float near = 1 - static_cast<float>(dx * dx + dy * dy) / ((radius + 1) * (radius + 1));
-    const float turned = (1 - dot(center.normal, other.normal)) / (1 - least_cosine);
+    const float turned = (1 - dot(center.normal, other.normal)) / (1 - tuning::least_cosine_of_fit);
     const float off = dot(center.normal, other.position - center.position) / widest;
     if (!(near > 0 && turned < 1 && off * off < 1))
       return;

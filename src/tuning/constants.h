@@ -84,6 +84,9 @@ VDBEAM_TUNED(float, least_disc_before_surface, 0.5f);
 VDBEAM_TUNED(double, neighbours_of_gather, 0.5);
 /// Those of a kernel of photons that mirrors and glass brought, where final gathering needs them.
 VDBEAM_TUNED(float, caustic_neighbours, 8);
+/// Photons of a cell that is searched for neighbours, in parts of a kernel's: the radius' accuracy
+/// against the time to find it.
+VDBEAM_TUNED(float, cell_of_neighbours, 1.0f / 16);
 /// What a pilot may choose: the most, half of it and so on. Beyond the most, kernels are many mean
 /// free paths wide and have a bias that the pilot does not show; with fewer than the fewest,
 /// adaptive radii are no longer accurate.
@@ -116,6 +119,8 @@ VDBEAM_TUNED(double, trial_neighbours, 600);
 VDBEAM_TUNED(double, wide_over_narrow, 4);
 /// A narrow kernel holds at most this share of a map, so that a wide one fits.
 VDBEAM_TUNED(double, most_in_kernel, 1.0 / 16);
+/// Photons from which a typical kernel's radius is found, by which importance falls off.
+VDBEAM_TUNED(std::size_t, photons_for_radius, 8192);
 /// Below this many photons per pass the trial is too noisy, and defaults are used.
 VDBEAM_TUNED(double, fewest_for_trial, 100);
 /// Tiles of 16 x 16 pixels at which trials look, and the pixels of them that other pilots use:
@@ -152,6 +157,13 @@ VDBEAM_TUNED(float, faint_opacity, 0.003f);
 
 // Final gathering.
 
+/// Walks from each camera ray where the regression's radius is below 0.7 pixels, below 1.4, and
+/// wider: a wide fit evens out the noise of few.
+VDBEAM_TUNED(int, walks_of_narrow_fit, 12);
+VDBEAM_TUNED(int, walks_of_middle_fit, 8);
+VDBEAM_TUNED(int, walks_of_wide_fit, 6);
+/// Time of a pass of walks over that of one of `beam`, for the radius of the regression.
+VDBEAM_TUNED(double, time_of_gather_pass, 1.5);
 /// Scatterings of a walk at most: in very dense media kernels are far wider than walks could go.
 VDBEAM_TUNED(int, most_scatterings_of_walk, 8);
 /// Share of first directions that are drawn evenly where a forward peak is taken out: the smooth
@@ -175,6 +187,9 @@ VDBEAM_TUNED(float, largest_first_peak, 0.6f);
 VDBEAM_TUNED(float, largest_peak_of_gather, 0.55f);
 /// Optical depth from which on the first order is the lowest.
 VDBEAM_TUNED(double, depth_of_lowest_order, 24);
+/// The order of every second pass is higher by this step: a greater one would show the bias of
+/// truncation with less noise, and cost more noise of the image.
+VDBEAM_TUNED(int, order_step, 2);
 
 // Direct light.
 
@@ -220,6 +235,10 @@ VDBEAM_TUNED(int, most_matt_samples, 16);
 VDBEAM_TUNED(float, gloss_tolerance, 4);
 /// Variance that a plane leaves of the noise of the pixels to which it is fitted.
 VDBEAM_TUNED(float, left_by_plane, 0.1f);
+/// Pixels to each side by which noise on a surface is judged.
+VDBEAM_TUNED(int, reach_of_effort, 2);
+/// Cosine between normals at which a neighbour does not count in the fit of a surface.
+VDBEAM_TUNED(float, least_cosine_of_fit, 0.9f);
 /// Rays that look for lamps behind rough glass and gather nothing else.
 VDBEAM_TUNED(int, lamp_rays, 12);
 

@@ -6,6 +6,7 @@
 #include "math/pixel_fit.h"
 #include "render/pass_window.h"
 #include "support/render_passes.h"
+#include "tuning/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -135,7 +136,7 @@ TEST(GatherPlan, SharesLessFromPassToPass) {
   }
   EXPECT_EQ(before, 0);
   EXPECT_LT(plan.walks(0), plan.walks(5000));
-  EXPECT_EQ(plan.walks(5000), GatherPlan::most_walks);
+  EXPECT_EQ(plan.walks(5000), tuning::walks_of_narrow_fit);
   // What blurs more is shared less, and what has no noise not at all.
   plan.regression.blur = 5;
   EXPECT_LT(plan.regression_radius(0), 1);

@@ -39,8 +39,8 @@ GatherNoise measure_noise(const EstimatorInput& input, const Choices& choices,
     for (const PhotonMap& map : trial.maps) {
       const FinalGather gather(input.world, choices.photons, {map}, surfaces);
       const auto light = [&] {
-        const GatheredLight found =
-            gather.gather(ray.camera.ray(), ray.profile, GatherPlan::most_walks, 1, rng, uncounted);
+        const GatheredLight found = gather.gather(ray.camera.ray(), ray.profile,
+                                                  tuning::walks_of_narrow_fit, 1, rng, uncounted);
         return found.direct.sum() + found.indirect.sum();
       };
       const Rgb a = light(), b = light(), d = a - b;

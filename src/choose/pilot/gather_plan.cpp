@@ -11,7 +11,9 @@ namespace {
 
 /// From each camera ray: the wider the fit, the fewer.
 int walks_of(float radius) {
-  return radius >= 1.4f ? 6 : radius >= 0.7f ? 8 : GatherPlan::most_walks;
+  return radius >= 1.4f   ? tuning::walks_of_wide_fit
+         : radius >= 0.7f ? tuning::walks_of_middle_fit
+                          : tuning::walks_of_narrow_fit;
 }
 
 } // namespace
@@ -21,7 +23,8 @@ double RegressionTrial::blur_of(std::size_t radius) const {
 }
 
 double GatherPlan::error_after(double passes_along, std::size_t radius) const {
-  const double of_most = walks_of(RegressionTrial::radii[radius]) / static_cast<double>(most_walks);
+  const double of_most =
+      walks_of(RegressionTrial::radii[radius]) / static_cast<double>(tuning::walks_of_narrow_fit);
   const double passes = passes_along / (1 + tuning::time_of_walks * of_most);
   return (photons_noise + noise / of_most * regression.noise[radius]) / passes +
          regression.blur_of(radius);
@@ -40,8 +43,8 @@ double GatherPlan::error_after(double passes_along) const {
 }
 
 float GatherPlan::regression_radius(int pass) const {
-  constexpr double time_of_pass = 1.5; // of walks, in passes of beam
-  return RegressionTrial::radii[best_radius(time_of_pass * expected_passes(pass))];
+  const double passes_along = tuning::time_of_gather_pass * expected_passes(pass);
+  return RegressionTrial::radii[best_radius(passes_along)];
 }
 
 int GatherPlan::walks(int pass) const {

@@ -19,7 +19,7 @@ struct RegressionTrial {
 
 /// Plan of final gathering (FinalGather).
 struct GatherPlan {
-  double noise = 0;         ///< variance of what `most_walks` find, in units like MRSE
+  double noise = 0;         ///< variance of what the most walks find, in units like MRSE
   double photons_noise = 0; ///< variance of the photons of a pass, as walks see it
   RegressionTrial regression;
 
@@ -32,7 +32,6 @@ struct GatherPlan {
   float regression_radius(int pass) const;
   /// Walks from each camera ray of a pass.
   int walks(int pass) const;
-  static constexpr int most_walks = 12;
 
 private:
   std::size_t best_radius(double passes_along) const;
