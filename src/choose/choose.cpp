@@ -5,6 +5,7 @@
 #include "choose/pilot/fit_path_guide.h"
 #include "choose/pilot/kernel_pilot.h"
 #include "choose/schedule.h"
+#include "photons/hidden_lights.h"
 #include "photons/kernel_support.h"
 #include "photons/view_importance.h"
 #include "photons/view_thinning.h"
@@ -191,6 +192,10 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
       is_possible(final_gather_feature, facts))
     choices.gather.emplace();
   plan.share_at_boundary = is_possible(boundary_share_feature, facts);
+  // Not before gathering is chosen, whose walks look for all lights: where one is found by photons
+  // only, because surfaces hide it, nothing is lost along camera rays.
+  if (!choices.gather)
+    plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
 }
 
 /// The choices about light; those about the shutter and surfaces are the caller's.

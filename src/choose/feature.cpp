@@ -40,7 +40,7 @@ std::vector<FeatureChoice> describe_features(const EstimatorInput& input, const 
   std::vector<FeatureChoice> described;
   for (const Feature* feature : feature_table()) {
     FeatureChoice choice{feature->name, feature->key, false, {}, {}, {}};
-    if (const std::optional<Exclusion> exclusion = find_exclusion(*feature, facts)) {
+    if (const std::optional<Exclusion> exclusion = find_exclusion(*feature, before)) {
       choice.reason = exclusion->reason;
       choice.scope = exclusion->scope;
     } else {

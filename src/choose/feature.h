@@ -56,8 +56,8 @@ struct Feature {
 std::span<const Feature* const> feature_table();
 
 extern const Feature view_importance_feature, path_guide_feature, kernel_pilot_feature,
-    forward_peak_feature, final_gather_feature, shadow_lattice_feature, boundary_share_feature,
-    edges_feature, branches_feature;
+    forward_peak_feature, final_gather_feature, hidden_lights_feature, shadow_lattice_feature,
+    boundary_share_feature, edges_feature, branches_feature;
 
 /// Whether the scene demands final gathering wherever possible, whatever a pilot predicts.
 bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings);

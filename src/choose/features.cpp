@@ -241,6 +241,33 @@ const Feature final_gather_feature{
     .cost = cost_of_gather};
 
 namespace {
+/// Lights that would have shadow rays if surfaces did not hide them.
+std::string lights_out_of_sight(const Facts& facts, const Choices& choices) {
+  const std::vector<bool> all = facts.input.shadow_ray_lights(),
+                          &seen = choices.photons.sampled_lights;
+  return light_names(facts.input.world,
+                     [&](std::size_t i) { return i < seen.size() && all[i] && !seen[i]; });
+}
+constexpr FeatureCondition hidden_lights_conditions[] = {
+    {shoots_no_photons, "the estimator traces no photons"},
+    {[](const Facts& facts) { return !has_surfaces(facts); }, "no surface hides a light"}};
+} // namespace
+const Feature hidden_lights_feature{
+    .name = "hidden lights",
+    .key = "",
+    .help = "lights that surfaces hide from all that the camera sees get no shadow rays",
+    .stage = Stage::shadow_rays,
+    .conditions = hidden_lights_conditions,
+    .used = [](const Facts& facts,
+               const Choices& choices) { return !lights_out_of_sight(facts, choices).empty(); },
+    .unused = "no light is hidden, or final gathering looks for all of them",
+    .whole = "all lights",
+    .rest =
+        [](const Facts& facts, const Choices& choices) {
+          return "all but " + lights_out_of_sight(facts, choices);
+        }};
+
+namespace {
 constexpr FeatureCondition shadow_lattice_conditions[] = {
     {shoots_no_photons, "the estimator traces no photons"},
     {[](const Facts& facts) { return facts.input.world.medium.empty(); }, "there is no medium"},

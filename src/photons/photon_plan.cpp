@@ -1,7 +1,6 @@
 #include "photons/photon_plan.h"
 
 #include "medium/depth_profile.h"
-#include "photons/hidden_lights.h"
 #include "transport/camera_ray.h"
 #include "transport/photon_targets.h"
 #include "tuning/constants.h"
@@ -92,7 +91,6 @@ PhotonPlan default_photon_plan(const EstimatorInput& input) {
 
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan) {
   const RenderSettings& settings = input.settings;
-  plan.sampled_lights = lights_in_sight(input, std::move(plan.sampled_lights));
   PhotonPassSettings pass = pass_settings(input, plan, pilot_pass);
   pass.paths = tuning::pilot_paths;
   pass.caustic_lights = caustic_lights(input.world);

@@ -71,10 +71,9 @@ bool samples_extended_light(const World& world, const Predicate& is_sampled) {
 
 /// The part of the plan that needs no pilot: the settings and the render plan's decisions.
 PhotonPlan default_photon_plan(const EstimatorInput& input);
-/// Leaves lights that no shadow ray reaches (lights_in_sight) to photons, traces a few light paths
-/// and chooses from the mean number of their collisions how many shadow rays to send and how many
-/// photons to store, everywhere with the same probability. Only for a render that needs photons.
-/// The photons hold all storable collisions.
+/// Traces a few light paths and chooses from the mean number of their collisions how many shadow
+/// rays to send and how many photons to store, everywhere with the same probability. Only for a
+/// render that needs photons. The photons hold all storable collisions.
 TracedPhotons trace_pilot(const EstimatorInput& input, PhotonPlan& plan);
 /// Sees what a coarse sample of the camera rays meets: `hits` and `full_opacity` of the plan.
 void look_at_rays(const EstimatorInput& input, PhotonPlan& plan);

@@ -44,7 +44,7 @@ public:
   /// null, takes how much that blurs.
   void apply(const PixelRegion& window, PassImage& image, BlurProbe* blur = nullptr);
 
-  /// How much a plane counts, in a render of so many passes, against what has the variance V and a
+  /// How much a plane counts, in a render of `passes` passes, against what has the variance V and a
   /// squared difference from the plane of `difference`, which expects V and the squared bias B of
   /// the plane. `tolerance`: how many times V may be noise.
   static float best_weight(float variance, float difference, int passes, float tolerance = 1);

@@ -84,6 +84,8 @@ const std::vector<Exclusion>& exclusions() {
          s.scene.lights[0].angular_radius = 0.5;
          s.scene.render.direct = DirectLight::photons;
        }},
+      {"hidden lights", "the estimator traces no photons", name_path},
+      {"hidden lights", "no surface hides a light", [](MemoryScene&) {}},
       {"shadow lattice", "the estimator traces no photons", name_path},
       {"shadow lattice", "extinction differs between channels",
        [](MemoryScene& s) {
@@ -161,6 +163,25 @@ TEST(Features, OfTheTableHaveNamesAndHelp) {
     EXPECT_TRUE(names.insert(feature->name).second) << feature->name;
     EXPECT_EQ(feature->used == nullptr, feature->unused.empty()) << feature->name;
   }
+}
+
+/// No shadow ray reaches a lamp in a closed box. The walks of final gathering look for it, so that
+/// it excludes nothing.
+TEST(Features, HiddenLightsAreNamed) {
+  MemoryScene scene = cloud();
+  LightSettings& lamp = scene.add_light(LightType::point);
+  lamp.position = {0, -3, 0};
+  surfaces::add_surface(scene, SurfaceShape::box,
+                        surfaces::moved(surfaces::scaled(0.2), {0, -3, 0}),
+                        surfaces::diffuse(0.5f));
+  EXPECT_FALSE(feature_of(scene, "hidden lights").on);
+  EXPECT_TRUE(feature_of(scene, "final gathering").on);
+  name_beam(scene);
+  const FeatureChoice hidden = feature_of(scene, "hidden lights");
+  EXPECT_TRUE(hidden.on) << hidden.reason;
+  EXPECT_EQ(hidden.scope, "all but light.1");
+  scene.scene.lights.pop_back();
+  EXPECT_FALSE(feature_of(scene, "hidden lights").on);
 }
 
 /// Features say which lights, volumes and paths do without them.

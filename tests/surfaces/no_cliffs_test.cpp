@@ -62,6 +62,11 @@ const std::vector<Addition>& additions() {
          lamp.position = {0.1, 0.1, 0.1};
          lamp.intensity = Rgb(1e-4f);
        }},
+      {"a lamp in a closed box",
+       [](MemoryScene& s) {
+         s.add_light(LightType::point).position = {0, -3, 0};
+         add_surface(s, SurfaceShape::box, moved(scaled(0.2), {0, -3, 0}), surfaces::diffuse(0.5));
+       }},
       {"the sun in a group of its own", [](MemoryScene& s) { s.scene.lights[0].group = "sun"; }},
       {"a limit that no path reaches", [](MemoryScene& s) { s.scene.render.max_bounces = 100000; }},
       {"a wide fog that is hardly there",
