@@ -14,33 +14,42 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace vdbeam {
 
 namespace {
 
-/// Weighted variance of independent images of the same scene: mean over the pixels.
-double spread(const std::vector<TrialPixel>& pixels, const std::vector<PassImage>& images) {
+/// Weighted variance of independent images of the same scene, by pixel.
+std::vector<double> spread(const std::vector<TrialPixel>& pixels,
+                           const std::vector<PassImage>& images) {
   const auto count = static_cast<float>(images.size());
-  double sum = 0;
+  std::vector<double> result(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     Rgb mean;
     for (const PassImage& image : images)
       mean += image.total(i) / count;
+    double sum = 0;
     for (const PassImage& image : images) {
       const Rgb d = image.total(i) - mean;
       for (int c = 0; c < 3; ++c)
         sum += static_cast<double>(pixels[i].weight[c] * d[c] * d[c]) / 3;
     }
+    result[i] = sum / static_cast<double>(count - 1);
   }
-  return sum / (static_cast<double>(pixels.size()) * static_cast<double>(count - 1));
+  return result;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// The spread of all that does not come from photons, in a pass of `beam`; counts its rays. Edges
 /// are seen by one ray here, by four in the picture (tile_shading.cpp), so noise is slightly
 /// overestimated and time underestimated.
-double spread_beside_photons(const EstimatorInput& input, const PhotonPass& photons,
-                             const std::vector<TrialPixel>& pixels, RenderStatistics& counts) {
+std::vector<double> spread_beside_photons(const EstimatorInput& input, const PhotonPass& photons,
+                                          const std::vector<TrialPixel>& pixels,
+                                          RenderStatistics& counts) {
   const EstimatorInput in = input.in(photons.world());
   const int passes = tuning::trial_passes;
   std::vector<PassImage> images(static_cast<std::size_t>(passes));
@@ -63,8 +72,9 @@ double spread_beside_photons(const EstimatorInput& input, const PhotonPass& phot
 }
 
 /// The spread of a pass of `path`; counts its rays and collisions.
-double spread_of_path(const EstimatorInput& input, const std::vector<TrialPixel>& pixels,
-                      RenderStatistics& counts) {
+std::vector<double> spread_of_path(const EstimatorInput& input,
+                                   const std::vector<TrialPixel>& pixels,
+                                   RenderStatistics& counts) {
   std::vector<std::size_t> places;
   for (const TrialPixel& pixel : pixels)
     places.push_back(pixel.pixel);
@@ -84,10 +94,13 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
   const std::vector<TrialPixel>& pixels = choices.trial->pixels;
   const double rays = static_cast<double>(pixels.size()) * tuning::trial_passes;
   RenderStatistics path_counts, beam_counts;
-  const double path_spread = spread_of_path(path_input, pixels, path_counts);
-  // Both find single scattering by shadow rays, `beam` with no more noise than `path`.
-  const double beside = std::min(
-      path_spread, spread_beside_photons(photon_input, passes.photons(), pixels, beam_counts));
+  const std::vector<double> of_path = spread_of_path(path_input, pixels, path_counts);
+  std::vector<double> beside =
+      spread_beside_photons(photon_input, passes.photons(), pixels, beam_counts);
+  // Both find single scattering by shadow rays, `beam` with no more noise than `path`. A pixel
+  // where it has more shows what is rare, as a ray that passes a lamp.
+  for (std::size_t i = 0; i < beside.size(); ++i)
+    beside[i] = std::min(beside[i], of_path[i]);
   const double of_shadow_ray = time_of_shadow_ray(photon_input.world.medium);
   const double path_time =
       tuning::time_of_camera_ray +
@@ -105,8 +118,8 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
   double of_photons = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
   if (choices.gather)
     of_photons = std::min(of_photons, choices.gather->error_after(tuning::passes_compared));
-  const double beam_error = of_photons + beside / tuning::passes_compared;
-  const double path_error = path_spread * path_time / (tuning::passes_compared * beam_time);
+  const double beam_error = of_photons + mean_of(beside) / tuning::passes_compared;
+  const double path_error = mean_of(of_path) * path_time / (tuning::passes_compared * beam_time);
   return beam_error > 0 ? path_error / beam_error : 1;
 }
 

@@ -241,12 +241,13 @@ const Feature final_gather_feature{
     .cost = cost_of_gather};
 
 namespace {
-/// Lights that would have shadow rays if surfaces did not hide them.
-std::string lights_out_of_sight(const Facts& facts, const Choices& choices) {
+/// Lights for which shadow rays are planned: those in sight, or those that are hidden.
+std::string planned_lights(const Facts& facts, const Choices& choices, bool in_sight) {
   const std::vector<bool> all = facts.input.shadow_ray_lights(),
                           &seen = choices.photons.sampled_lights;
-  return light_names(facts.input.world,
-                     [&](std::size_t i) { return i < seen.size() && all[i] && !seen[i]; });
+  return light_names(facts.input.world, [&](std::size_t i) {
+    return i < seen.size() && all[i] && seen[i] == in_sight;
+  });
 }
 constexpr FeatureCondition hidden_lights_conditions[] = {
     {shoots_no_photons, "the estimator traces no photons"},
@@ -259,13 +260,11 @@ const Feature hidden_lights_feature{
     .stage = Stage::shadow_rays,
     .conditions = hidden_lights_conditions,
     .used = [](const Facts& facts,
-               const Choices& choices) { return !lights_out_of_sight(facts, choices).empty(); },
+               const Choices& choices) { return !planned_lights(facts, choices, false).empty(); },
     .unused = "no light is hidden, or final gathering looks for all of them",
     .whole = "all lights",
-    .rest =
-        [](const Facts& facts, const Choices& choices) {
-          return "all but " + lights_out_of_sight(facts, choices);
-        }};
+    .rest = [](const Facts& facts,
+               const Choices& choices) { return planned_lights(facts, choices, true); }};
 
 namespace {
 constexpr FeatureCondition shadow_lattice_conditions[] = {

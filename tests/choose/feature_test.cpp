@@ -179,7 +179,7 @@ TEST(Features, HiddenLightsAreNamed) {
   name_beam(scene);
   const FeatureChoice hidden = feature_of(scene, "hidden lights");
   EXPECT_TRUE(hidden.on) << hidden.reason;
-  EXPECT_EQ(hidden.scope, "all but light.1");
+  EXPECT_EQ(hidden.scope, "light.0");
   scene.scene.lights.pop_back();
   EXPECT_FALSE(feature_of(scene, "hidden lights").on);
 }
