@@ -4,7 +4,7 @@ namespace vdbeam {
 
 namespace {
 
-/// Why a feature cannot be used, and what does without it.
+/// The reason why a feature cannot be used, and the lights, volumes or paths that lack it then.
 struct Exclusion {
   std::string reason, scope;
 };

@@ -14,7 +14,7 @@ std::string light_name(const World& world, std::size_t light) {
   if (world.lights.traits(light).is_emission)
     return "emission of volumes";
   if (const int surface = world.lights[light].surface(); surface >= 0)
-    return fmt::format("surface.{}", surface);
+    return fmt::format("mesh.{}", surface);
   return fmt::format("light.{}", light);
 }
 

@@ -9,10 +9,10 @@ namespace vdbeam {
 /// Adds a name to a list such as "light.0, light.2", once.
 void add_name(const std::string& name, std::string& list);
 
-/// What the scene file calls a light of the world, e.g. "light.0" or "surface.2".
+/// What the scene file calls a light of the world, e.g. "light.0" or "mesh.2".
 std::string light_name(const World& world, std::size_t light);
 
-/// The names of the lights that `is_wanted(index)`.
+/// Lists the names of the lights for which is_wanted(index) holds.
 template <class Predicate>
 std::string light_names(const World& world, const Predicate& is_wanted) {
   std::string list;
@@ -22,7 +22,7 @@ std::string light_names(const World& world, const Predicate& is_wanted) {
   return list;
 }
 
-/// The names of the volumes that `is_wanted(volume)`, e.g. "volume.1".
+/// Lists the names of the volumes for which is_wanted(volume) holds, e.g. "volume.1".
 template <class Predicate>
 std::string volume_names(const World& world, const Predicate& is_wanted) {
   std::string list;

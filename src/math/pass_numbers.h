@@ -6,11 +6,11 @@ namespace vdbeam {
 
 /// Numbers of passes, by which random numbers are drawn (RngKey::pass). The passes of a frame count
 /// from 0 over all machines that render them (PassSpec::pass). Whatever else draws random numbers
-/// has numbers of its own, which count down from 2^64 - 1, far from those of passes. The rays of a
-/// deep layout have 2^64 - 8.
+/// has numbers of its own, which count down from 2^64 - 1, far from those of passes.
 ///
 /// The kernel pilot has the numbers below `pilot_pass`, one for each of its maps.
 inline constexpr std::uint64_t pilot_pass = ~std::uint64_t(0);
+inline constexpr std::uint64_t layout_pass = pilot_pass - 7;        ///< rays of a deep layout
 inline constexpr std::uint64_t guide_pass = pilot_pass - 16;        ///< of the path guide
 inline constexpr std::uint64_t guided_pilot_pass = guide_pass - 1;  ///< pilot with a path guide
 inline constexpr std::uint64_t sight_pass = guide_pass - 2;         ///< lights in sight

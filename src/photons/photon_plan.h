@@ -60,7 +60,7 @@ struct PhotonPlan {
   std::uint64_t importance_rays = 0; ///< camera rays that found out where photons are seen
 };
 
-/// Whether some light with an extent `is_sampled(index)`, by shadow rays.
+/// Whether shadow rays look for some light with an extent, by is_sampled(index).
 template <class Predicate>
 bool samples_extended_light(const World& world, const Predicate& is_sampled) {
   for (std::size_t i = 0; i < world.lights.size(); ++i)

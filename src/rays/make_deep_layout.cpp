@@ -1,5 +1,6 @@
 #include "rays/make_deep_layout.h"
 
+#include "math/pass_numbers.h"
 #include "medium/depth_profile.h"
 #include "transport/camera_ray.h"
 
@@ -13,8 +14,6 @@ namespace vdbeam {
 namespace {
 
 constexpr std::size_t rays_per_pixel = 4;
-/// A number of no pass, for the rays that the layout is made from.
-constexpr std::uint64_t layout_pass = ~std::uint64_t(0) - 7;
 constexpr double most_pieces_by_depth = 1000;
 
 /// Opacity up to a distance.

@@ -12,10 +12,9 @@
 namespace vdbeam {
 
 /// Gives each pass what renders it at its own moment of the shutter's time
-/// (PassSpec::motion_sample). Where the camera alone
-/// moves all passes share one world; else worlds are built when they are first needed, and kept as
-/// far as memory goes. What is chosen at the scene's own moment serves all of them: pilots at
-/// each would take longer than a pass.
+/// (PassSpec::motion_sample). Where the camera alone moves all passes share one world; else worlds
+/// are built when they are first needed, and kept as far as memory goes. Choices made at the
+/// scene's own moment serve all of them: pilots at each would take longer than a pass.
 class Shutter {
 public:
   /// The renderer of a pass, valid until the next call of `at`.

@@ -106,7 +106,7 @@ void add_error_metadata(Image& image, const PassRecord& record) {
 
 namespace {
 
-/// How the scene wants its image to be written.
+/// Adds the settings by which the image is written.
 void add_format(Image& image, const Scene& scene, bool in_a_hurry) {
   if (!scene.layers.empty())
     image.metadata["vdbeam:layers"] = layers_text(scene.layers);
@@ -128,7 +128,7 @@ void add_format(Image& image, const Scene& scene, bool in_a_hurry) {
     image.metadata[name] = text;
 }
 
-/// How far the image got, and what it took.
+/// Adds the reason why the render ended, its passes, seconds and errors.
 void add_progress(Image& image, const Scene& scene, const RenderResult& result) {
   image.metadata["vdbeam:stoppedBy"] = result.stopped_by;
   if (result.quick_look) {
@@ -160,7 +160,7 @@ void add_progress(Image& image, const Scene& scene, const RenderResult& result) 
   image.numbers["vdbeam:peakMemory"] = static_cast<double>(result.statistics.peak_memory);
 }
 
-/// Where the camera stands and what it shows, for compositing.
+/// Adds the camera, for compositing.
 void add_camera(Image& image, const Scene& scene) {
   const ViewWindow window = view_window(scene.camera, scene.image);
   if (scene.camera.projection == Projection::perspective)

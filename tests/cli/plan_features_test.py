@@ -75,7 +75,7 @@ SCENES = [
         {"refined edges": "edges of the medium", "shadow lattice": "all shadow rays"}, MEASURED),
     Row("glass_in_fog", [], "beam", VIEW | {"boundary correction", "refined edges"}, NO_SUN, {}, MEASURED),
     Row("headlights", [], "beam", VIEW | {"boundary correction", "refined edges", "branches"}, NO_SUN,
-        {"branches": "paths to surface.3, surface.4"}, MEASURED),
+        {"branches": "paths to mesh.3, mesh.4"}, MEASURED),
     Row("lighthouse", ["-f", "8"], "beam", VIEW | {"boundary correction", "hidden lights", "refined edges"}, NO_SUN,
         {"final gathering": "the scene"}, MEASURED),
     Row("sunlit_water", [], "gather", GATHER - {"shadow lattice"},
