@@ -28,6 +28,10 @@ public:
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override {
     return light().sample_incident(point, u, v);
   }
+  IncidentSample typical_incident(const Vec3f& point) const override {
+    return light().typical_incident(point);
+  }
+  float typical_intensity() const override { return light().typical_intensity(); }
   float incident_pdf(const Vec3f& point, const Vec3f& wi) const override {
     return light().incident_pdf(point, wi);
   }

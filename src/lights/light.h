@@ -43,6 +43,13 @@ public:
 
   /// One direction to the light for a shadow ray. value is 0 where no light arrives.
   virtual IncidentSample sample_incident(const Vec3f& point, float u, float v) const = 0;
+  /// The direction of a lamp and its irradiance, if nothing is in between: about what a vertex that
+  /// cannot look for all lamps expects of this one. Its value is 0 only if no light arrives.
+  virtual IncidentSample typical_incident(const Vec3f& point) const {
+    return sample_incident(point, 0.5f, 0.5f);
+  }
+  /// The intensity of a lamp, whatever the direction, > 0 unless it is dark; 0 for other lights.
+  virtual float typical_intensity() const { return 0; }
   /// Density with which sample_incident draws `wi`; 0 for delta lights.
   virtual float incident_pdf(const Vec3f& point, const Vec3f& wi) const = 0;
   /// The light as a ray meets it between the segment's ends, whatever else is in the way; never met

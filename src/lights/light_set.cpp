@@ -21,6 +21,8 @@ void LightSet::sort_into_groups(int count, const std::vector<int>& of_light, int
 }
 
 void LightSet::add(std::unique_ptr<Light> light, LightTraits traits) {
+  if (!light->is_delta() && light->surface() < 0)
+    met_by_rays_.push_back(lights_.size());
   any_extent_ = any_extent_ || light->has_extent();
   lights_.push_back(std::move(light));
   traits_.push_back(traits);

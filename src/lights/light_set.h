@@ -46,12 +46,15 @@ public:
   }
   /// Group of the medium's emission.
   int group_of_emission() const { return group_of_emission_; }
+  /// Those, but for surfaces, that rays may meet.
+  const std::vector<std::size_t>& met_by_rays() const { return met_by_rays_; }
   /// Some light may be met at a finite distance.
   bool any_extent() const { return any_extent_; }
 
 private:
   std::vector<std::shared_ptr<const Light>> lights_; ///< shared by copies
   std::vector<LightTraits> traits_;                  ///< per light
+  std::vector<std::size_t> met_by_rays_;
   bool any_extent_ = false;
   int group_count_ = 0, group_of_emission_ = -1;
 };

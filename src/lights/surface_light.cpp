@@ -25,6 +25,8 @@ SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surfa
       seen_as_(seen_as), texture_(std::move(texture)) {
   const auto index = static_cast<std::size_t>(surface);
   center_ = surfaces_->bounds(index).center();
+  const Vec3d corner = Vec3d(surfaces_->bounds(index).upper) - center_;
+  size_squared_ = dot(corner, corner);
   if (target) {
     target_.center = target->center;
     target_.radius = target->radius;
@@ -32,10 +34,11 @@ SurfaceLight::SurfaceLight(std::shared_ptr<const SurfaceSet> surfaces, int surfa
   const double sides = two_sided ? 2 : 1;
   if (texture_) {
     cells_.emplace(surfaces_, surface, *texture_);
-    power_ = Rgb(Vec3d(radiance) * Vec3d(cells_->integral()) * (static_cast<double>(pi) * sides));
+    intensity_ = Rgb(Vec3d(radiance) * Vec3d(cells_->integral()));
   } else {
-    power_ = Rgb(Vec3d(radiance) * (surfaces_->area(index) * static_cast<double>(pi) * sides));
+    intensity_ = Rgb(Vec3d(radiance) * surfaces_->area(index));
   }
+  power_ = Rgb(Vec3d(intensity_) * (static_cast<double>(pi) * sides));
   constexpr int enough = 256; // there may be thousands of lamps, and it only shares out photons
   if (target)
     power_ = estimate_power(*this, enough);
@@ -121,6 +124,14 @@ IncidentSample SurfaceLight::sample_textured(const Vec3f& point, float u, float 
   const float pdf = surface_pdf(hit, wi);
   const Rgb value = pdf > 0 ? radiance(surfaces_->uv(hit)) / pdf : Rgb();
   return {wi, static_cast<float>(hit.t), value, pdf};
+}
+
+IncidentSample SurfaceLight::typical_incident(const Vec3f& point) const {
+  const Vec3d to = center_ - Vec3d(point);
+  const double distance = length(to);
+  const Vec3f wi = distance > 0 ? Vec3f(to / distance) : Vec3f{0, 0, 1};
+  const double from = std::max(distance * distance, size_squared_);
+  return {wi, static_cast<float>(distance), Rgb(Vec3d(intensity_) / from), 0};
 }
 
 float SurfaceLight::surface_pdf(const SurfaceHit& hit, const Vec3f& wi) const {

@@ -24,6 +24,8 @@ public:
                const OccupiedRegion* target = nullptr);
 
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
+  IncidentSample typical_incident(const Vec3f& point) const override;
+  float typical_intensity() const override { return max_component(intensity_); }
   float incident_pdf(const Vec3f& point, const Vec3f& wi) const override;
   LightHit emitted_radiance(const Segment& segment) const override;
   bool has_extent() const override { return true; }
@@ -60,6 +62,8 @@ private:
   std::shared_ptr<const Texture> texture_;
   std::optional<EmissionCells> cells_; ///< where there is a texture
   Vec3d center_;
+  double size_squared_;   ///< of half the diagonal of the surface's bounds
+  Rgb intensity_;         ///< of the whole surface, seen at right angles
   OccupiedRegion target_; ///< without boxes; of no radius: all that it shines on
   Rgb power_;
 };

@@ -2,6 +2,7 @@
 
 #include "medium/distance_sampling.h"
 #include "medium/equi_angular.h"
+#include "transport/light_draw.h"
 #include "transport/next_event.h"
 #include "tuning/constants.h"
 
@@ -59,12 +60,13 @@ public:
               const LightSampling& sampling, Rng& rng, std::uint64_t& shadow_rays,
               const RaySink& sink)
       : world_(world), ray_(ray), profile_(profile), distances_(world.medium, ray, profile),
-        rng_(rng), shadow_rays_(shadow_rays), sink_(sink),
-        share_(sampling.weight / static_cast<float>(sampling.samples)) {
+        light_draw_(world.lights, sampling.sampled), rng_(rng), shadow_rays_(shadow_rays),
+        sink_(sink), share_(sampling.weight / static_cast<float>(sampling.samples)) {
     for (std::size_t l = 0; l < world.lights.size(); ++l) {
       if (!sampling.sampled[l])
         continue;
-      lights_.push_back({l, near_light(world.lights[l]), nullptr, {}});
+      lights_.push_back({.index = l});
+      look_near(lights_.back());
       if (sampling.shadows && l < sampling.shadows->size() && (*sampling.shadows)[l])
         weigh_pieces(*(*sampling.shadows)[l], lights_.back());
     }
@@ -80,11 +82,13 @@ public:
     const ScatterPoint point = distances_.sample(u, c);
     if (!(point.pdf > 0)) // in a medium too dense for single precision to place the point
       return sum;
-    for (const SampledLight& light : lights_) {
-      if (!light.pieces.empty())
-        continue;
+    light_draw_.draw(
+        PointVertex{world_.medium, ray_, point}, rng_,
+        [&](std::size_t l) { return !sampled_light(l).pieces.empty(); }, drawn_);
+    for (const auto& [l, weight] : drawn_) {
+      const SampledLight& light = sampled_light(l);
       const float other = light.near ? light.near->pdf(point.t) : 0;
-      add(sum, light, scattered(point, light.index, point.pdf / (point.pdf + other)));
+      add(sum, light, scattered(point, l, weight * point.pdf / (point.pdf + other)));
     }
     sink_.add_at(point.t, sum.sum() * share_);
     return sum;
@@ -122,14 +126,18 @@ public:
   /// Each light that stands in or near the medium, at a distance drawn by its 1 / r^2.
   GroupedLight by_nearness(float u) {
     GroupedLight sum;
-    for (const SampledLight& light : lights_) {
-      if (!light.near)
-        continue;
+    drawn_.clear();
+    for (const SampledLight& light : lights_)
+      if (light.near)
+        drawn_.push_back({light.index, light.importance});
+    draw_systematically(drawn_, 0, LightDraw::most(), rng_);
+    for (const auto& [l, weight] : drawn_) {
+      const SampledLight& light = sampled_light(l);
       const ScatterPoint point = distances_.at(light.near->sample(u));
       const float other = light.near->pdf(point.t);
       if (point.pdf > 0)
         add(sum, light,
-            take_down(point, scattered(point, light.index, point.pdf / (point.pdf + other))));
+            take_down(point, scattered(point, l, weight * point.pdf / (point.pdf + other))));
     }
     return sum;
   }
@@ -141,10 +149,39 @@ private:
   };
   struct SampledLight {
     std::size_t index;
-    std::optional<EquiAngular> near; ///< where its nearness needs samples of its own
-    const ShadowLattice* shadow;     ///< null without one
-    std::vector<Piece> pieces;       ///< by the lattice; empty without one
+    std::optional<EquiAngular> near = {};  ///< where its nearness needs samples of its own
+    float importance = 0;                  ///< of its nearness
+    const ShadowLattice* shadow = nullptr; ///< null without one
+    std::vector<Piece> pieces = {};        ///< by the lattice; empty without one
   };
+
+  /// A point of the ray, which scatters by all volumes there.
+  struct PointVertex {
+    const Medium& medium;
+    const Ray& ray;
+    const ScatterPoint& point;
+
+    const Vec3f& position() const { return point.position; }
+    Vec3d leave(const Vec3f&) const { return Vec3d(point.position); }
+    Rgb evaluate(const Vec3f& wi) const {
+      Rgb sum;
+      float all = 0;
+      for (std::size_t i = 0; i < point.weights->size(); ++i) {
+        const float weight = max_component((*point.weights)[i]);
+        const Volume& volume = medium.volumes[(*point.volumes)[i]];
+        const auto phase = static_cast<std::size_t>(volume.phase_index);
+        sum += Rgb(weight * medium.phases[phase].evaluate(dot(ray.direction, wi)));
+        all += weight;
+      }
+      return all > 0 ? sum / all : Rgb();
+    }
+  };
+
+  const SampledLight& sampled_light(std::size_t light) const {
+    return *std::lower_bound(
+        lights_.begin(), lights_.end(), light,
+        [](const SampledLight& one, std::size_t other) { return one.index < other; });
+  }
 
   void add(GroupedLight& sum, const SampledLight& light, const Rgb& found) const {
     sum.add(found, world_.lights.group(light.index));
@@ -152,17 +189,21 @@ private:
 
   /// Distances by nearness, where they are of use: to a light that is near, or that shines on a
   /// part of the ray only.
-  std::optional<EquiAngular> near_light(const Light& light) const {
+  void look_near(SampledLight& sampled) const {
+    const Light& light = world_.lights[sampled.index];
     const Segment all{ray_, profile_.front(), profile_.back()};
     if (light.position() == nullptr || all.empty())
-      return {};
+      return;
     const Segment lit = light.lit_part(all);
     if (lit.empty())
-      return {};
+      return;
     const EquiAngular near(ray_, *light.position(), lit.t_begin, lit.t_end,
                            world_.medium.angles.get());
     const bool small = lit.t_end - lit.t_begin < tuning::small_lit_part * (all.t_end - all.t_begin);
-    return small || near.useful() ? std::optional(near) : std::nullopt;
+    if (!small && !near.useful())
+      return;
+    sampled.near = near;
+    sampled.importance = lamp_importance(light, lit);
   }
 
   /// Cuts the ray where opacity or shadow may change much, and weighs the pieces by both.
@@ -269,11 +310,13 @@ private:
   const Ray& ray_;
   const DepthProfile& profile_;
   DistanceSampler distances_;
+  LightDraw light_draw_;
   Rng& rng_;
   std::uint64_t& shadow_rays_;
   const RaySink& sink_;
-  float share_; ///< what one sample counts
-  std::vector<SampledLight> lights_;
+  float share_;                      ///< what one sample counts
+  std::vector<SampledLight> lights_; ///< by index
+  std::vector<DrawnLight> drawn_;    ///< for the present sample
 };
 
 } // namespace

@@ -210,6 +210,9 @@ VDBEAM_TUNED(float, lit_everywhere, 0.05f);
 /// optical depth, and at most this part of the medium's radius.
 VDBEAM_TUNED(double, depth_of_lamp_shell, 0.5);
 VDBEAM_TUNED(double, widest_lamp_shell, 0.25);
+/// Lamps that the shadow rays of a vertex, or of a flight that passes lamps, look for at most
+/// (LightDraw).
+VDBEAM_TUNED(int, lamps_per_vertex, 8);
 /// A light that shines on less than this part of a ray is sampled by its nearness.
 VDBEAM_TUNED(float, small_lit_part, 0.5f);
 

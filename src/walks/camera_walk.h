@@ -22,13 +22,9 @@ struct CameraWalk : SceneFlight {
 template <class Weight>
 GroupedLight lights_met(const World& world, const Segment& segment, const Weight& weight) {
   GroupedLight sum;
-  for (std::size_t i = 0; i < world.lights.size(); ++i) {
-    const Light& light = world.lights[i];
-    if (light.is_delta() || light.surface() >= 0)
-      continue;
+  for (const std::size_t i : world.lights.met_by_rays())
     if (const float factor = weight(i); factor > 0)
-      sum.add(light.emitted_radiance(segment).radiance * factor, world.lights.group(i));
-  }
+      sum.add(world.lights[i].emitted_radiance(segment).radiance * factor, world.lights.group(i));
   return sum;
 }
 

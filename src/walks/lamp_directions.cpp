@@ -2,6 +2,7 @@
 
 #include "math/sampling.h"
 #include "tuning/constants.h"
+#include "walks/foremost.h"
 
 #include <cmath>
 #include <numbers>
@@ -16,8 +17,9 @@ LampDirections::LampDirections(const World& world, const LampShells& shells)
     all += power(l);
   for (std::size_t l = 0; all > 0 && l < world.lights.size(); ++l)
     if (const double far = reach(shells, l); far > 0)
-      lamps_.push_back(
-          {*world.lights[l].position(), far, tuning::branches_per_scattering * power(l) / all});
+      lamps_.push_back({*world.lights[l].position(), far,
+                        tuning::branches_per_scattering * power(l) / all,
+                        static_cast<double>(world.lights[l].typical_intensity())});
 }
 
 double LampDirections::reach(const LampShells& shells, std::size_t light) {
@@ -43,32 +45,43 @@ float LampDirections::density_about(const Medium& medium, const Vec3f& to_lamp,
   return static_cast<float>(of_angle / (2 * std::numbers::pi * sine));
 }
 
+template <class Visit>
+void LampDirections::for_each_in_reach(const Vec3f& point, const Visit& visit) const {
+  const auto irradiance = [&](const Lamp& lamp) {
+    const Vec3d to = lamp.position - Vec3d(point);
+    return lamp.intensity / dot(to, to);
+  };
+  for_each_foremost(lamps_, irradiance, [&](const Lamp& lamp) {
+    if (lamp.reaches(point))
+      visit(lamp);
+  });
+}
+
 std::optional<Vec3f> LampDirections::sample(const Vec3f& point, Rng& rng) const {
   float place = rng.uniform();
-  for (const Lamp& lamp : lamps_) {
-    if (!lamp.reaches(point))
-      continue;
-    if (place < lamp.chance) {
-      const float u = rng.uniform(), v = rng.uniform();
-      return sample_about(medium_, lamp.from(point), u, v);
-    }
+  const Lamp* drawn = nullptr;
+  for_each_in_reach(point, [&](const Lamp& lamp) {
+    if (!drawn && place < lamp.chance)
+      drawn = &lamp;
     place -= lamp.chance;
-  }
-  return std::nullopt;
+  });
+  if (!drawn)
+    return std::nullopt;
+  const float u = rng.uniform(), v = rng.uniform();
+  return sample_about(medium_, drawn->from(point), u, v);
 }
 
 float LampDirections::chance(const Vec3f& point) const {
   float sum = 0;
-  for (const Lamp& lamp : lamps_)
-    sum += lamp.reaches(point) ? lamp.chance : 0;
+  for_each_in_reach(point, [&](const Lamp& lamp) { sum += lamp.chance; });
   return sum;
 }
 
 float LampDirections::density(const Vec3f& point, const Vec3f& direction) const {
   float sum = 0;
-  for (const Lamp& lamp : lamps_)
-    if (lamp.reaches(point))
-      sum += lamp.chance * density_about(medium_, lamp.from(point), direction);
+  for_each_in_reach(point, [&](const Lamp& lamp) {
+    sum += lamp.chance * density_about(medium_, lamp.from(point), direction);
+  });
   return sum;
 }
 

@@ -37,10 +37,15 @@ private:
     Vec3d position;
     double reach;
     float chance;
+    double intensity;
 
     bool reaches(const Vec3f& point) const { return length(position - Vec3d(point)) < reach; }
     Vec3f from(const Vec3f& point) const { return Vec3f(normalize(position - Vec3d(point))); }
   };
+  /// Calls visit(lamp) for the lamps in reach of the point, the brightest there of many.
+  template <class Visit>
+  void for_each_in_reach(const Vec3f& point, const Visit& visit) const;
+
   const Medium& medium_;
   std::vector<Lamp> lamps_;
 };

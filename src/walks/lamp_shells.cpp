@@ -2,6 +2,7 @@
 
 #include "medium/equi_angular.h"
 #include "medium/optical_depth.h"
+#include "transport/light_draw.h"
 #include "transport/next_event.h"
 #include "tuning/constants.h"
 
@@ -93,27 +94,36 @@ bool LampShells::holds(std::size_t light, const Vec3f& point) const {
 }
 
 GroupedLight LampShells::along(const Segment& flight, Rng& rng) const {
-  GroupedLight sum;
+  std::vector<Crossing> crossings;
+  std::vector<DrawnLight> drawn; // of the crossings
   for (const Shell& shell : shells_) {
-    const Segment crossing =
-        world_.lights[shell.light].lit_part(part_in_ball(flight, shell.center, shell.radius));
-    if (!crossing.empty())
-      sum.add(sample(shell, crossing, rng), world_.lights.group(shell.light));
+    const Light& lamp = world_.lights[shell.light];
+    const Segment lit = lamp.lit_part(part_in_ball(flight, shell.center, shell.radius));
+    if (lit.empty())
+      continue;
+    drawn.push_back({crossings.size(), lamp_importance(lamp, lit)});
+    crossings.push_back({&shell, lit});
   }
+  draw_systematically(drawn, 0, LightDraw::most(), rng);
+  GroupedLight sum;
+  for (const auto& [i, weight] : drawn)
+    sum.add(sample(crossings[i], rng) * weight, world_.lights.group(crossings[i].shell->light));
   return sum;
 }
 
-Rgb LampShells::sample(const Shell& shell, const Segment& crossing, Rng& rng) const {
+Rgb LampShells::sample(const Crossing& crossing, Rng& rng) const {
   const Medium& medium = world_.medium;
-  const EquiAngular distances(crossing.ray, shell.center, crossing.t_begin, crossing.t_end,
+  const auto& [shell, segment] = crossing;
+  const Ray& ray = segment.ray;
+  const EquiAngular distances(ray, shell->center, segment.t_begin, segment.t_end,
                               medium.angles.get());
   const float t = distances.sample(rng.uniform()), density = distances.pdf(t);
-  const Vec3f point = crossing.ray.at(t);
-  const auto direct = sample_direct_light(world_, world_.lights[shell.light],
-                                          MixedVertex{medium, point, crossing.ray.direction}, rng);
+  const Vec3f point = ray.at(t);
+  const auto direct = sample_direct_light(world_, world_.lights[shell->light],
+                                          MixedVertex{medium, point, ray.direction}, rng);
   if (!direct || !(density > 0))
     return {};
-  Rgb through = estimate_transmittance(medium, {crossing.ray, 0, t}, rng.uniform());
+  Rgb through = estimate_transmittance(medium, {ray, 0, t}, rng.uniform());
   if (max_component(through) > 0)
     through *= estimate_transmittance(medium, direct->segment, rng.uniform());
   return direct->radiance() * through / density;

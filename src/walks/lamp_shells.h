@@ -33,7 +33,12 @@ private:
     Vec3d center;
     double radius;
   };
-  Rgb sample(const Shell& shell, const Segment& crossing, Rng& rng) const;
+  /// The lit part of a flight in a shell.
+  struct Crossing {
+    const Shell* shell;
+    Segment segment;
+  };
+  Rgb sample(const Crossing& crossing, Rng& rng) const;
 
   const World& world_;
   std::vector<Shell> shells_;

@@ -1,6 +1,7 @@
 #include "walks/light_branches.h"
 
 #include "tuning/constants.h"
+#include "walks/foremost.h"
 
 #include <algorithm>
 
@@ -38,6 +39,13 @@ Vec3f LightBranches::NarrowLight::towards(const Vec3f& point) const {
   return Vec3f(normalize(*light->position() - Vec3d(point)));
 }
 
+double LightBranches::NarrowLight::irradiance(const Vec3f& point) const {
+  if (!light->position())
+    return std::numeric_limits<double>::infinity();
+  const Vec3d to = *light->position() - Vec3d(point);
+  return static_cast<double>(light->typical_intensity()) / dot(to, to);
+}
+
 bool LightBranches::NarrowLight::passed_from(const Vec3f& point) const {
   return reach > 0 && length(*light->position() - Vec3d(point)) < reach;
 }
@@ -53,6 +61,16 @@ LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow
     if (is_narrow(world.lights[i]) && shadow_rays[i] && (!peaked_.empty() || reach > 0))
       lights_.push_back({&world.lights[i], reach});
   }
+}
+
+std::size_t LightBranches::count() const {
+  return foremost(lights_.size());
+}
+
+template <class Visit>
+void LightBranches::for_each_towards(const Vec3f& point, const Visit& visit) const {
+  for_each_foremost(
+      lights_, [&](const NarrowLight& light) { return light.irradiance(point); }, visit);
 }
 
 bool LightBranches::is_peaked(const PhaseFunction& phase) const {
@@ -72,9 +90,14 @@ std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec
                                            Rng& rng) const {
   if (!any() || rng.uniform() >= tuning::branches_per_scattering)
     return std::nullopt;
-  const auto count = static_cast<float>(lights_.size());
-  const auto index = static_cast<std::size_t>(rng.uniform() * count);
-  const NarrowLight& light = lights_[std::min(index, lights_.size() - 1)];
+  const auto drawn = static_cast<std::size_t>(rng.uniform() * static_cast<float>(count()));
+  const NarrowLight* picked = nullptr;
+  std::size_t visited = 0;
+  for_each_towards(point, [&](const NarrowLight& one) {
+    if (visited++ <= drawn)
+      picked = &one;
+  });
+  const NarrowLight& light = *picked;
   const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
   const Vec3f to_light = light.towards(point);
   if (light.passed_from(point))
@@ -90,20 +113,21 @@ float LightBranches::density(const PhaseFunction& phase, const Vec3f& point,
   if (!any())
     return 0;
   float sum = 0;
-  for (const NarrowLight& light : lights_)
+  for_each_towards(point, [&](const NarrowLight& light) {
     sum += density_about(light, phase, point, direction);
-  return tuning::branches_per_scattering * sum / static_cast<float>(lights_.size());
+  });
+  return tuning::branches_per_scattering * sum / static_cast<float>(count());
 }
 
 float LightBranches::importance(const Vec3f& point, const Vec3f& direction) const {
   float most = 0;
-  for (const NarrowLight& light : lights_) {
+  for_each_towards(point, [&](const NarrowLight& light) {
     if (light.passed_from(point))
       most =
           std::max(most, LampDirections::density_about(medium_, light.towards(point), direction));
     for (const PhaseFunction* phase : peaked_)
       most = std::max(most, phase->evaluate(dot(light.towards(point), direction)));
-  }
+  });
   return 1 + tuning::importance_of_peak * most;
 }
 

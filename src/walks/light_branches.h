@@ -52,10 +52,16 @@ private:
     const Light* light;
     double reach; ///< distance up to which branches pass the lamp by 1 / D; 0: it has no shell
 
+    double irradiance(const Vec3f& point) const; ///< infinite if the light is
     /// Unit; undefined where a lamp stands.
     Vec3f towards(const Vec3f& point) const;
     bool passed_from(const Vec3f& point) const;
   };
+  /// Calls visit(light) for the lights that branches from the point may go to: the brightest there
+  /// of many.
+  template <class Visit>
+  void for_each_towards(const Vec3f& point, const Visit& visit) const;
+  std::size_t count() const; ///< of these
   bool is_peaked(const PhaseFunction& phase) const;
   float density_about(const NarrowLight& light, const PhaseFunction& phase, const Vec3f& point,
                       const Vec3f& direction) const;

@@ -20,8 +20,6 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
   walk.phase = &phase;
   walk.scatters = true;
   walk.skips_sampled = true; // direct_light draws both strategies
-  // Before its first flight there is no shadow ray left to trace.
-  walk.light = world_.lights.size();
   return walk;
 }
 
@@ -40,7 +38,7 @@ bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
     if (walk.shadow->attenuate(walk.rng) && walk.shadow->advance(walk.rng))
       return true;
     walk.indirect.add(walk.shadow_value * walk.shadow->transmittance(),
-                      world_.lights.group(walk.light));
+                      world_.lights.group(walk.lights[walk.light].light));
     ++walk.light;
     sample_lights(walk);
     return true;
@@ -69,6 +67,13 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
   walk.skips_sampled = walk.from_surface = walk.in_plate = false;
   walk.from_medium = true;
   walk.light = 0;
+  light_draw_.draw(
+      MediumVertex{ray.origin, ray.direction, *walk.phase}, walk.rng,
+      [&](std::size_t light) {
+        return shells_.holds(light, ray.origin) ||
+               (!walk.all_light && world_.lights[light].is_near());
+      },
+      walk.lights);
   sample_lights(walk);
   return true;
 }
@@ -77,20 +82,18 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
 /// time; then the walk scatters.
 void WalkTracer::sample_lights(PathWalk& walk) const {
   const Ray& ray = walk.segment.ray;
-  for (; walk.light < world_.lights.size(); ++walk.light) {
-    if (!shadow_rays_[walk.light] || shells_.holds(walk.light, ray.origin) ||
-        (!walk.all_light && world_.lights[walk.light].is_near()))
-      continue;
+  for (; walk.light < walk.lights.size(); ++walk.light) {
+    const auto [light, weight] = walk.lights[walk.light];
     const auto direct = sample_direct_light(
-        world_, world_.lights[walk.light], MediumVertex{ray.origin, ray.direction, *walk.phase},
+        world_, world_.lights[light], MediumVertex{ray.origin, ray.direction, *walk.phase},
         walk.rng, [&](const Vec3f& wi) { return flight_density(walk, wi); });
     if (!direct)
       continue;
-    walk.shadow_value = direct->radiance() * walk.throughput;
+    walk.shadow_value = direct->radiance() * walk.throughput * weight;
     walk.shadow.emplace(world_.medium, direct->segment);
     if (walk.shadow->advance(walk.rng))
       return;
-    walk.indirect.add(walk.shadow_value, world_.lights.group(walk.light));
+    walk.indirect.add(walk.shadow_value, world_.lights.group(light));
   }
   walk.shadow.reset();
   walk.scatters = true;

@@ -2,6 +2,7 @@
 
 #include "math/grouped_light.h"
 #include "medium/optical_depth.h"
+#include "transport/light_draw.h"
 #include "transport/world.h"
 #include "tuning/constants.h"
 #include "walks/camera_walk.h"
@@ -31,8 +32,9 @@ struct PathWalk : CameraWalk {
   /// Light so far that the medium scattered once at most, and more often.
   GroupedLight direct, indirect;
   std::optional<RatioTracking> shadow;
-  std::size_t light = 0; ///< that the shadow ray is sent to
-  Rgb shadow_value;      ///< its contribution, without the transmittance
+  std::vector<DrawnLight> lights; ///< for shadow rays from the collision
+  std::size_t light = 0;          ///< of these, the one that the shadow ray is sent to
+  Rgb shadow_value;               ///< its contribution, without the transmittance
 
   // Weights of light that comes unscattered from lights with shadow rays:
   bool skips_sampled = false; ///< none on this flight, since it was found before
@@ -78,7 +80,8 @@ public:
   WalkTracer(const World& world, std::vector<bool> shadow_rays, std::optional<int> max_bounces)
       : world_(world), shadow_rays_(std::move(shadow_rays)), max_bounces_(max_bounces),
         meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()),
-        shells_(world, shadow_rays_), light_branches_(world, shadow_rays_, shells_) {}
+        light_draw_(world.lights, shadow_rays_), shells_(world, shadow_rays_),
+        light_branches_(world, shadow_rays_, shells_) {}
 
   /// A walk that scatters first at ray.origin, coming along ray.direction. The light there by
   /// shadow rays is estimated elsewhere (direct_light), so the walk begins with what comes after.
@@ -148,6 +151,7 @@ private:
   std::vector<bool> shadow_rays_;
   std::optional<int> max_bounces_;
   bool meets_light_; ///< flights may meet light before they end
+  LightDraw light_draw_;
   LampShells shells_;
   LightBranches light_branches_;
 };

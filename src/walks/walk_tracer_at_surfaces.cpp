@@ -163,17 +163,18 @@ GroupedLight WalkTracer::lights_at_surface(const SurfaceVertex& vertex, Rng& rng
                                            bool goes_on_as_walk, bool in_plate,
                                            GroupedLight* matt) const {
   GroupedLight sum;
-  for (std::size_t i = 0; i < world_.lights.size(); ++i) {
-    if (!shadow_rays_[i] || (in_plate && world_.lights.in_plate(i)))
-      continue;
+  std::vector<DrawnLight> drawn;
+  light_draw_.draw(
+      vertex, rng, [&](std::size_t i) { return in_plate && world_.lights.in_plate(i); }, drawn);
+  for (const auto& [i, weight] : drawn) {
     const auto direct =
         sample_direct_light(world_, world_.lights[i], vertex, rng, [&](const Vec3f& wi) {
           return goes_on_as_walk ? surface_density(vertex, wi) : vertex.pdf(wi);
         });
     if (!direct)
       continue;
-    const Rgb light =
-        direct->radiance() * estimate_transmittance(world_.medium, direct->segment, rng.uniform());
+    const Rgb light = direct->radiance() * weight *
+                      estimate_transmittance(world_.medium, direct->segment, rng.uniform());
     sum.add(light, world_.lights.group(i));
     if (matt)
       matt->add(light * vertex.matt_share(direct->direction()), world_.lights.group(i));

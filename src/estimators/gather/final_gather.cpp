@@ -30,7 +30,8 @@ struct FinalGather::Walk : CameraWalk {
 FinalGather::FinalGather(const World& world, const PhotonPlan& plan, const Maps& maps,
                          const SurfaceLighting& surfaces)
     : world_(world), plan_(plan), maps_(maps), surfaces_(surfaces),
-      shells_(world, plan.sampled_lights), lamps_(world, shells_),
+      light_draw_(world.lights, plan.sampled_lights), shells_(world, plan.sampled_lights),
+      lamps_(world, shells_),
       meets_light_(!world.medium.emitters.empty() || world.lights.any_extent()) {}
 
 GatheredLight FinalGather::gather(const Ray& ray, const DepthProfile& profile, int walks,
@@ -189,11 +190,12 @@ bool FinalGather::meet_surface(Walk& walk) const {
 /// Scattered light of lights with shadow rays at the walk's collision.
 void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const {
   const Ray& flight = walk.segment.ray;
-  for (std::size_t l = 0; l < world_.lights.size(); ++l) {
-    if (!plan_.sampled_lights[l] || shells_.holds(l, flight.origin))
-      continue;
-    const auto direct = sample_direct_light(
-        world_, world_.lights[l], MediumVertex{flight.origin, flight.direction, phase}, walk.rng);
+  const MediumVertex vertex{flight.origin, flight.direction, phase};
+  std::vector<DrawnLight> drawn;
+  light_draw_.draw(
+      vertex, walk.rng, [&](std::size_t l) { return shells_.holds(l, flight.origin); }, drawn);
+  for (const auto& [l, weight] : drawn) {
+    const auto direct = sample_direct_light(world_, world_.lights[l], vertex, walk.rng);
     if (!direct)
       continue;
     ++walk.counts.shadow_rays;
@@ -201,7 +203,7 @@ void FinalGather::send_shadow_rays(Walk& walk, const PhaseFunction& phase) const
     while (shadow.advance(walk.rng) && shadow.attenuate(walk.rng))
       continue;
     walk.found.indirect.add(direct->light * shadow.transmittance() * walk.throughput *
-                                direct->scattered,
+                                direct->scattered * weight,
                             world_.lights.group(l));
   }
 }

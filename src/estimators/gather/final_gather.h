@@ -71,6 +71,7 @@ private:
   const PhotonPlan& plan_;
   const Maps maps_;
   const SurfaceLighting& surfaces_;
+  const LightDraw light_draw_;
   const LampShells shells_; ///< flights find the light of lamps near by, shadow rays that of others
   const LampDirections lamps_;
   bool meets_light_; ///< flights may meet light before they end

@@ -11,6 +11,7 @@ namespace vdbeam {
 class LocalLight : public Light {
 public:
   IncidentSample sample_incident(const Vec3f& point, float u, float v) const override;
+  float typical_intensity() const override { return max_component(Rgb(intensity_)); }
   float incident_pdf(const Vec3f&, const Vec3f&) const override { return 0; }
   LightHit emitted_radiance(const Segment&) const override { return {}; }
   EmittedPhoton emit(double place, Rng& rng) const override;

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "tuning/constants.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace vdbeam {
+
+/// The lights that are looked at if there are `all`: all of a few, tuning::lamps_per_vertex of
+/// many.
+inline std::size_t foremost(std::size_t all) {
+  const auto count = static_cast<std::size_t>(tuning::lamps_per_vertex);
+  return all <= 2 * count ? all : count;
+}
+
+/// Calls visit(light) for those of the lights that have the largest key(light), foremost() of them,
+/// always in the same order. Looking at a few of hundreds keeps their cost low.
+template <class Light, class Key, class Visit>
+void for_each_foremost(const std::vector<Light>& lights, const Key& key, const Visit& visit) {
+  const std::size_t count = foremost(lights.size());
+  if (lights.size() == count) {
+    for (const Light& light : lights)
+      visit(light);
+    return;
+  }
+  std::vector<std::pair<double, const Light*>> ranked;
+  ranked.reserve(lights.size());
+  for (const Light& light : lights)
+    ranked.push_back({key(light), &light});
+  const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(count);
+  std::nth_element(ranked.begin(), end, ranked.end(),
+                   [](const auto& a, const auto& b) { return a > b; });
+  std::for_each(ranked.begin(), end, [&](const auto& one) { visit(*one.second); });
+}
+
+} // namespace vdbeam
