@@ -17,18 +17,19 @@ void draw_systematically(std::vector<DrawnLight>& candidates, std::size_t first,
       candidates[i].weight = 1;
     return;
   }
-  // In double precision: weights may be as large as a float holds.
-  double sum = 0;
-  for (std::size_t i = first; i < candidates.size(); ++i)
-    sum += static_cast<double>(candidates[i].weight);
   // Without those that are certain, the step between draws is shorter, and others may be certain.
+  // The rest is summed anew each time: beside a very bright lamp that is subtracted it would be
+  // lost in rounding.
   std::size_t certain = first;
+  double sum = 0;
   for (bool found = true; found && count > 0;) {
     found = false;
+    sum = 0;
+    for (std::size_t i = certain; i < candidates.size(); ++i)
+      sum += static_cast<double>(candidates[i].weight);
+    const double step = sum / static_cast<double>(count);
     for (std::size_t i = certain; i < candidates.size() && count > 0; ++i)
-      if (const auto weight = static_cast<double>(candidates[i].weight);
-          weight * static_cast<double>(count) >= sum) {
-        sum -= weight;
+      if (static_cast<double>(candidates[i].weight) >= step) {
         --count;
         candidates[i].weight = 1;
         std::swap(candidates[i], candidates[certain++]);

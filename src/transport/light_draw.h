@@ -3,7 +3,8 @@
 #include "lights/light_set.h"
 #include "transport/next_event.h"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace vdbeam {
@@ -73,7 +74,8 @@ private:
     if (light.is_delta() && scattered == Rgb())
       return 0;
     constexpr float at_any_angle = 1 / (4 * pi);
-    return arriving * (std::max(0.0f, max_component(scattered)) + at_any_angle);
+    return std::min(arriving * (std::max(0.0f, max_component(scattered)) + at_any_angle),
+                    std::numeric_limits<float>::max());
   }
 
   const LightSet* lights_;

@@ -2,7 +2,7 @@
 
 #include "math/sampling.h"
 #include "tuning/constants.h"
-#include "walks/foremost.h"
+#include "walks/brightest.h"
 
 #include <cmath>
 #include <numbers>
@@ -48,10 +48,9 @@ float LampDirections::density_about(const Medium& medium, const Vec3f& to_lamp,
 template <class Visit>
 void LampDirections::for_each_in_reach(const Vec3f& point, const Visit& visit) const {
   const auto irradiance = [&](const Lamp& lamp) {
-    const Vec3d to = lamp.position - Vec3d(point);
-    return lamp.intensity / dot(to, to);
+    return irradiance_from(lamp.intensity, lamp.position - Vec3d(point));
   };
-  for_each_foremost(lamps_, irradiance, [&](const Lamp& lamp) {
+  for_each_brightest(lamps_, irradiance, [&](const Lamp& lamp) {
     if (lamp.reaches(point))
       visit(lamp);
   });

@@ -1,7 +1,7 @@
 #include "walks/light_branches.h"
 
 #include "tuning/constants.h"
-#include "walks/foremost.h"
+#include "walks/brightest.h"
 
 #include <algorithm>
 
@@ -43,7 +43,7 @@ double LightBranches::NarrowLight::irradiance(const Vec3f& point) const {
   if (!light->position())
     return std::numeric_limits<double>::infinity();
   const Vec3d to = *light->position() - Vec3d(point);
-  return static_cast<double>(light->typical_intensity()) / dot(to, to);
+  return irradiance_from(static_cast<double>(light->typical_intensity()), to);
 }
 
 bool LightBranches::NarrowLight::passed_from(const Vec3f& point) const {
@@ -64,12 +64,12 @@ LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow
 }
 
 std::size_t LightBranches::count() const {
-  return foremost(lights_.size());
+  return brightest_count(lights_.size());
 }
 
 template <class Visit>
 void LightBranches::for_each_towards(const Vec3f& point, const Visit& visit) const {
-  for_each_foremost(
+  for_each_brightest(
       lights_, [&](const NarrowLight& light) { return light.irradiance(point); }, visit);
 }
 

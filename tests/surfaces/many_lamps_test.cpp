@@ -47,7 +47,7 @@ MemoryScene lamps_in_fog(int part) {
 
 class ManyLamps : public ::testing::TestWithParam<EstimatorType> {};
 
-/// The sum of one part of what images show, and its standard error.
+/// The sum of a mean over the parts, and the variance of that sum.
 struct SumOfParts {
   double mean = 0, variance = 0;
 
@@ -57,8 +57,8 @@ struct SumOfParts {
   }
 };
 
-/// Five standard errors, which chance exceeds once in 30,000 renders, must be less than `power` of
-/// the value; and the balls of other parts may hide a little.
+/// Allows five standard errors, which chance exceeds in less than one of 1000 runs of these tests,
+/// and what the balls of other parts may hide. The errors must be less than `power` of the value.
 void expect_sum(const Samples& all, const SumOfParts& parts_sum, double power) {
   constexpr double limit = 5, hidden = 2e-3;
   const double error = limit * std::sqrt(parts_sum.variance + std::pow(all.error(), 2));

@@ -1,25 +1,32 @@
 #pragma once
 
 #include "tuning/constants.h"
+#include "vdbeam/vec.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
 namespace vdbeam {
 
-/// The lights that are looked at if there are `all`: all of a few, tuning::lamps_per_vertex of
-/// many.
-inline std::size_t foremost(std::size_t all) {
+/// The number of lights that are looked at if there are `all`: all of a few,
+/// tuning::lamps_per_vertex of many.
+inline std::size_t brightest_count(std::size_t all) {
   const auto count = static_cast<std::size_t>(tuning::lamps_per_vertex);
   return all <= 2 * count ? all : count;
 }
 
-/// Calls visit(light) for those of the lights that have the largest key(light), foremost() of them,
-/// always in the same order. Looking at a few of hundreds keeps their cost low.
+/// The irradiance from a lamp at the end of the vector `to_lamp`; finite even if that is 0.
+inline double irradiance_from(double intensity, const Vec3d& to_lamp) {
+  return intensity / std::max(dot(to_lamp, to_lamp), std::numeric_limits<double>::min());
+}
+
+/// Calls visit(light) for those of the lights that have the largest key(light), brightest_count()
+/// of them, always in the same order. Looking at a few of hundreds keeps their cost low.
 template <class Light, class Key, class Visit>
-void for_each_foremost(const std::vector<Light>& lights, const Key& key, const Visit& visit) {
-  const std::size_t count = foremost(lights.size());
+void for_each_brightest(const std::vector<Light>& lights, const Key& key, const Visit& visit) {
+  const std::size_t count = brightest_count(lights.size());
   if (lights.size() == count) {
     for (const Light& light : lights)
       visit(light);
