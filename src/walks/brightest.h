@@ -17,7 +17,7 @@ inline std::size_t brightest_count(std::size_t all) {
   return all <= 2 * count ? all : count;
 }
 
-/// The irradiance from a lamp at the end of the vector `to_lamp`; finite even if that is 0.
+/// The irradiance from a lamp at the end of the vector `to_lamp`; no NaN even if that is 0.
 inline double irradiance_from(double intensity, const Vec3d& to_lamp) {
   return intensity / std::max(dot(to_lamp, to_lamp), std::numeric_limits<double>::min());
 }
