@@ -20,6 +20,7 @@ struct RenderStatistics {
   std::uint64_t light_collisions = 0; ///< of light paths, where photons could be stored
   std::uint64_t camera_walks = 0;     ///< random walks from camera rays (path)
   std::uint64_t walk_collisions = 0;  ///< tentative collisions of these and of their shadow rays
+  std::uint64_t walk_shadow_rays = 0; ///< shadow rays of the walks from camera rays (path)
   std::uint64_t gather_walks = 0;     ///< walks from camera rays to where photons are gathered
   std::uint64_t neighbourhoods = 0;   ///< photons whose radius follows their neighbours'
   std::uint64_t bias_rays = 0;        ///< camera rays path traced to estimate the bias

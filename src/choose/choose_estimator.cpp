@@ -103,11 +103,7 @@ double lead_of_photons(const EstimatorInput& photon_input, const FramePasses& pa
     beside[i] = std::min(beside[i], of_path[i]);
   const double of_shadow_ray = time_of_shadow_ray(photon_input.world.medium);
   const double path_time =
-      tuning::time_of_camera_ray +
-      (of_shadow_ray * static_cast<double>(path_counts.shadow_rays) +
-       tuning::time_of_walk * static_cast<double>(path_counts.camera_walks) +
-       tuning::time_of_walk_collision * static_cast<double>(path_counts.walk_collisions)) /
-          rays;
+      tuning::time_of_camera_ray + time_of_paths(photon_input.world.medium, path_counts) / rays;
   const double paths_per_ray = static_cast<double>(plan.paths) / plan.hits;
   const double beam_time =
       tuning::time_of_camera_ray +

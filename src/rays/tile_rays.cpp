@@ -6,9 +6,10 @@ namespace vdbeam {
 
 namespace {
 
-/// Where the rays of a pixel lie, relative to its own.
+/// Where the rays of a pixel lie, relative to its own. No two lie in one row or column, so that
+/// they show more of edges along the axes, such as a horizon.
 constexpr std::array<double, 2> lattice[TileRays::rays_if_refined] = {
-    {0, 0}, {0.5, 0.5}, {0.5, 0}, {0, 0.5}};
+    {0, 0}, {0.5, 0.25}, {0.75, 0.5}, {0.25, 0.75}};
 
 } // namespace
 

@@ -18,7 +18,7 @@ constexpr std::uint64_t S::*counts[] = {
     &S::camera_walks,     &S::neighbourhoods,  &S::bias_rays,       &S::directions,
     &S::maps_reused,      &S::pilot_paths,     &S::importance_rays, &S::clamped_pixels,
     &S::light_collisions, &S::walk_collisions, &S::meshes_read,     &S::textures_read,
-    &S::trees_built,      &S::grids_read,      &S::gather_walks};
+    &S::trees_built,      &S::grids_read,      &S::gather_walks,    &S::walk_shadow_rays};
 
 // Whoever adds a field decides here how it is added up.
 static_assert(sizeof(S) == sizeof(double) * std::size(sums) +

@@ -180,6 +180,7 @@ Json counts_json(const RenderStatistics& statistics) {
           {"emission_rays", statistics.emission_rays},
           {"camera_walks", statistics.camera_walks},
           {"walk_collisions", statistics.walk_collisions},
+          {"walk_shadow_rays", statistics.walk_shadow_rays},
           {"gather_walks", statistics.gather_walks},
           {"bias_rays", statistics.bias_rays},
           {"neighbourhoods", statistics.neighbourhoods},

@@ -60,6 +60,11 @@ public:
     draw_systematically(drawn, first, most(), rng);
   }
 
+  /// Lights that a vertex looks for which leaves none out.
+  std::size_t size() const {
+    return others_.size() + (lamps_.size() <= 2 * most() ? lamps_.size() : most());
+  }
+
   /// The most lamps that a vertex, or a flight that passes them, looks for.
   static std::size_t most();
 

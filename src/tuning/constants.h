@@ -18,7 +18,9 @@ namespace vdbeam::tuning {
 VDBEAM_TUNED(double, time_of_camera_ray, 10000);
 /// A walk of `path` from a camera ray, and each tentative collision of a walk.
 VDBEAM_TUNED(double, time_of_walk, 1000);
-VDBEAM_TUNED(double, time_of_walk_collision, 80);
+VDBEAM_TUNED(double, time_of_walk_collision, 40);
+/// A shadow ray of such a walk, without its collisions.
+VDBEAM_TUNED(double, time_of_walk_shadow_ray, 200);
 /// A path from a surface.
 VDBEAM_TUNED(double, time_of_surface_path, 2000);
 /// A shadow ray through voxels; through layers, whose optical depth has a closed form.

@@ -22,14 +22,16 @@ inline double irradiance_from(double intensity, const Vec3d& to_lamp) {
   return intensity / std::max(dot(to_lamp, to_lamp), std::numeric_limits<double>::min());
 }
 
-/// Calls visit(light) for those of the lights that have the largest key(light), brightest_count()
-/// of them, always in the same order. Looking at a few of hundreds keeps their cost low.
-template <class Light, class Key, class Visit>
-void for_each_brightest(const std::vector<Light>& lights, const Key& key, const Visit& visit) {
+/// Puts to `brightest` those of the lights that have the largest key(light), brightest_count() of
+/// them, always in the same order. Looking at a few of hundreds keeps their cost low.
+template <class Light, class Key>
+void find_brightest(const std::vector<Light>& lights, const Key& key,
+                    std::vector<const Light*>& brightest) {
+  brightest.clear();
   const std::size_t count = brightest_count(lights.size());
   if (lights.size() == count) {
     for (const Light& light : lights)
-      visit(light);
+      brightest.push_back(&light);
     return;
   }
   std::vector<std::pair<double, const Light*>> ranked;
@@ -39,7 +41,7 @@ void for_each_brightest(const std::vector<Light>& lights, const Key& key, const 
   const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(count);
   std::nth_element(ranked.begin(), end, ranked.end(),
                    [](const auto& a, const auto& b) { return a > b; });
-  std::for_each(ranked.begin(), end, [&](const auto& one) { visit(*one.second); });
+  std::for_each(ranked.begin(), end, [&](const auto& one) { brightest.push_back(one.second); });
 }
 
 } // namespace vdbeam

@@ -45,42 +45,40 @@ float LampDirections::density_about(const Medium& medium, const Vec3f& to_lamp,
   return static_cast<float>(of_angle / (2 * std::numbers::pi * sine));
 }
 
-template <class Visit>
-void LampDirections::for_each_in_reach(const Vec3f& point, const Visit& visit) const {
+LampDirections::Vertex::Vertex(const LampDirections& directions, const Vec3f& point)
+    : medium_(directions.medium_), point_(point) {
+  if (!directions.any())
+    return;
   const auto irradiance = [&](const Lamp& lamp) {
     return irradiance_from(lamp.intensity, lamp.position - Vec3d(point));
   };
-  for_each_brightest(lamps_, irradiance, [&](const Lamp& lamp) {
-    if (lamp.reaches(point))
-      visit(lamp);
-  });
+  find_brightest(directions.lamps_, irradiance, lamps_);
+  std::erase_if(lamps_, [&](const Lamp* lamp) { return !lamp->reaches(point); });
 }
 
-std::optional<Vec3f> LampDirections::sample(const Vec3f& point, Rng& rng) const {
+std::optional<Vec3f> LampDirections::Vertex::sample(Rng& rng) const {
   float place = rng.uniform();
-  const Lamp* drawn = nullptr;
-  for_each_in_reach(point, [&](const Lamp& lamp) {
-    if (!drawn && place < lamp.chance)
-      drawn = &lamp;
-    place -= lamp.chance;
-  });
-  if (!drawn)
-    return std::nullopt;
-  const float u = rng.uniform(), v = rng.uniform();
-  return sample_about(medium_, drawn->from(point), u, v);
+  for (const Lamp* lamp : lamps_) {
+    if (place < lamp->chance) {
+      const float u = rng.uniform(), v = rng.uniform();
+      return sample_about(medium_, lamp->from(point_), u, v);
+    }
+    place -= lamp->chance;
+  }
+  return std::nullopt;
 }
 
-float LampDirections::chance(const Vec3f& point) const {
+float LampDirections::Vertex::chance() const {
   float sum = 0;
-  for_each_in_reach(point, [&](const Lamp& lamp) { sum += lamp.chance; });
+  for (const Lamp* lamp : lamps_)
+    sum += lamp->chance;
   return sum;
 }
 
-float LampDirections::density(const Vec3f& point, const Vec3f& direction) const {
+float LampDirections::Vertex::density(const Vec3f& direction) const {
   float sum = 0;
-  for_each_in_reach(point, [&](const Lamp& lamp) {
-    sum += lamp.chance * density_about(medium_, lamp.from(point), direction);
-  });
+  for (const Lamp* lamp : lamps_)
+    sum += lamp->chance * density_about(medium_, lamp->from(point_), direction);
   return sum;
 }
 

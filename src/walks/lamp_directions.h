@@ -18,13 +18,9 @@ public:
   LampDirections(const World& world, const LampShells& shells);
 
   bool any() const { return !lamps_.empty(); }
-  /// A direction about one of the lamps in reach of the point, with a chance that goes with its
-  /// share of the power of all lights: a faint lamp takes nothing from them.
-  std::optional<Vec3f> sample(const Vec3f& point, Rng& rng) const;
-  /// The chance that `sample` returns a direction.
-  float chance(const Vec3f& point) const;
-  /// The chance times the density of the directions [1/sr].
-  float density(const Vec3f& point, const Vec3f& direction) const;
+  class Vertex;
+  /// The lamps in reach of this point, the brightest there of many.
+  Vertex at(const Vec3f& point) const;
 
   /// Distance up to which walks look for a lamp [render units]; 0 where it has no shell.
   static double reach(const LampShells& shells, std::size_t light);
@@ -42,12 +38,32 @@ private:
     bool reaches(const Vec3f& point) const { return length(position - Vec3d(point)) < reach; }
     Vec3f from(const Vec3f& point) const { return Vec3f(normalize(position - Vec3d(point))); }
   };
-  /// Calls visit(lamp) for the lamps in reach of the point, the brightest there of many.
-  template <class Visit>
-  void for_each_in_reach(const Vec3f& point, const Visit& visit) const;
 
   const Medium& medium_;
   std::vector<Lamp> lamps_;
 };
+
+/// A vertex of a walk, and the lamps by which flights from there may pass.
+class LampDirections::Vertex {
+public:
+  Vertex(const LampDirections& directions, const Vec3f& point);
+
+  /// A direction about one of the lamps, with a chance that goes with its share of the power of all
+  /// lights: a faint lamp takes nothing from them.
+  std::optional<Vec3f> sample(Rng& rng) const;
+  /// The chance that `sample` returns a direction.
+  float chance() const;
+  /// The chance times the density of the directions [1/sr].
+  float density(const Vec3f& direction) const;
+
+private:
+  const Medium& medium_;
+  Vec3f point_;
+  std::vector<const Lamp*> lamps_;
+};
+
+inline LampDirections::Vertex LampDirections::at(const Vec3f& point) const {
+  return {*this, point};
+}
 
 } // namespace vdbeam

@@ -74,26 +74,24 @@ LampShells::LampShells(const World& world, const std::vector<bool>& sampled) : w
     if (extinction * radius > tuning::depth_of_lamp_shell)
       radius = tuning::depth_of_lamp_shell / extinction;
     const Vec3d nearest = min(max(*lamp, Vec3d(box.lower)), Vec3d(box.upper));
-    if (length(nearest - *lamp) < radius)
-      shells_.push_back({l, *lamp, radius});
+    if (!(length(nearest - *lamp) < radius))
+      continue;
+    shells_.push_back({l, *lamp, radius});
+    radii_.resize(world.lights.size(), 0);
+    radii_[l] = radius;
   }
 }
 
 double LampShells::radius_of(std::size_t light) const {
-  for (const Shell& shell : shells_)
-    if (shell.light == light)
-      return shell.radius;
-  return 0;
+  return radii_.empty() ? 0 : radii_[light];
 }
 
 bool LampShells::holds(std::size_t light, const Vec3f& point) const {
-  for (const Shell& shell : shells_)
-    if (shell.light == light)
-      return length(Vec3d(point) - shell.center) < shell.radius;
-  return false;
+  const double radius = radius_of(light);
+  return radius > 0 && length(Vec3d(point) - *world_.lights[light].position()) < radius;
 }
 
-GroupedLight LampShells::along(const Segment& flight, Rng& rng) const {
+GroupedLight LampShells::along(const Segment& flight, Rng& rng, std::uint64_t& shadow_rays) const {
   std::vector<Crossing> crossings;
   std::vector<DrawnLight> drawn; // of the crossings
   for (const Shell& shell : shells_) {
@@ -105,6 +103,7 @@ GroupedLight LampShells::along(const Segment& flight, Rng& rng) const {
     crossings.push_back({&shell, lit});
   }
   draw_systematically(drawn, 0, LightDraw::most(), rng);
+  shadow_rays += drawn.size();
   GroupedLight sum;
   for (const auto& [i, weight] : drawn)
     sum.add(sample(crossings[i], rng) * weight, world_.lights.group(crossings[i].shell->light));

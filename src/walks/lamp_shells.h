@@ -24,8 +24,9 @@ public:
   /// Flights find the light of this lamp at the point, and no shadow ray may.
   bool holds(std::size_t light, const Vec3f& point) const;
   /// Light of the lamps that is scattered once, inside of the shells, against the flight: an
-  /// unbiased estimate of its radiance at the flight's origin.
-  GroupedLight along(const Segment& flight, Rng& rng) const;
+  /// unbiased estimate of its radiance at the flight's origin. Adds its shadow rays to
+  /// `shadow_rays`.
+  GroupedLight along(const Segment& flight, Rng& rng, std::uint64_t& shadow_rays) const;
 
 private:
   struct Shell {
@@ -42,6 +43,7 @@ private:
 
   const World& world_;
   std::vector<Shell> shells_;
+  std::vector<double> radii_; ///< per light, 0 without a shell; empty where no light has one
 };
 
 } // namespace vdbeam

@@ -63,14 +63,13 @@ LightBranches::LightBranches(const World& world, const std::vector<bool>& shadow
   }
 }
 
-std::size_t LightBranches::count() const {
-  return brightest_count(lights_.size());
-}
-
-template <class Visit>
-void LightBranches::for_each_towards(const Vec3f& point, const Visit& visit) const {
-  for_each_brightest(
-      lights_, [&](const NarrowLight& light) { return light.irradiance(point); }, visit);
+void LightBranches::move(Vertex& vertex, const Vec3f& point) const {
+  if (!any())
+    return;
+  vertex.branches_ = this;
+  vertex.point_ = point;
+  find_brightest(
+      lights_, [&](const NarrowLight& light) { return light.irradiance(point); }, vertex.lights_);
 }
 
 bool LightBranches::is_peaked(const PhaseFunction& phase) const {
@@ -78,56 +77,48 @@ bool LightBranches::is_peaked(const PhaseFunction& phase) const {
 }
 
 /// q of one light.
-float LightBranches::density_about(const NarrowLight& light, const PhaseFunction& phase,
-                                   const Vec3f& point, const Vec3f& direction) const {
-  const Vec3f to_light = light.towards(point);
-  if (light.passed_from(point))
-    return LampDirections::density_about(medium_, to_light, direction);
-  return is_peaked(phase) ? about_light(phase, to_light, direction) : 0;
+float LightBranches::Vertex::density_about(const NarrowLight& light, const PhaseFunction& phase,
+                                           const Vec3f& direction) const {
+  const Vec3f to_light = light.towards(point_);
+  if (light.passed_from(point_))
+    return LampDirections::density_about(branches_->medium_, to_light, direction);
+  return branches_->is_peaked(phase) ? about_light(phase, to_light, direction) : 0;
 }
 
-std::optional<Vec3f> LightBranches::sample(const PhaseFunction& phase, const Vec3f& point,
-                                           Rng& rng) const {
-  if (!any() || rng.uniform() >= tuning::branches_per_scattering)
+std::optional<Vec3f> LightBranches::Vertex::sample(const PhaseFunction& phase, Rng& rng) const {
+  if (lights_.empty() || rng.uniform() >= tuning::branches_per_scattering)
     return std::nullopt;
-  const auto drawn = static_cast<std::size_t>(rng.uniform() * static_cast<float>(count()));
-  const NarrowLight* picked = nullptr;
-  std::size_t visited = 0;
-  for_each_towards(point, [&](const NarrowLight& one) {
-    if (visited++ <= drawn)
-      picked = &one;
-  });
-  const NarrowLight& light = *picked;
+  const float place = rng.uniform() * static_cast<float>(lights_.size());
+  const NarrowLight& light =
+      *lights_[std::min(static_cast<std::size_t>(place), lights_.size() - 1)];
   const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
-  const Vec3f to_light = light.towards(point);
-  if (light.passed_from(point))
-    return LampDirections::sample_about(medium_, to_light, u, v);
-  if (!is_peaked(phase))
+  const Vec3f to_light = light.towards(point_);
+  if (light.passed_from(point_))
+    return LampDirections::sample_about(branches_->medium_, to_light, u, v);
+  if (!branches_->is_peaked(phase))
     return std::nullopt;
   const Vec3f direction = phase.sample(to_light, u_lobe, u, v);
   return about_light(phase, to_light, direction) > 0 ? std::optional(direction) : std::nullopt;
 }
 
-float LightBranches::density(const PhaseFunction& phase, const Vec3f& point,
-                             const Vec3f& direction) const {
-  if (!any())
+float LightBranches::Vertex::density(const PhaseFunction& phase, const Vec3f& direction) const {
+  if (lights_.empty())
     return 0;
   float sum = 0;
-  for_each_towards(point, [&](const NarrowLight& light) {
-    sum += density_about(light, phase, point, direction);
-  });
-  return tuning::branches_per_scattering * sum / static_cast<float>(count());
+  for (const NarrowLight* light : lights_)
+    sum += density_about(*light, phase, direction);
+  return tuning::branches_per_scattering * sum / static_cast<float>(lights_.size());
 }
 
-float LightBranches::importance(const Vec3f& point, const Vec3f& direction) const {
+float LightBranches::Vertex::importance(const Vec3f& direction) const {
   float most = 0;
-  for_each_towards(point, [&](const NarrowLight& light) {
-    if (light.passed_from(point))
-      most =
-          std::max(most, LampDirections::density_about(medium_, light.towards(point), direction));
-    for (const PhaseFunction* phase : peaked_)
-      most = std::max(most, phase->evaluate(dot(light.towards(point), direction)));
-  });
+  for (const NarrowLight* light : lights_) {
+    const Vec3f to_light = light->towards(point_);
+    if (light->passed_from(point_))
+      most = std::max(most, LampDirections::density_about(branches_->medium_, to_light, direction));
+    for (const PhaseFunction* phase : branches_->peaked_)
+      most = std::max(most, phase->evaluate(dot(to_light, direction)));
+  }
   return 1 + tuning::importance_of_peak * most;
 }
 

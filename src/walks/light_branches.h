@@ -36,16 +36,11 @@ public:
   /// Whether some phase function scatters so much straight on that branches are worth their time.
   static bool has_sharp_peak(const Medium& medium);
 
-  /// The direction of a branch at a scattering at `point` by this phase function of the world's;
-  /// none where the walk does not branch.
-  std::optional<Vec3f> sample(const PhaseFunction& phase, const Vec3f& point, Rng& rng) const;
-  /// c q, the density of branches [1/sr], 0 for directions that are not about a light.
-  float density(const PhaseFunction& phase, const Vec3f& point, const Vec3f& direction) const;
-
-  /// Expected contribution of a flight from `point` in this direction, in units of one far from
-  /// narrow lights: roulette looks at it, or it would end the faint walks that branches are made
-  /// for.
-  float importance(const Vec3f& point, const Vec3f& direction) const;
+  class Vertex;
+  /// The lights that branches from this point may go to: the brightest there of many.
+  Vertex at(const Vec3f& point) const;
+  /// The same for a vertex that keeps its memory.
+  void move(Vertex& vertex, const Vec3f& point) const;
 
 private:
   struct NarrowLight {
@@ -57,18 +52,43 @@ private:
     Vec3f towards(const Vec3f& point) const;
     bool passed_from(const Vec3f& point) const;
   };
-  /// Calls visit(light) for the lights that branches from the point may go to: the brightest there
-  /// of many.
-  template <class Visit>
-  void for_each_towards(const Vec3f& point, const Visit& visit) const;
-  std::size_t count() const; ///< of these
   bool is_peaked(const PhaseFunction& phase) const;
-  float density_about(const NarrowLight& light, const PhaseFunction& phase, const Vec3f& point,
-                      const Vec3f& direction) const;
 
   const Medium& medium_;
   std::vector<NarrowLight> lights_;
   std::vector<const PhaseFunction*> peaked_; ///< the world's phase functions with a sharp peak
 };
+
+/// A vertex of a walk, and the lights to which branches from there go.
+class LightBranches::Vertex {
+public:
+  Vertex() = default;
+
+  /// The direction of a branch at a scattering by this phase function of the world's; none where
+  /// the walk does not branch.
+  std::optional<Vec3f> sample(const PhaseFunction& phase, Rng& rng) const;
+  /// c q, the density of branches [1/sr], 0 for directions that are not about a light.
+  float density(const PhaseFunction& phase, const Vec3f& direction) const;
+
+  /// Expected contribution of a flight from the vertex in this direction, in units of one far from
+  /// narrow lights: roulette looks at it, or it would end the faint walks that branches are made
+  /// for.
+  float importance(const Vec3f& direction) const;
+
+private:
+  friend class LightBranches;
+  float density_about(const NarrowLight& light, const PhaseFunction& phase,
+                      const Vec3f& direction) const;
+
+  const LightBranches* branches_ = nullptr;
+  Vec3f point_;
+  std::vector<const NarrowLight*> lights_; ///< none: no branches go out
+};
+
+inline LightBranches::Vertex LightBranches::at(const Vec3f& point) const {
+  Vertex vertex;
+  move(vertex, point);
+  return vertex;
+}
 
 } // namespace vdbeam

@@ -18,6 +18,7 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
   walk.least_weight = roulette_from(throughput);
   walk.target = target;
   walk.phase = &phase;
+  walk.vertex = light_branches_.at(ray.origin);
   walk.scatters = true;
   walk.skips_sampled = true; // direct_light draws both strategies
   return walk;
@@ -26,7 +27,7 @@ PathWalk WalkTracer::start(std::size_t target, const Rng& rng, const Ray& ray,
 /// Density of flights from the walk's collision in this direction, its branches among them.
 float WalkTracer::flight_density(const PathWalk& walk, const Vec3f& direction) const {
   return walk.phase->evaluate(dot(walk.segment.ray.direction, direction)) +
-         light_branches_.density(*walk.phase, walk.segment.ray.origin, direction);
+         walk.vertex.density(*walk.phase, direction);
 }
 
 bool WalkTracer::step(PathWalk& walk, std::vector<PathWalk>& branches) const {
@@ -60,6 +61,7 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
     return false;
   Ray& ray = walk.segment.ray;
   ray.origin = ray.at(hit.t);
+  light_branches_.move(walk.vertex, ray.origin);
   walk.throughput *= hit.volume->albedo_at(ray.origin);
   if (!outlives_roulette(walk) || !walk.length.survive(walk.throughput, walk.rng))
     return false;
@@ -74,6 +76,7 @@ bool WalkTracer::collide(PathWalk& walk, const Collision& hit) const {
                (!walk.all_light && world_.lights[light].is_near());
       },
       walk.lights);
+  walk.shadow_rays += walk.lights.size();
   sample_lights(walk);
   return true;
 }
@@ -101,12 +104,12 @@ void WalkTracer::sample_lights(PathWalk& walk) const {
 
 /// Now and then, a walk of its own from the collision, about the direction of a narrow light.
 void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
-  const std::optional<Vec3f> direction =
-      light_branches_.sample(*walk.phase, walk.segment.ray.origin, walk.rng);
+  const std::optional<Vec3f> direction = walk.vertex.sample(*walk.phase, walk.rng);
   if (!direction)
     return;
   PathWalk branch = walk;
   branch.direct = branch.indirect = {};
+  branch.shadow_rays = 0;
   const std::uint64_t high = walk.rng.bits(), low = walk.rng.bits();
   branch.rng = Rng({}, RngStage::split, high << 32 | low);
   if (scatter(branch, *direction)) {
@@ -115,6 +118,7 @@ void WalkTracer::branch(PathWalk& walk, std::vector<PathWalk>& branches) const {
   }
   walk.direct += branch.direct;
   walk.indirect += branch.indirect;
+  walk.shadow_rays += branch.shadow_rays;
 }
 
 /// Begins a flight, which ends at the first surface.
@@ -142,13 +146,12 @@ bool WalkTracer::scatter(PathWalk& walk, const Vec3f& direction) const {
 void WalkTracer::look_into_shells(PathWalk& walk) const {
   if (!shells_.any() || !walk.all_light || (max_bounces_ && walk.bounces >= *max_bounces_))
     return;
-  walk.indirect += shells_.along(walk.segment, walk.rng) * walk.throughput;
+  walk.indirect += shells_.along(walk.segment, walk.rng, walk.shadow_rays) * walk.throughput;
 }
 
 /// Russian roulette on what the walk's flight is about to bring.
 bool WalkTracer::outlives_roulette(PathWalk& walk) const {
-  const Ray& ray = walk.segment.ray;
-  const float importance = light_branches_.importance(ray.origin, ray.direction);
+  const float importance = walk.vertex.importance(walk.segment.ray.direction);
   return survive_roulette(walk.least_weight * walk.refraction / importance, walk.throughput,
                           walk.rng);
 }

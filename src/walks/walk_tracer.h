@@ -13,6 +13,12 @@
 
 namespace vdbeam {
 
+/// Work of walks.
+struct WalkCounts {
+  std::uint64_t steps = 0;       ///< at tentative collisions of flights and of shadow rays
+  std::uint64_t shadow_rays = 0; ///< begun, hidden ones among them
+};
+
 /// The state of a path from the camera on: it is at a tentative collision of its flight or, while
 /// there is one, of its shadow ray.
 struct PathWalk : CameraWalk {
@@ -29,12 +35,14 @@ struct PathWalk : CameraWalk {
   /// Density of flights in this one's direction, branches among them [1/sr]; 0: nothing else draws
   /// it.
   float density = 0;
+  LightBranches::Vertex vertex; ///< the last in the medium, where branches begin
   /// Light so far that the medium scattered once at most, and more often.
   GroupedLight direct, indirect;
   std::optional<RatioTracking> shadow;
   std::vector<DrawnLight> lights; ///< for shadow rays from the collision
   std::size_t light = 0;          ///< of these, the one that the shadow ray is sent to
   Rgb shadow_value;               ///< its contribution, without the transmittance
+  std::uint64_t shadow_rays = 0;  ///< so far, those of the present vertex among them
 
   // Weights of light that comes unscattered from lights with shadow rays:
   bool skips_sampled = false; ///< none on this flight, since it was found before
@@ -91,11 +99,11 @@ public:
   /// Radiance that leaves a surface against `direction`, along which a ray meets it.
   /// `all_light`: or without what a light with shadow rays sends first to mirrors, metal, glass or,
   /// if it is near, the medium, and they on to other surfaces, to which photons bring it.
-  /// `emits`: with what the surface itself emits. `steps`, unless it is null, counts the walks'
-  /// steps.
+  /// `emits`: with what the surface itself emits. `counts`, unless it is null, gets the walks' work
+  /// added.
   GroupedLight from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
                             bool all_light = true, bool emits = true,
-                            std::uint64_t* steps = nullptr) const;
+                            WalkCounts* counts = nullptr) const;
   /// The same, without what the surface emits, by parts.
   ReflectedLight reflected(const SurfaceVertex& vertex, Rng& rng, bool all_light) const;
 
@@ -127,9 +135,8 @@ public:
   bool leave(PathWalk& walk) const;
 
 private:
-  GroupedLight follow_from(const SurfaceVertex& vertex, PathWalk& first,
-                           std::uint64_t* steps) const;
-  GroupedLight follow(PathWalk& first, bool leaves, std::uint64_t* steps) const;
+  GroupedLight follow_from(const SurfaceVertex& vertex, PathWalk& first, WalkCounts* counts) const;
+  GroupedLight follow(PathWalk& first, bool leaves, WalkCounts* counts) const;
   float roulette_from(const Rgb& throughput) const;
   void sample_lights(PathWalk& walk) const;
   void branch(PathWalk& walk, std::vector<PathWalk>& branches) const;

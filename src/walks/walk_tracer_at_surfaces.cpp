@@ -8,14 +8,14 @@
 namespace vdbeam {
 
 GroupedLight WalkTracer::from_surface(const SurfaceHit& hit, const Vec3f& direction, Rng& rng,
-                                      bool all_light, bool emits, std::uint64_t* steps) const {
+                                      bool all_light, bool emits, WalkCounts* counts) const {
   const SurfaceVertex vertex(*world_.surfaces, hit, direction);
   PathWalk first(rng, vertex.absorbed());
   first.all_light = all_light;
   GroupedLight sum;
   if (emits)
     sum.add(vertex.emitted(), group_of(world_, vertex));
-  sum += follow_from(vertex, first, steps);
+  sum += follow_from(vertex, first, counts);
   rng = first.rng; // for what the caller draws next
   return sum;
 }
@@ -53,20 +53,22 @@ GroupedLight WalkTracer::added_to_plate(const SurfaceHit& hit, const Vec3f& dire
 
 /// Light of a walk that begins at a surface.
 GroupedLight WalkTracer::follow_from(const SurfaceVertex& vertex, PathWalk& first,
-                                     std::uint64_t* steps) const {
+                                     WalkCounts* counts) const {
   first.least_weight = roulette_from(Rgb(1));
   const bool leaves = bounce(first, vertex, true);
-  return follow(first, leaves, steps);
+  return follow(first, leaves, counts);
 }
 
 /// Light of a walk after its first surface, and of its branches, with what it has so far.
-GroupedLight WalkTracer::follow(PathWalk& first, bool leaves, std::uint64_t* steps) const {
+GroupedLight WalkTracer::follow(PathWalk& first, bool leaves, WalkCounts* counts) const {
   GroupedLight sum;
   std::vector<PathWalk> branches;
   const auto follow_walk = [&](PathWalk& walk, bool goes_on) {
     for (; goes_on; goes_on = step(walk, branches))
-      if (steps)
-        ++*steps;
+      if (counts)
+        ++counts->steps;
+    if (counts)
+      counts->shadow_rays += walk.shadow_rays;
     sum += walk.direct + walk.indirect;
   };
   follow_walk(first, leaves && advance_flight(first, *this));
@@ -104,8 +106,10 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   walk.in_plate = walk.in_plate && material.is_shadow_catcher();
   const bool counts_straight =
       !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
-  if (counts_straight)
+  if (counts_straight) {
+    walk.shadow_rays += light_draw_.size();
     walk.add(lights_at_surface(vertex, walk.rng, true, walk.in_plate, matt) * walk.throughput);
+  }
   if (matt)
     *matt *= walk.throughput;
   const MaterialSample next = leave_surface(vertex, walk.rng);

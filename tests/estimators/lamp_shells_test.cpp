@@ -63,8 +63,9 @@ protected:
   Samples by_sampling(const Segment& flight) const {
     Samples samples;
     Rng rng({}, RngStage::walk, 1);
+    std::uint64_t shadow_rays = 0;
     for (int i = 0; i < 20000; ++i)
-      samples.add(static_cast<double>(shells_.along(flight, rng).sum().x));
+      samples.add(static_cast<double>(shells_.along(flight, rng, shadow_rays).sum().x));
     return samples;
   }
   const World& world() const { return frame_.world; }
@@ -108,23 +109,25 @@ TEST_F(LampShellsTest, AreAroundLampsInTheMediumOnly) {
 /// there are none.
 TEST_F(LampShellsTest, DrawDirectionsAboutLampsByTheirDensity) {
   const LampDirections directions(world(), shells_);
-  const Vec3f near(lamp_ + Vec3d(0.5, 0, 0) * shells_.radius_of(0));
+  const LampDirections::Vertex near_vertex =
+      directions.at(Vec3f(lamp_ + Vec3d(0.5, 0, 0) * shells_.radius_of(0)));
   Rng rng({}, RngStage::walk, 2);
   for (const double angle : {0.03, 1.0}) {
     Samples cone, drawn; // the solid angle of a cone about the lamp, and how many are drawn
     for (int i = 0; i < 400000; ++i) {
-      const std::optional<Vec3f> direction = directions.sample(near, rng);
+      const std::optional<Vec3f> direction = near_vertex.sample(rng);
       const bool inside = direction && -direction->x > std::cos(angle);
-      cone.add(inside ? 1 / static_cast<double>(directions.density(near, *direction)) : 0);
+      cone.add(inside ? 1 / static_cast<double>(near_vertex.density(*direction)) : 0);
       drawn.add(direction ? 1 : 0);
     }
     expect_mean(cone, 2 * std::numbers::pi * (1 - std::cos(angle)));
-    expect_mean(drawn, static_cast<double>(directions.chance(near)));
+    expect_mean(drawn, static_cast<double>(near_vertex.chance()));
   }
-  const Vec3f far(lamp_ + Vec3d(2, 0, 0) * LampDirections::reach(shells_, 0));
-  EXPECT_FALSE(directions.sample(far, rng));
-  EXPECT_EQ(directions.density(far, {-1, 0, 0}), 0);
-  EXPECT_EQ(directions.chance(far), 0);
+  const LampDirections::Vertex far_vertex =
+      directions.at(Vec3f(lamp_ + Vec3d(2, 0, 0) * LampDirections::reach(shells_, 0)));
+  EXPECT_FALSE(far_vertex.sample(rng));
+  EXPECT_EQ(far_vertex.density({-1, 0, 0}), 0);
+  EXPECT_EQ(far_vertex.chance(), 0);
 }
 
 /// Where a path may scatter twice at most, its flights look for lamps only before the second event.

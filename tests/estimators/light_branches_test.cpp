@@ -42,6 +42,7 @@ TEST(LightBranches, HaveTheirDensity) {
   ASSERT_TRUE(branches.any());
   const PhaseFunction& phase = world.medium.phases[0];
   const Vec3f point{0.1f, -0.2f, 0.05f};
+  const LightBranches::Vertex vertex = branches.at(point);
   const Vec3f to_lamp(normalize(*world.lights[3].position() - Vec3d(point)));
   Rng rng({}, RngStage::test, 1);
   // The mean over scatterings of 1/density of a branch in a cone is the cone's solid angle.
@@ -50,9 +51,9 @@ TEST(LightBranches, HaveTheirDensity) {
     for (const float cosine : {0.9999f, 0.98f}) {
       Samples cone;
       for (int i = 0; i < 1000000; ++i) {
-        const std::optional<Vec3f> branch = branches.sample(phase, point, rng);
+        const std::optional<Vec3f> branch = vertex.sample(phase, rng);
         const bool inside = branch && dot(*branch, towards) > cosine;
-        cone.add(inside ? 1 / static_cast<double>(branches.density(phase, point, *branch)) : 0);
+        cone.add(inside ? 1 / static_cast<double>(vertex.density(phase, *branch)) : 0);
       }
       expect_mean(cone, 2 * std::numbers::pi * (1 - static_cast<double>(cosine)));
       EXPECT_LT(cone.error(), 0.03 * cone.mean());
@@ -71,8 +72,8 @@ TEST(LightBranches, AreLeftOutElsewhere) {
   EXPECT_FALSE(LightBranches(blunt_world, {true, true, true}, of_blunt).any());
   const LightBranches none(sharp_world, {false, false, true}, of_sharp);
   EXPECT_FALSE(none.any());
-  EXPECT_EQ(none.importance({}, {0, 0, 1}), 1);
-  EXPECT_EQ(none.density(sharp_world.medium.phases[0], {}, {0, 0, 1}), 0);
+  EXPECT_EQ(none.at({}).importance({0, 0, 1}), 1);
+  EXPECT_EQ(none.at({}).density(sharp_world.medium.phases[0], {0, 0, 1}), 0);
 }
 
 /// About a lamp in the medium branches have their density, whatever the phase function; far from it
@@ -95,16 +96,16 @@ TEST(LightBranches, PassLampsInTheMedium) {
   for (const double angle : {0.001, 0.1, 1.0}) {
     Samples cone;
     for (int i = 0; i < 1000000; ++i) {
-      const std::optional<Vec3f> branch = branches.sample(phase, near, rng);
+      const std::optional<Vec3f> branch = branches.at(near).sample(phase, rng);
       const bool inside =
           branch && length(cross(*branch, Vec3f(-1, 0, 0))) < static_cast<float>(std::sin(angle)) &&
           branch->x < 0;
-      cone.add(inside ? 1 / static_cast<double>(branches.density(phase, near, *branch)) : 0);
+      cone.add(inside ? 1 / static_cast<double>(branches.at(near).density(phase, *branch)) : 0);
     }
     expect_mean(cone, 2 * std::numbers::pi * (1 - std::cos(angle)));
   }
-  EXPECT_EQ(branches.density(phase, far, {-1, 0, 0}), 0);
-  EXPECT_FALSE(branches.sample(phase, far, rng));
+  EXPECT_EQ(branches.at(far).density(phase, {-1, 0, 0}), 0);
+  EXPECT_FALSE(branches.at(far).sample(phase, rng));
 }
 
 /// Walks branch towards lamps in and near the medium: `path` has little noise, and shows what

@@ -68,12 +68,14 @@ void expect_sum(const Samples& all, const SumOfParts& parts_sum, double power) {
 
 /// One image of 48 lamps, drawn, is the sum of three of 16, which are looked for one and all.
 TEST_P(ManyLamps, BringTheSumOfTheirLight) {
-  const PassMeans all = render_passes(lamps_in_fog(-1), GetParam(), passes);
+  // A pass of `path` is short where each vertex has many shadow rays, and has more noise.
+  const int count = GetParam() == EstimatorType::path ? 3 * passes : passes;
+  const PassMeans all = render_passes(lamps_in_fog(-1), GetParam(), count);
   SumOfParts total;
   std::array<SumOfParts, region_rows * region_rows> regions;
   std::uint64_t shadow_rays = 0;
   for (int part = 0; part < parts; ++part) {
-    const PassMeans one = render_passes(lamps_in_fog(part), GetParam(), passes);
+    const PassMeans one = render_passes(lamps_in_fog(part), GetParam(), count);
     total.add(one.total[1]);
     for (std::size_t region = 0; region < regions.size(); ++region)
       regions[region].add(one.regions[region]);
@@ -83,6 +85,27 @@ TEST_P(ManyLamps, BringTheSumOfTheirLight) {
   expect_sum(all.total[1], total, 0.08);
   for (std::size_t region = 0; region < regions.size(); ++region)
     expect_sum(all.regions[region], regions[region], 0.2);
+}
+
+/// Shadow rays of a walk of `path` in fog, the mean over walks.
+double shadow_rays_per_walk(int lamps) {
+  MemoryScene scene;
+  VolumeSettings& box = scene.add_box({-1, -1, -1}, {1, 1, 1});
+  box.extinction = 2;
+  scene.look({0, 0, 4}, {0, 0, 0}, 22, 12, 12);
+  for (int i = 0; i < lamps; ++i)
+    scene.add_light(LightType::point).position = {3 + 0.1 * i, 2, 1};
+  const RenderStatistics counts = render_passes(scene, EstimatorType::path, passes).statistics;
+  return static_cast<double>(counts.walk_shadow_rays) / static_cast<double>(counts.camera_walks);
+}
+
+/// The pilot of `path` and the forecast of `auto` count what lamps cost: each vertex of a walk
+/// looks for all of 12 lamps, but for 8 of 48.
+TEST(ShadowRaysOfWalks, AreCounted) {
+  const double one = shadow_rays_per_walk(1);
+  EXPECT_GT(one, 0.5);
+  EXPECT_NEAR(shadow_rays_per_walk(12), 12 * one, 0.05 * 12 * one);
+  EXPECT_NEAR(shadow_rays_per_walk(48), 8 * one, 0.05 * 8 * one);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ManyLamps,

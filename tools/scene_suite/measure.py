@@ -8,7 +8,7 @@ import numpy as np
 
 # Processor time [ns] of what a render counts, so that work needs no clock. Only ratios matter.
 TIME_OF = {"light_collisions": 150, "photons_stored": 2000, "contributions": 12, "shadow_rays": 3000,
-           "walk_collisions": 80, "gather_walks": 1500, "camera_rays": 10000}
+           "walk_collisions": 40, "walk_shadow_rays": 200, "gather_walks": 1500, "camera_rays": 10000}
 # The same of a light path of a pilot: they are few beside those of a frame of usual size.
 TIME_OF_PILOT_PATH = 20000
 

@@ -83,21 +83,22 @@ Vec3f FinalGather::draw_direction(const Ray& arriving, int phase_index, bool fir
   const PhaseFunction &drawn = medium.phases[i],
                       &value = first ? medium.gathered_phases()[i] : drawn;
   const float evenly = first && medium.peak ? tuning::evenly_drawn : 0;
+  const LampDirections::Vertex lamps = lamps_.at(arriving.origin);
   std::optional<Vec3f> direction;
   if (lamps_.any())
-    direction = lamps_.sample(arriving.origin, rng);
+    direction = lamps.sample(rng);
   if (!direction) {
     const float u_lobe = rng.uniform(), u = rng.uniform(), v = rng.uniform();
     direction = evenly > 0 && rng.uniform() < evenly
                     ? sample_sphere(u, v)
                     : drawn.sample(arriving.direction, u_lobe, u, v);
   }
-  const float to_lamps = lamps_.chance(arriving.origin);
+  const float to_lamps = lamps.chance();
   if (!(evenly > 0 || to_lamps > 0))
     return *direction;
   const float cosine = dot(arriving.direction, *direction);
   const float own = (1 - evenly) * drawn.evaluate(cosine) + evenly / (4 * pi);
-  const float pdf = (1 - to_lamps) * own + lamps_.density(arriving.origin, *direction);
+  const float pdf = (1 - to_lamps) * own + lamps.density(*direction);
   weight *= value.evaluate(cosine) / pdf;
   return *direction;
 }
@@ -114,7 +115,8 @@ void FinalGather::set_out(Walk& walk, const Vec3d& origin, const Vec3f& directio
   walk.mirrored = mirrored;
   walk.CameraWalk::set_out(world_, origin, direction);
   if (shells_.any())
-    walk.found.indirect += shells_.along(walk.segment, walk.rng) * walk.throughput;
+    walk.found.indirect +=
+        shells_.along(walk.segment, walk.rng, walk.counts.shadow_rays) * walk.throughput;
 }
 
 void FinalGather::meet(Walk& walk, const Collision& hit) const {

@@ -56,11 +56,14 @@ SeenSurface PathEstimator::seen_surface(const RayTask& ray, Scratch& scratch) co
     return seen_catcher(ray, rng);
   const PartDraws draws = ray.draws_of(PathPart::surface, rng.uniform());
   GroupedLight sum;
+  WalkCounts counts;
   for (int i = 1; i <= draws.count; ++i) {
     Rng path_rng(ray.key, RngStage::surface, stream + static_cast<std::uint64_t>(i));
     sum += tracer_.from_surface(*ray.camera.hit, ray.camera.ray().direction, path_rng, true, true,
-                                &scratch.counts.walk_collisions);
+                                &counts);
   }
+  scratch.counts.walk_collisions += counts.steps;
+  scratch.counts.walk_shadow_rays += counts.shadow_rays;
   return {sum *= draws.weight};
 }
 
@@ -158,6 +161,7 @@ void PathEstimator::take_turns(Scratch& scratch, std::size_t most, PassImage& im
         ++i;
         continue;
       }
+      scratch.counts.walk_shadow_rays += walk.shadow_rays;
       const RaySink sink(input_.layers, walk.target, image);
       const Rgb light = (walk.direct.sum() + walk.indirect.sum()) * walk.share;
       sink.add_of_volume(walk.volume, light);

@@ -55,4 +55,11 @@ double time_of_shadow_ray(const Medium& medium) {
   return has_voxels ? tuning::time_of_ray_in_voxels : tuning::time_of_ray_in_layers;
 }
 
+double time_of_paths(const Medium& medium, const RenderStatistics& counts) {
+  return time_of_shadow_ray(medium) * static_cast<double>(counts.shadow_rays) +
+         tuning::time_of_walk * static_cast<double>(counts.camera_walks) +
+         tuning::time_of_walk_collision * static_cast<double>(counts.walk_collisions) +
+         tuning::time_of_walk_shadow_ray * static_cast<double>(counts.walk_shadow_rays);
+}
+
 } // namespace vdbeam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "medium/medium.h"
+#include "vdbeam/render_statistics.h"
 
 #include <array>
 #include <cstddef>
@@ -50,5 +51,9 @@ struct PathTrial {
 /// The time of a shadow ray [ns]: layers, whose optical depth has a closed form, take less than
 /// voxels.
 double time_of_shadow_ray(const Medium& medium);
+
+/// The time of the shadow rays and walks of `path` that were counted [ns], without that of the
+/// camera rays themselves.
+double time_of_paths(const Medium& medium, const RenderStatistics& counts);
 
 } // namespace vdbeam

@@ -56,12 +56,7 @@ struct PathEstimator::TrialRay {
 void PathEstimator::try_draw(RayTask task, std::size_t draw, Scratch& scratch,
                              TrialRay& result) const {
   constexpr std::size_t target = 0;
-  const auto time = [&] {
-    const RenderStatistics& counts = scratch.counts;
-    return time_of_shadow_ray(input_.world.medium) * static_cast<double>(counts.shadow_rays) +
-           tuning::time_of_walk * static_cast<double>(counts.camera_walks) +
-           tuning::time_of_walk_collision * static_cast<double>(counts.walk_collisions);
-  };
+  const auto time = [&] { return time_of_paths(input_.world.medium, scratch.counts); };
   const auto part = [&](PathPart which, double least_time, const auto& render) {
     const auto i = static_cast<std::size_t>(which);
     result.share[i] = task.share(which);
