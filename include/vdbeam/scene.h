@@ -68,9 +68,6 @@ enum class PhotonStore { fluence, scatter };
 enum class PhotonThinning { automatic, view, even };
 /// Whether multiple scattering uses delta-M truncation (docs/theory/beam.md, "Forward peaks").
 enum class ForwardPeak { automatic, kept };
-/// Whether `beam` gathers photons where walks from the camera ray arrive, not along it; automatic:
-/// from the pass on at which a pilot predicts a lower error (docs/theory/beam.md).
-enum class FinalGathering { automatic, never, always };
 enum class KernelRadius { adaptive, fixed };
 /// Whether the frames of a sequence use new random numbers or the same ones.
 enum class SeedPolicy { per_frame, correlated };
@@ -93,9 +90,8 @@ struct RenderSettings {
   double min_radius = 0; ///< world units; 0: automatic
   double max_radius = 0; ///< world units; 0: automatic
   double alpha = 0.6;    ///< radius reduction (Knaus and Zwicker 2011), in (0, 1]
-  ForwardPeak forward_peak = ForwardPeak::automatic;       ///< of scattering (beam, march)
-  PhotonThinning thinning = PhotonThinning::automatic;     ///< which collisions are stored (beam)
-  FinalGathering final_gather = FinalGathering::automatic; ///< walks from camera rays (beam)
+  ForwardPeak forward_peak = ForwardPeak::automatic;   ///< of scattering (beam, march)
+  PhotonThinning thinning = PhotonThinning::automatic; ///< which collisions are stored (beam)
   std::optional<int> max_bounces; ///< scattering events per light path; absent: no limit
   double cutoff = 1e-6;           ///< transmittance below which a camera ray ends
   double bias_rays = 1.0 / 128;   ///< fraction of the camera rays path traced to estimate the bias

@@ -188,8 +188,7 @@ void choose_photons(const EstimatorInput& input, const EstimatorKind& kind, Choi
   if (input.plan.needs(Stage::kernel_pilot) && photons >= tuning::fewest_for_trial)
     try_kernels(input, kind, choices);
   const FeatureFacts facts(input, kind, plan.sampled_lights);
-  if (!choices.gather && forces_final_gather(kind, input.settings) &&
-      is_possible(final_gather_feature, facts))
+  if (!choices.gather && kind.gathers() && is_possible(final_gather_feature, facts))
     choices.gather.emplace();
   plan.share_at_boundary = is_possible(boundary_share_feature, facts);
   // Not before gathering is chosen, whose walks look for all lights: where one is found by photons
@@ -211,11 +210,9 @@ Choices choose_light(const EstimatorInput& input, const EstimatorKind& kind, Pas
   else
     choose_photons(first, kind, choices);
   PhotonPlan& plan = choices.photons;
-  const bool may_gather =
-      kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::gather.name;
   if (choices.gather)
     choices.estimator = EstimatorType::gather.name;
-  else if (may_gather)
+  else if (kind.may_gather())
     choices.estimator = EstimatorType::beam.name;
   plan.shadow_lattices = is_possible(shadow_lattice_feature, {first, kind, plan.sampled_lights});
   return choices;

@@ -59,9 +59,6 @@ extern const Feature view_importance_feature, path_guide_feature, kernel_pilot_f
     forward_peak_feature, final_gather_feature, hidden_lights_feature, shadow_lattice_feature,
     boundary_share_feature, edges_feature, branches_feature;
 
-/// Whether the scene demands final gathering wherever possible, whatever a pilot predicts.
-bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings);
-
 /// Why a feature cannot be used; empty where nothing excludes it.
 std::string why_excluded(const Feature& feature, const FeatureFacts& facts);
 inline bool is_possible(const Feature& feature, const FeatureFacts& facts) {

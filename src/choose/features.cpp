@@ -23,11 +23,8 @@ bool limits_bounces(const Facts& facts) {
 bool shoots_no_photons(const Facts& facts) {
   return !facts.kind.shoots_photons();
 }
-bool is_forced(const Facts& facts) {
-  return forces_final_gather(facts.kind, facts.input.settings);
-}
 bool gathers_along_rays(const Facts& facts) {
-  return facts.kind.name != EstimatorType::automatic.name && !is_forced(facts);
+  return !facts.kind.may_gather();
 }
 
 /// A question about a light of the world.
@@ -61,7 +58,7 @@ bool is_missed_by_walks(const Facts& facts, std::size_t light) {
 /// A small light without shadow rays is met by chance only: rare and bright values, which a pilot
 /// would miss.
 bool is_missed_by_pilots(const Facts& facts, std::size_t light) {
-  if (is_forced(facts) || light >= facts.input.plan.shadow_ray_lights.size())
+  if (facts.kind.gathers() || light >= facts.input.plan.shadow_ray_lights.size())
     return false;
   const LightTraits& traits = facts.input.world.lights.traits(light);
   return !facts.sampled_lights[light] && (!traits.surrounds || traits.wants_shadow_rays);
@@ -100,13 +97,6 @@ constexpr std::string_view by_scattered_flux = "photons store scattered flux (re
 constexpr std::string_view by_bounces = "render.max_bounces limits the scattering events";
 
 } // namespace
-
-bool forces_final_gather(const EstimatorKind& kind, const RenderSettings& settings) {
-  const bool asked =
-      settings.final_gather == FinalGathering::always &&
-      (kind.name == EstimatorType::automatic.name || kind.name == EstimatorType::beam.name);
-  return kind.name == EstimatorType::gather.name || asked;
-}
 
 const Feature view_importance_feature{
     .name = "view importance",
@@ -193,10 +183,6 @@ const Feature forward_peak_feature{
 namespace {
 constexpr FeatureCondition final_gather_conditions[] = {
     {gathers_along_rays, "render.estimator names another method"},
-    {[](const Facts& facts) {
-       return facts.input.settings.final_gather == FinalGathering::never && !is_forced(facts);
-     },
-     "render.final_gather is \"never\""},
     {stores_scattered_flux, by_scattered_flux},
     {limits_bounces, by_bounces},
     {any_light<is_missed_by_walks>, "a point or directional light is sampled by photons only",

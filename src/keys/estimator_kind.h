@@ -28,6 +28,10 @@ struct EstimatorKind {
   std::unique_ptr<Estimator> (*make)(const EstimatorInput& input, PhotonPass* photons);
 
   bool shoots_photons() const { return stages.contains(Stage::photons); }
+  /// Whether photons are gathered by walks from camera rays wherever that is possible, and whether
+  /// they may be.
+  bool gathers() const { return name == EstimatorType::gather.name; }
+  bool may_gather() const { return gathers() || name == EstimatorType::automatic.name; }
 };
 
 /// Every estimator, in the order of --help. A new one is its file and a line here.

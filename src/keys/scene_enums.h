@@ -153,13 +153,6 @@ struct EnumNames<ForwardPeak> {
       {{ForwardPeak::automatic, "auto"}, {ForwardPeak::kept, "kept"}}};
 };
 template <>
-struct EnumNames<FinalGathering> {
-  static constexpr std::array<std::pair<FinalGathering, std::string_view>, 3> table{
-      {{FinalGathering::automatic, "auto"},
-       {FinalGathering::never, "never"},
-       {FinalGathering::always, "always"}}};
-};
-template <>
 struct EnumNames<KernelRadius> {
   static constexpr std::array<std::pair<KernelRadius, std::string_view>, 2> table{
       {{KernelRadius::adaptive, "adaptive"}, {KernelRadius::fixed, "fixed"}}};

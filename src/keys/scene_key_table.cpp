@@ -264,9 +264,6 @@ void add_render(KeyTable& table) {
             "auto: delta-M truncation of the forward peak in multiple scattering, with an order "
             "that rises "
             "with the passes; kept: no truncation");
-  table.add("final_gather", &R::final_gather,
-            "deprecated, use estimator: never restricts auto to beam and path, always means "
-            "estimator = \"gather\"");
   table.add("max_bounces", &R::max_bounces, "greatest number of scattering events of a path")
       .at_least(1)
       .absent("none");

@@ -221,7 +221,7 @@ private:
 
   void add_film() {
     const bool walks = plan_.needs(Stage::photons) && plan_.needs(Stage::beam_query) &&
-                       scene_.render.final_gather != FinalGathering::never;
+                       estimator_kind(scene_.render.estimator).may_gather();
     // The picture that is written is developed once photons are gone.
     const std::uint64_t film = plan_.film_bytes,
                         developed = pixels_ * (Film::developed_bytes_per_pixel(scene_.glows()) +

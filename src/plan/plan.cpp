@@ -234,8 +234,7 @@ RenderPlan plan_stages(const Scene& scene, const std::vector<VolumeFacts>& volum
       scene.image.cryptomatte ? scene_objects(scene).names.size() : 0, plane_names(scene).size());
   if (!scene.surfaces.empty() && estimator.shoots_photons())
     plan.film_bytes += SurfaceFit::bytes_per_pixel(groups) * pixels;
-  if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) &&
-      scene.render.final_gather != FinalGathering::never)
+  if (plan.needs(Stage::photons) && plan.needs(Stage::beam_query) && estimator.may_gather())
     plan.film_bytes += GatherPass::bytes_per_pixel(groups) * pixels;
   return plan;
 }

@@ -4,6 +4,7 @@
 #include "film/layers.h"
 #include "keys/scene_enums.h"
 #include "report/plan_text.h"
+#include "report/report.h"
 #include "report/versions.h"
 #include "text/attributes.h"
 
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace vdbeam {
@@ -194,6 +196,8 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
     image.metadata["vdbeam:features"] = features_text(result.plan);
   if (!result.plan.numbers.empty())
     image.metadata["vdbeam:numbers"] = numbers_text(result.plan);
+  if (!result.plan.schedule.empty())
+    image.metadata["vdbeam:schedule"] = schedule_json(result.plan).dump();
   image.numbers["vdbeam:frame"] = scene.frame.number;
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   // A draft and a quick look are packed in no time, for their time is over.

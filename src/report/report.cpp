@@ -127,6 +127,8 @@ Json numbers_json(const RenderPlan& plan) {
   return numbers;
 }
 
+} // namespace
+
 Json schedule_json(const RenderPlan& plan) {
   Json passes = Json::array();
   for (const PassSpec& spec : plan.schedule)
@@ -145,8 +147,6 @@ Json schedule_json(const RenderPlan& plan) {
                       {"probe_turn", spec.probe_turn}});
   return passes;
 }
-
-} // namespace
 
 Json plan_json(const RenderPlan& plan) {
   Json stages = Json::array();

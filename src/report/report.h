@@ -25,6 +25,9 @@ nlohmann::ordered_json stage_seconds_json(const RenderStatistics& statistics);
 /// The plan, as in reports and `vdbeam plan --json`.
 nlohmann::ordered_json plan_json(const RenderPlan& plan);
 
+/// The passes of a plan at which something changes, as in plan_json().
+nlohmann::ordered_json schedule_json(const RenderPlan& plan);
+
 /// The report of a frame (docs/reference/output.md). Numbers that are not finite become null.
 nlohmann::ordered_json report_json(const Scene& scene, const RenderResult& result,
                                    const ReportContext& context);

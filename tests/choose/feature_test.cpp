@@ -72,8 +72,6 @@ const std::vector<Exclusion>& exclusions() {
       {"forward peak", "a light other than a constant sky is sampled by photons only",
        [](MemoryScene& s) { s.scene.render.direct = DirectLight::photons; }},
       {"final gathering", "render.estimator names another method", name_beam},
-      {"final gathering", "render.final_gather is \"never\"",
-       [](MemoryScene& s) { s.scene.render.final_gather = FinalGathering::never; }},
       {"final gathering", "photons store scattered flux (render.store)", store_scattered_flux},
       {"final gathering", "render.max_bounces limits the scattering events", limit_bounces},
       {"final gathering", "a point or directional light is sampled by photons only",

@@ -2,6 +2,7 @@
 """What plan says about twelve scenes: the parts of the method that each uses, why others are left out, and what its
 passes are; the report and the image of a render hold the same."""
 import json
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -165,6 +166,8 @@ class PlanFeatures(InTempFolder):
         self.assertEqual(code, 0, text)
         self.assertIn("forward peak: on; final gathering: on [at equal time", text)
         self.assertRegex(text, r"vdbeam:numbers: .light paths: \d+ \(default\); neighbours: \d+ \(measured\)")
+        schedule = re.search(r'vdbeam:schedule: "(.*)"', text)[1].replace('\\"', '"')
+        self.assertEqual(json.loads(schedule), plan["schedule"])
 
 
 if __name__ == "__main__":

@@ -203,10 +203,9 @@ TEST_P(Agreement, BeamAndMarchWithPath) {
 /// Walks that begin on camera rays find the same light, with as little as nothing of the blur.
 TEST_P(Agreement, FinalGatheringWithPath) {
   MemoryScene scene = GetParam().make();
-  scene.scene.render.final_gather = FinalGathering::always;
   for (const ForwardPeak peak : {ForwardPeak::automatic, ForwardPeak::kept}) {
     scene.scene.render.forward_peak = peak;
-    const PassMeans means = expect_agreement(scene, truth(), EstimatorType::beam, 24, 0.005,
+    const PassMeans means = expect_agreement(scene, truth(), EstimatorType::gather, 24, 0.005,
                                              GetParam().power, peak == ForwardPeak::kept);
     EXPECT_GT(means.statistics.gather_walks, 0u);
   }

@@ -11,9 +11,10 @@ namespace {
 
 using namespace test;
 
-bool gathers_finally(const MemoryScene& scene) {
+bool gathers_finally(const MemoryScene& scene,
+                     const EstimatorType& estimator = EstimatorType::automatic) {
   const TestFrame frame(scene);
-  return FramePasses(EstimatorType::automatic, frame.input()).choices().gather.has_value();
+  return FramePasses(estimator, frame.input()).choices().gather.has_value();
 }
 
 /// The few walks that come near a lamp among the lumps are far brighter than the others, so kernels
@@ -36,18 +37,17 @@ TEST(FinalGather, IsUsedBesideAFaintLamp) {
   EXPECT_TRUE(gathers_finally(scene));
 }
 
-TEST(FinalGather, FollowsTheSettings) {
+TEST(FinalGather, FollowsTheEstimatorAndTheSettings) {
   MemoryScene scene = lumpy_cloud(160, 160);
   RenderSettings& render = scene.scene.render;
-  render.final_gather = FinalGathering::never;
-  EXPECT_FALSE(gathers_finally(scene));
-  render.final_gather = FinalGathering::always;
-  EXPECT_TRUE(gathers_finally(scene));
+  const auto gathers = [&] { return gathers_finally(scene, EstimatorType::gather); };
+  EXPECT_FALSE(gathers_finally(scene, EstimatorType::beam));
+  EXPECT_TRUE(gathers());
   render.max_bounces = 8;
-  EXPECT_FALSE(gathers_finally(scene));
+  EXPECT_FALSE(gathers());
   render.max_bounces.reset();
   render.direct = DirectLight::photons; // no walk would meet a sun without extent
-  EXPECT_FALSE(gathers_finally(scene));
+  EXPECT_FALSE(gathers());
 }
 
 /// Kernels as wide as the lumps: the mean over many passes is off by their blur, and less so where
@@ -59,9 +59,8 @@ TEST(FinalGather, LessensTheBlur) {
   render.kernel = KernelRadius::fixed;
   render.radius = 0.1;
   render.photons = 40000;
-  const auto squared_error = [&](FinalGathering how) {
-    render.final_gather = how;
-    const PassMeans means = render_passes(scene, EstimatorType::beam, 64);
+  const auto squared_error = [&](const EstimatorType& estimator) {
+    const PassMeans means = render_passes(scene, estimator, 64);
     double sum = 0;
     for (std::size_t i = 0; i < means.brightness.size(); ++i) {
       const Samples &a = means.brightness[i], &b = truth.brightness[i];
@@ -70,8 +69,8 @@ TEST(FinalGather, LessensTheBlur) {
     }
     return sum / static_cast<double>(means.brightness.size());
   };
-  const double along = squared_error(FinalGathering::never);
-  const double walks = squared_error(FinalGathering::always);
+  const double along = squared_error(EstimatorType::beam);
+  const double walks = squared_error(EstimatorType::gather);
   EXPECT_GT(along, 0);
   EXPECT_LT(walks, along / 4);
 }
@@ -84,7 +83,6 @@ TEST(FinalGather, EstimatesItsBlur) {
   render.kernel = KernelRadius::fixed;
   render.radius = 0.15;
   render.photons = 20000;
-  render.final_gather = FinalGathering::always;
   const TestFrame frame(scene);
   std::vector<std::size_t> pixels(48 * 48);
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -93,7 +91,7 @@ TEST(FinalGather, EstimatesItsBlur) {
     EstimatorInput input = frame.input();
     input.blur_pixels = probed ? &pixels : nullptr;
     RenderStatistics statistics;
-    make_pass_renderer(EstimatorType::beam, input)->render_pass(0, image, statistics);
+    make_pass_renderer(EstimatorType::gather, input)->render_pass(0, image, statistics);
     double sum = 0;
     for (const PixelValue& blur : image.blur)
       sum += std::abs(static_cast<double>(blur.radiance.x));

@@ -154,7 +154,6 @@ MemoryScene stripes() {
   volume.extinction = 30;
   scene.add_light(LightType::distant).direction = {1, -0.4, -0.5};
   scene.look({0.5, 0.6, 2.5}, {0, 0, 0}, 24, 80, 80);
-  scene.scene.render.final_gather = FinalGathering::always;
   return scene;
 }
 

@@ -76,8 +76,7 @@ TEST(ForwardPeakBeam, FurnaceOfLumpsByFinalGathering) {
   for (const PhaseSettings& phase : {henyey_greenstein(0.9), mie()}) {
     MemoryScene scene = lumps(10, phase);
     scene.add_light(LightType::environment).radiance = Rgb(1);
-    scene.scene.render.estimator = EstimatorType::beam;
-    scene.scene.render.final_gather = FinalGathering::always;
+    scene.scene.render.estimator = EstimatorType::gather;
     scene.scene.render.photons = 40000;
     scene.scene.render.neighbours = 300;
     const Picture picture = render(scene, 48);

@@ -154,11 +154,10 @@ TEST_F(Partial, DamagedAndForeignFilesAreRefusedInOneLine) {
 }
 
 TEST(Region, PixelsAreThoseOfTheWholeImage) {
-  const std::vector<std::vector<std::string>> ways = {
-      {"render.estimator=beam", "render.final_gather=never"},
-      {"render.estimator=beam", "render.final_gather=always"},
-      {"render.estimator=march"},
-      {"render.estimator=path"}};
+  const std::vector<std::vector<std::string>> ways = {{"render.estimator=beam"},
+                                                      {"render.estimator=gather"},
+                                                      {"render.estimator=march"},
+                                                      {"render.estimator=path"}};
   for (std::vector<std::string> way : ways) {
     way.push_back("render.passes=2");
     const Scene scene = cloud_of_six_passes(way);

@@ -182,10 +182,8 @@ MemoryScene shot() {
 /// Without bias of kernels to speak of, walks that meet surfaces, the light that only the peak
 /// scatters, and photons that are aimed at the medium give what the path tracer gives.
 TEST(NoCliffs, GatheringAmongSurfacesIsRight) {
-  MemoryScene scene = shot();
-  scene.scene.render.final_gather = FinalGathering::always;
+  const MemoryScene scene = shot();
   const PassMeans gathered = render_passes(scene, EstimatorType::gather, 48);
-  scene.scene.render.final_gather = FinalGathering::automatic;
   const PassMeans truth = render_passes(scene, EstimatorType::path, 192);
   EXPECT_EQ(regions_apart(gathered, truth, 0.02), 0);
   expect_same_mean(gathered.total[0], truth.total[0], 0.01);

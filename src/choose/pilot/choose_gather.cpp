@@ -93,7 +93,7 @@ GatherChoice choose_gather(const EstimatorInput& input, const EstimatorKind& kin
   const double error = gather.error_after(tuning::passes_compared);
   const double without = choices.trial->model.error(plan.neighbours, tuning::passes_compared);
   const double lead = error > 0 ? without / error : 0;
-  if (forces_final_gather(kind, input.settings))
+  if (kind.gathers())
     return {gather, lead};
   // The forecast also lacks the kernels' bias for caustics, at which walks look near their
   // beginning.

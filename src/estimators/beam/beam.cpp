@@ -90,10 +90,9 @@ void BeamEstimator::gather_volumes(TileScratch& scratch, PassImage& image) const
 
 namespace {
 
-constexpr std::string_view beam_keys[] = {"photons",      "store",       "direct",     "kernel",
-                                          "kernel_shape", "radius",      "neighbours", "min_radius",
-                                          "max_radius",   "alpha",       "thinning",   "bias_rays",
-                                          "forward_peak", "final_gather"};
+constexpr std::string_view beam_keys[] = {
+    "photons",    "store",      "direct", "kernel",   "kernel_shape", "radius",      "neighbours",
+    "min_radius", "max_radius", "alpha",  "thinning", "bias_rays",    "forward_peak"};
 
 } // namespace
 
