@@ -108,6 +108,15 @@ void add_error_metadata(Image& image, const PassRecord& record) {
 
 namespace {
 
+/// The schedule of passes by columns, since each part of a file has this text.
+std::string schedule_text(const RenderPlan& plan) {
+  nlohmann::ordered_json columns;
+  for (const nlohmann::ordered_json& pass : schedule_json(plan))
+    for (const auto& [name, value] : pass.items())
+      columns[name].push_back(value);
+  return columns.dump();
+}
+
 /// Adds the settings by which the image is written.
 void add_format(Image& image, const Scene& scene, bool in_a_hurry) {
   if (!scene.layers.empty())
@@ -197,7 +206,7 @@ void add_image_metadata(Image& image, const Scene& scene, const RenderResult& re
   if (!result.plan.numbers.empty())
     image.metadata["vdbeam:numbers"] = numbers_text(result.plan);
   if (!result.plan.schedule.empty())
-    image.metadata["vdbeam:schedule"] = schedule_json(result.plan).dump();
+    image.metadata["vdbeam:schedule"] = schedule_text(result.plan);
   image.numbers["vdbeam:frame"] = scene.frame.number;
   image.numbers["vdbeam:seed"] = static_cast<double>(scene.render.seed);
   // A draft and a quick look are packed in no time, for their time is over.

@@ -166,8 +166,9 @@ class PlanFeatures(InTempFolder):
         self.assertEqual(code, 0, text)
         self.assertIn("forward peak: on; final gathering: on [at equal time", text)
         self.assertRegex(text, r"vdbeam:numbers: .light paths: \d+ \(default\); neighbours: \d+ \(measured\)")
-        schedule = re.search(r'vdbeam:schedule: "(.*)"', text)[1].replace('\\"', '"')
-        self.assertEqual(json.loads(schedule), plan["schedule"])
+        columns = json.loads(re.search(r'vdbeam:schedule: "(.*)"', text)[1].replace('\\"', '"'))
+        passes = [dict(zip(columns, values)) for values in zip(*columns.values())]
+        self.assertEqual(passes, plan["schedule"])
 
 
 if __name__ == "__main__":
