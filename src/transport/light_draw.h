@@ -60,8 +60,8 @@ public:
     draw_systematically(drawn, first, most(), rng);
   }
 
-  /// Lights that a vertex looks for which leaves none out.
-  std::size_t size() const {
+  /// How many lights a vertex looks for if it leaves none out.
+  std::size_t usual_count() const {
     return others_.size() + (lamps_.size() <= 2 * most() ? lamps_.size() : most());
   }
 

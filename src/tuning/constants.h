@@ -12,7 +12,8 @@
 namespace vdbeam::tuning {
 
 // Costs: processor time [ns] of what renders count. Only ratios matter: they decide how work is
-// shared out. Fitted to 39 scenes, where the ratio of two estimators came out right within 30 %.
+// shared out. Fitted to 39 scenes, where the ratio of two estimators came out right within 30 %;
+// what walks' collisions and shadow rays cost, to scenes with up to 100 lamps.
 
 /// A camera ray with its depth profile, and the query of the photon map of one of `beam`.
 VDBEAM_TUNED(double, time_of_camera_ray, 10000);

@@ -76,19 +76,26 @@ LampShells::LampShells(const World& world, const std::vector<bool>& sampled) : w
     const Vec3d nearest = min(max(*lamp, Vec3d(box.lower)), Vec3d(box.upper));
     if (!(length(nearest - *lamp) < radius))
       continue;
+    shell_of_light_.resize(world.lights.size(), -1);
+    shell_of_light_[l] = static_cast<int>(shells_.size());
     shells_.push_back({l, *lamp, radius});
-    radii_.resize(world.lights.size(), 0);
-    radii_[l] = radius;
   }
 }
 
+/// Null where it has none.
+const LampShells::Shell* LampShells::shell_of(std::size_t light) const {
+  const int shell = shell_of_light_.empty() ? -1 : shell_of_light_[light];
+  return shell < 0 ? nullptr : &shells_[static_cast<std::size_t>(shell)];
+}
+
 double LampShells::radius_of(std::size_t light) const {
-  return radii_.empty() ? 0 : radii_[light];
+  const Shell* const shell = shell_of(light);
+  return shell ? shell->radius : 0;
 }
 
 bool LampShells::holds(std::size_t light, const Vec3f& point) const {
-  const double radius = radius_of(light);
-  return radius > 0 && length(Vec3d(point) - *world_.lights[light].position()) < radius;
+  const Shell* const shell = shell_of(light);
+  return shell && length(Vec3d(point) - shell->center) < shell->radius;
 }
 
 GroupedLight LampShells::along(const Segment& flight, Rng& rng, std::uint64_t& shadow_rays) const {

@@ -39,11 +39,12 @@ private:
     const Shell* shell;
     Segment segment;
   };
+  const Shell* shell_of(std::size_t light) const;
   Rgb sample(const Crossing& crossing, Rng& rng) const;
 
   const World& world_;
   std::vector<Shell> shells_;
-  std::vector<double> radii_; ///< per light, 0 without a shell; empty where no light has one
+  std::vector<int> shell_of_light_; ///< -1: it has none; empty where no light has one
 };
 
 } // namespace vdbeam

@@ -107,7 +107,7 @@ bool WalkTracer::bounce(PathWalk& walk, const SurfaceVertex& vertex, bool is_fir
   const bool counts_straight =
       !material.is_specular() && (walk.all_light || is_first || !material.throws_light());
   if (counts_straight) {
-    walk.shadow_rays += light_draw_.size();
+    walk.shadow_rays += light_draw_.usual_count();
     walk.add(lights_at_surface(vertex, walk.rng, true, walk.in_plate, matt) * walk.throughput);
   }
   if (matt)
